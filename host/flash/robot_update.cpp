@@ -9,11 +9,26 @@ namespace flag = broadcast::module_flag;
 using broadcast::ImageSender;
 using broadcast::ReceiverState;
 
-broadcast::SenderOptions sender_options(const UpdateOptions& options) {
-  broadcast::SenderOptions sender;
-  sender.session = options.session;
-  sender.install_timeout_us = options.install_timeout_us;
-  return sender;
+std::uint8_t after(std::uint8_t session) { return session == 0xFF ? 1 : static_cast<std::uint8_t>(session + 1U); }
+
+/// On a bus of 1 Mbit/s: ISO 11898-1, section 10.4, and a bit of stuffing after each sixteen.
+Microseconds duration_of(const CanFrame& frame) {
+  constexpr Microseconds bits_without_data = 47;
+  const Microseconds bits = bits_without_data + 8U * frame.length;
+  return bits + bits / 16U;
+}
+
+/// The image of the host has no such fault.
+bool is_damage(std::uint8_t detail) {
+  switch (static_cast<image::Error>(detail)) {
+    case image::Error::not_an_image:
+    case image::Error::damaged_header:
+    case image::Error::wrong_length:
+    case image::Error::damaged_body:
+      return true;
+    default:
+      return false;
+  }
 }
 
 }  // namespace
@@ -49,43 +64,57 @@ std::string describe(UpdateOutcome outcome, std::uint8_t detail) {
 
 RobotUpdate::RobotUpdate(CanPort& port, std::span<const std::uint8_t> image, const std::vector<std::uint32_t>& serials,
                          const UpdateOptions& options)
-    : port_(port),
-      image_(image),
-      header_(image::decode(image).header),
-      options_(options),
-      modules_([&serials] {
-        std::vector<UpdatedModule> modules(serials.size());
-        for (std::size_t i = 0; i < serials.size(); ++i) {
-          modules[i].serial = serials[i];
-        }
-        return modules;
-      }()),
-      targets_([&serials] {
-        std::vector<broadcast::Target> targets;
-        targets.reserve(serials.size());
-        for (const std::uint32_t serial : serials) {
-          targets.push_back({serial, {}, false});
-        }
-        return targets;
-      }()),
-      sender_(*this, image, targets_, sender_options(options)) {}
+    : port_(port), image_(image), header_(image::decode(image).header), options_(options), session_(options.session) {
+  for (const std::uint32_t serial : serials) {
+    modules_.push_back({serial, UpdateOutcome::pending, 0, false, {}});
+  }
+  prepare_attempt(serials);
+}
+
+void RobotUpdate::prepare_attempt(const std::vector<std::uint32_t>& serials) {
+  ++attempts_;
+  sender_.reset();
+  targets_.clear();
+  for (const std::uint32_t serial : serials) {
+    targets_.push_back({serial, {}, false});
+  }
+  broadcast::SenderOptions options;
+  options.session = session_;
+  options.install_timeout_us = options_.install_timeout_us;
+  sender_.emplace(static_cast<CanPort&>(*this), image_, targets_, options);
+}
 
 void RobotUpdate::start(Microseconds now) {
   now_ = now;
   started_at_ = now;
-  sender_.start(now);
+  sender_->start(now);
+  follow_sender(now);
+}
+
+/// In a session of its own: the modules that have installed the image wait for the end of theirs.
+void RobotUpdate::send_again(Microseconds now, const std::vector<std::uint32_t>& serials) {
+  enter(now, Step::transfer);
+  sent_before_ += sender_->symbols_sent();
+  session_ = after(session_);
+  prepare_attempt(serials);
+  sender_->start(now);
   follow_sender(now);
 }
 
 double RobotUpdate::progress() const {
   const double all = static_cast<double>(broadcast::blocks_of(image_.size())) * broadcast::block_symbols;
-  return step_ == Step::transfer ? std::min(1.0, sender_.symbols_sent() / std::max(all, 1.0)) : 1.0;
+  return step_ == Step::transfer ? std::min(1.0, sender_->symbols_sent() / std::max(all, 1.0)) : 1.0;
 }
 
 bool RobotUpdate::send(const CanFrame& frame) {
+  if (bus_is_free_at_ > now_ + longest_lead_us) {
+    resume_at_ = bus_is_free_at_ - longest_lead_us / 2;
+    return false;
+  }
   if (unconfirmed_ >= max_unconfirmed || !port_.send(frame)) {
     return false;
   }
+  bus_is_free_at_ = std::max(bus_is_free_at_, now_) + duration_of(frame);
   ++unconfirmed_;
   confirmation_ends_ = now_ + longest_confirmation_us;
   return true;
@@ -101,7 +130,7 @@ void RobotUpdate::transmitted(Microseconds now, const CanFrame& frame) {
   }
   unconfirmed_ -= unconfirmed_ == 0 ? 0U : 1U;
   confirmation_ends_ = unconfirmed_ == 0 ? never : now + longest_confirmation_us;
-  sender_.transmitted(now);
+  sender_->transmitted(now);
   follow_sender(now);
 }
 
@@ -111,7 +140,7 @@ void RobotUpdate::receive(Microseconds now, const CanFrame& frame) {
     query_->receive(now, frame);
     take_answers(now);
   } else if (step_ <= Step::installation) {
-    sender_.receive(now, frame);
+    sender_->receive(now, frame);
     follow_sender(now);
   }
 }
@@ -122,9 +151,13 @@ void RobotUpdate::poll(Microseconds now) {
     if (now >= confirmation_ends_) {
       unconfirmed_ = 0;
       confirmation_ends_ = never;
-      sender_.transmitted(now);
+      resume_at_ = now;
     }
-    sender_.poll(now);
+    if (now >= resume_at_) {
+      resume_at_ = never;
+      sender_->transmitted(now);
+    }
+    sender_->poll(now);
     follow_sender(now);
   } else if (query_) {
     query_->poll(now);
@@ -141,31 +174,47 @@ Microseconds RobotUpdate::next_deadline() const {
     case Step::restart:
       return query_ ? query_->next_deadline() : look_at_;
     default:
-      return std::min(sender_.next_deadline(), confirmation_ends_);
+      return std::min({sender_->next_deadline(), confirmation_ends_, resume_at_});
   }
 }
 
 void RobotUpdate::follow_sender(Microseconds now) {
-  if (step_ == Step::transfer && sender_.state() == ImageSender::State::complete) {
+  if (step_ == Step::transfer && sender_->state() == ImageSender::State::complete) {
     enter(now, Step::installation);
-    sender_.install(now);
+    sender_->install(now);
   }
-  if (sender_.state() == ImageSender::State::done) {
+  if (sender_->state() == ImageSender::State::done) {
     if (step_ == Step::transfer) {
       enter(now, Step::installation);
     }
     take_results();
-    enter(now, Step::restart);
+    const std::vector<std::uint32_t> again = damaged();
+    if (again.empty() || attempts_ == options_.attempts) {
+      enter(now, Step::restart);
+    } else {
+      send_again(now, again);
+    }
   }
 }
 
+std::vector<std::uint32_t> RobotUpdate::damaged() const {
+  std::vector<std::uint32_t> serials;
+  for (const UpdatedModule& module : modules_) {
+    if (module.outcome == UpdateOutcome::refused && is_damage(module.detail)) {
+      serials.push_back(module.serial);
+    }
+  }
+  return serials;
+}
+
 void RobotUpdate::take_results() {
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    const broadcast::StatusAnswer& status = targets_[i].status;
-    UpdatedModule& module = modules_[i];
+  for (const broadcast::Target& target : targets_) {
+    const broadcast::StatusAnswer& status = target.status;
+    UpdatedModule& module = *std::ranges::find(modules_, target.serial, &UpdatedModule::serial);
+    module.outcome = UpdateOutcome::pending;
     module.detail = status.error;
-    module.has_image = status.session == options_.session && status.state >= ReceiverState::complete;
-    if (status.session != 0 && status.session != options_.session) {
+    module.has_image = status.session == session_ && status.state >= ReceiverState::complete;
+    if (status.session != 0 && status.session != session_) {
       module.outcome = UpdateOutcome::belongs_to_other;
     } else if (status.state == ReceiverState::refused) {
       module.outcome = UpdateOutcome::refused;
@@ -192,8 +241,11 @@ void RobotUpdate::enter(Microseconds now, Step step) {
 
 /// It has no answer, so that it may be lost.
 void RobotUpdate::send_leave(Microseconds /*now*/) {
-  for (unsigned i = 0; i < leave_repetitions; ++i) {
-    static_cast<void>(port_.send(broadcast::leave_frame(options_.session)));
+  std::uint8_t session = options_.session;
+  for (unsigned attempt = 0; attempt < attempts_; ++attempt, session = after(session)) {
+    for (unsigned i = 0; i < leave_repetitions; ++i) {
+      static_cast<void>(port_.send(broadcast::leave_frame(session)));
+    }
   }
 }
 

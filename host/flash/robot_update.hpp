@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +47,9 @@ struct UpdateOptions {
   bool through_its_line = false;
   Microseconds install_timeout_us = 15'000'000;
   Microseconds restart_timeout_us = 20'000'000;  ///< from the restart to the confirmation: several trials
+  /// Transfers to a module that has found the image damaged. The host's image is not: something has changed it on the
+  /// way. A module whose program knows no checksums of blocks finds that out at the end only.
+  unsigned attempts = 3;
 };
 
 class RobotUpdate final : public BusUser, private CanPort {
@@ -65,7 +69,7 @@ class RobotUpdate final : public BusUser, private CanPort {
   /// Of the transfer, 0 to 1.
   [[nodiscard]] double progress() const;
   /// Symbols of 7 bytes that were sent, repair symbols included.
-  [[nodiscard]] std::uint32_t symbols_sent() const { return sender_.symbols_sent(); }
+  [[nodiscard]] std::uint32_t symbols_sent() const { return sent_before_ + sender_->symbols_sent(); }
   /// From start(): when the transfer, the installation and the restart had ended.
   [[nodiscard]] Microseconds ended_at(Step step) const { return ended_at_[static_cast<std::size_t>(step)]; }
 
@@ -79,11 +83,18 @@ class RobotUpdate final : public BusUser, private CanPort {
   static constexpr unsigned max_unconfirmed = 64;
   /// A confirmation that takes longer is lost.
   static constexpr Microseconds longest_confirmation_us = 250'000;
+  /// Some adapters confirm frames that still wait for the bus, and drop those for which they have no room. So the host
+  /// is only so far ahead of a bus that carries nothing else.
+  static constexpr Microseconds longest_lead_us = 8'000;
   static constexpr unsigned leave_repetitions = 4;
 
   [[nodiscard]] bool send(const CanFrame& frame) override;  ///< of the sender
+  void prepare_attempt(const std::vector<std::uint32_t>& serials);
+  void send_again(Microseconds now, const std::vector<std::uint32_t>& serials);
   void follow_sender(Microseconds now);
   void take_results();
+  /// Modules that have found the image damaged.
+  [[nodiscard]] std::vector<std::uint32_t> damaged() const;
   void enter(Microseconds now, Step step);
   void send_leave(Microseconds now);
   void look(Microseconds now);
@@ -96,8 +107,11 @@ class RobotUpdate final : public BusUser, private CanPort {
   const image::Header header_;
   const UpdateOptions options_;
   std::vector<UpdatedModule> modules_;
-  std::vector<broadcast::Target> targets_;
-  broadcast::ImageSender sender_;
+  std::uint8_t session_;  ///< of the present attempt; those before had the numbers before
+  unsigned attempts_ = 0;
+  std::vector<broadcast::Target> targets_;  ///< of the present attempt
+  std::optional<broadcast::ImageSender> sender_;
+  std::uint32_t sent_before_ = 0;  ///< symbols of earlier attempts
   std::unique_ptr<ModuleQuery> query_;
 
   Step step_ = Step::transfer;
@@ -106,6 +120,8 @@ class RobotUpdate final : public BusUser, private CanPort {
   std::array<Microseconds, 4> ended_at_{};
   unsigned unconfirmed_ = 0;
   Microseconds confirmation_ends_ = never;
+  Microseconds bus_is_free_at_ = 0;  ///< if it carries the frames of the sender only
+  Microseconds resume_at_ = never;   ///< frames wait until then, because of longest_lead_us
   Microseconds look_at_ = never;
   Microseconds restart_ends_ = never;
 };

@@ -66,6 +66,45 @@ TEST(RobotUpdate, SucceedsAlthoughATenthOfTheFramesIsLost) {
   }
 }
 
+TEST(RobotUpdate, AnAdapterThatConfirmsFramesBeforeTheyAreOnTheBusIsNotFlooded) {
+  FlashedRobot robot;
+  constexpr std::size_t room = 128;
+  robot.bus.confirm_at_once(room);
+  const auto update = robot.update(robot.size());
+  for (const UpdatedModule& module : update->modules()) {
+    EXPECT_EQ(module.outcome, UpdateOutcome::runs) << describe(module.outcome, module.detail);
+  }
+  EXPECT_EQ(robot.bus.dropped_frames(), 0U);
+  const double rate = static_cast<double>(new_image.size()) / seconds(update->ended_at(RobotUpdate::Step::transfer));
+  std::printf("an adapter with room for %zu frames: %.1f kB/s\n", room, rate / 1e3);
+  EXPECT_GT(rate, 50e3);
+}
+
+TEST(RobotUpdate, AnImageThatWasDamagedOnTheWayIsSentAgain) {
+  // Modules that know no checksums of blocks, and an adapter that drops frames from the middle of one block to the
+  // middle of the next: they take symbols of the one for those of the other.
+  FlashedRobot robot;
+  constexpr unsigned first_lost = 150;
+  constexpr unsigned block_length = broadcast::block_symbols + 8;  // and the frames that begin the next one
+  unsigned symbols = 0;
+  robot.bus.robot().bus().set_loss_rule([&symbols](const CanFrame& frame, std::size_t receiver) {
+    if (frame.identifier != broadcast::host_identifier) {
+      return false;
+    }
+    constexpr std::uint8_t check = 10;
+    if (frame.length < CanFrame::max_length) {
+      return frame.data[0] == check || (symbols >= first_lost && symbols < first_lost + block_length);
+    }
+    symbols += receiver == 0 ? 1U : 0U;
+    return symbols >= first_lost && symbols < first_lost + block_length;
+  });
+  const auto update = robot.update(2);
+  for (const UpdatedModule& module : update->modules()) {
+    EXPECT_EQ(module.outcome, UpdateOutcome::runs) << describe(module.outcome, module.detail);
+  }
+  EXPECT_GT(update->symbols_sent(), 2 * body_size / broadcast::symbol_size) << "it was not damaged";
+}
+
 TEST(RobotUpdate, ABootloaderWithoutAProgramAndAModuleWithoutANodeIdTakePart) {
   sim::LiveRobotOptions options;
   options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {

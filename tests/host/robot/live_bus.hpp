@@ -32,6 +32,10 @@ class LiveBus final : public CanPort {
     random_.seed(seed);
   }
 
+  /// As many slcan adapters: a frame is confirmed while it waits for the bus. Beyond so many it is dropped.
+  void confirm_at_once(std::size_t room) { room_ = room; }
+  [[nodiscard]] std::uint64_t dropped_frames() const { return dropped_frames_; }
+
   bool send(const CanFrame& frame) override {
     ++sent_frames_;
     for (host::BusUser* user : std::vector(users_)) {
@@ -40,6 +44,13 @@ class LiveBus final : public CanPort {
     if (is_lost()) {
       events_.push_back({robot_.now(), frame, true});
       return true;
+    }
+    if (room_ != 0 && robot_.waiting() >= room_) {
+      ++dropped_frames_;
+      return true;
+    }
+    if (room_ != 0) {
+      events_.push_back({robot_.now(), frame, true});
     }
     return robot_.send(frame);
   }
@@ -92,7 +103,9 @@ class LiveBus final : public CanPort {
       }
     };
     options.on_sent = [this](sim::BusTime time, const CanFrame& frame, std::uint32_t /*source*/) {
-      events_.push_back({time, frame, true});
+      if (room_ == 0) {
+        events_.push_back({time, frame, true});
+      }
     };
     return options;
   }
@@ -102,6 +115,8 @@ class LiveBus final : public CanPort {
   double loss_ = 0;
   std::mt19937_64 random_;
   std::uint64_t sent_frames_ = 0;
+  std::size_t room_ = 0;
+  std::uint64_t dropped_frames_ = 0;
   sim::LiveRobot robot_;
 };
 

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <ostream>
-
 #include <optional>
+#include <ostream>
 
 #include "memory_files.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "sim/scenario/names.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::sim {

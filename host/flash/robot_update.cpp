@@ -18,10 +18,11 @@ Microseconds duration_of(const CanFrame& frame) {
   return bits + bits / 16U;
 }
 
-/// The image of the host has no such fault.
+/// Errors that the host's image cannot have: something has changed it on the way.
 bool is_damage(std::uint8_t detail) {
   switch (static_cast<image::Error>(detail)) {
     case image::Error::not_an_image:
+    case image::Error::unknown_format:
     case image::Error::damaged_header:
     case image::Error::wrong_length:
     case image::Error::damaged_body:
@@ -86,7 +87,7 @@ void RobotUpdate::prepare_attempt(const std::vector<std::uint32_t>& serials) {
 
 void RobotUpdate::start(Microseconds now) {
   now_ = now;
-  started_at_ = now;
+  step_began_at_ = now;
   sender_->start(now);
   follow_sender(now);
 }
@@ -94,6 +95,12 @@ void RobotUpdate::start(Microseconds now) {
 /// In a session of its own: the modules that have installed the image wait for the end of theirs.
 void RobotUpdate::send_again(Microseconds now, const std::vector<std::uint32_t>& serials) {
   enter(now, Step::transfer);
+  for (UpdatedModule& module : modules_) {
+    if (std::ranges::find(serials, module.serial) != serials.end()) {
+      module.outcome = UpdateOutcome::pending;
+      module.has_image = false;
+    }
+  }
   sent_before_ += sender_->symbols_sent();
   session_ = after(session_);
   prepare_attempt(serials);
@@ -136,6 +143,7 @@ void RobotUpdate::transmitted(Microseconds now, const CanFrame& frame) {
 
 void RobotUpdate::receive(Microseconds now, const CanFrame& frame) {
   now_ = now;
+  bus_is_free_at_ = std::max(bus_is_free_at_, now) + duration_of(frame);
   if (query_) {
     query_->receive(now, frame);
     take_answers(now);
@@ -189,7 +197,7 @@ void RobotUpdate::follow_sender(Microseconds now) {
     }
     take_results();
     const std::vector<std::uint32_t> again = damaged();
-    if (again.empty() || attempts_ == options_.attempts) {
+    if (again.empty() || attempts_ >= options_.attempts) {
       enter(now, Step::restart);
     } else {
       send_again(now, again);
@@ -211,7 +219,6 @@ void RobotUpdate::take_results() {
   for (const broadcast::Target& target : targets_) {
     const broadcast::StatusAnswer& status = target.status;
     UpdatedModule& module = *std::ranges::find(modules_, target.serial, &UpdatedModule::serial);
-    module.outcome = UpdateOutcome::pending;
     module.detail = status.error;
     module.has_image = status.session == session_ && status.state >= ReceiverState::complete;
     if (status.session != 0 && status.session != session_) {
@@ -227,7 +234,8 @@ void RobotUpdate::take_results() {
 
 void RobotUpdate::enter(Microseconds now, Step step) {
   constexpr Microseconds restart_time_us = 100'000;
-  ended_at_.at(static_cast<std::size_t>(step_)) = now - started_at_;
+  durations_.at(static_cast<std::size_t>(step_)) += now - step_began_at_;
+  step_began_at_ = now;
   step_ = step;
   if (step == Step::restart) {
     send_leave(now);

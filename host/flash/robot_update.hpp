@@ -47,8 +47,8 @@ struct UpdateOptions {
   bool through_its_line = false;
   Microseconds install_timeout_us = 15'000'000;
   Microseconds restart_timeout_us = 20'000'000;  ///< from the restart to the confirmation: several trials
-  /// Transfers to a module that has found the image damaged. The host's image is not: something has changed it on the
-  /// way. A module whose program knows no checksums of blocks finds that out at the end only.
+  /// Transfers to a module at most, the first one included. Another one follows if the module has found the image
+  /// damaged: the host's image is good, so it was changed on the way.
   unsigned attempts = 3;
 };
 
@@ -70,8 +70,8 @@ class RobotUpdate final : public BusUser, private CanPort {
   [[nodiscard]] double progress() const;
   /// Symbols of 7 bytes that were sent, repair symbols included.
   [[nodiscard]] std::uint32_t symbols_sent() const { return sent_before_ + sender_->symbols_sent(); }
-  /// From start(): when the transfer, the installation and the restart had ended.
-  [[nodiscard]] Microseconds ended_at(Step step) const { return ended_at_[static_cast<std::size_t>(step)]; }
+  /// What the transfers, the installations and the restart have taken.
+  [[nodiscard]] Microseconds duration(Step step) const { return durations_[static_cast<std::size_t>(step)]; }
 
   void receive(Microseconds now, const CanFrame& frame) override;
   void transmitted(Microseconds now, const CanFrame& frame) override;
@@ -84,7 +84,7 @@ class RobotUpdate final : public BusUser, private CanPort {
   /// A confirmation that takes longer is lost.
   static constexpr Microseconds longest_confirmation_us = 250'000;
   /// Some adapters confirm frames that still wait for the bus, and drop those for which they have no room. So the host
-  /// is only so far ahead of a bus that carries nothing else.
+  /// is only so far ahead of the bus.
   static constexpr Microseconds longest_lead_us = 8'000;
   static constexpr unsigned leave_repetitions = 4;
 
@@ -116,11 +116,11 @@ class RobotUpdate final : public BusUser, private CanPort {
 
   Step step_ = Step::transfer;
   Microseconds now_ = 0;
-  Microseconds started_at_ = 0;
-  std::array<Microseconds, 4> ended_at_{};
+  Microseconds step_began_at_ = 0;
+  std::array<Microseconds, 4> durations_{};
   unsigned unconfirmed_ = 0;
   Microseconds confirmation_ends_ = never;
-  Microseconds bus_is_free_at_ = 0;  ///< if it carries the frames of the sender only
+  Microseconds bus_is_free_at_ = 0;  ///< when it has carried the sender's frames and those that came
   Microseconds resume_at_ = never;   ///< frames wait until then, because of longest_lead_us
   Microseconds look_at_ = never;
   Microseconds restart_ends_ = never;

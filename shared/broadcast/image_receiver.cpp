@@ -33,7 +33,7 @@ void ImageReceiver::receive_symbol(const CanFrame& frame) {
   SymbolSet& received = received_[block_];
   if (kind_ == BlockKind::repairs) {
     const unsigned missing = missing_in(block_);
-    if (decoder_.add(number, symbol)) {
+    if (missing != 0 && decoder_.add(number, symbol)) {
       count_received(missing);
     }
   } else if (number < symbols_of(bytes.size()) && !received.contains(number)) {
@@ -120,12 +120,16 @@ void ImageReceiver::begin(std::uint32_t size) {
     return;
   }
   image_ = buffer_.first(size);
-  received_.fill({});
-  missing_ = symbols_of(size);
-  has_block_ = false;
+  restart_collection();
   expects_checksums_ = false;
   installs_ = false;
   status_.state = ReceiverState::receiving;
+}
+
+void ImageReceiver::restart_collection() {
+  received_.fill({});
+  missing_ = symbols_of(image_.size());
+  has_block_ = false;
 }
 
 /// The host repeats this request, because it may be lost.
@@ -149,6 +153,12 @@ void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
 
 /// It comes after the frame that begins the block. If it is for another block, that frame was lost.
 void ImageReceiver::take_checksum(unsigned block, std::uint32_t checksum) {
+  if (status_.state != ReceiverState::receiving) {
+    return;
+  }
+  if (!expects_checksums_ && missing_ != symbols_of(image_.size())) {
+    restart_collection();  // of what came before nothing is known
+  }
   expects_checksums_ = true;
   has_block_ = has_block_ && block == block_;
   if (has_block_) {

@@ -66,6 +66,7 @@ class ImageReceiver {
   [[nodiscard]] std::optional<CanFrame> receive_request(Microseconds now, const CanFrame& frame);
   void select(Microseconds now, std::uint8_t session);
   void begin(std::uint32_t size);
+  void restart_collection();
   void enter_block(unsigned block, std::uint8_t kind);
   void take_checksum(unsigned block, std::uint32_t checksum);
   [[nodiscard]] CanFrame answer(Code code);

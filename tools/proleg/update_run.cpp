@@ -17,7 +17,7 @@ std::string state_of(const RobotUpdate& update, const host::UpdatedModule& modul
   }
   switch (update.step()) {
     case RobotUpdate::Step::transfer:
-      return "receives the image";
+      return module.has_image ? "waits for the others" : "receives the image";
     case RobotUpdate::Step::installation:
       return "installs it";
     default:
@@ -54,7 +54,8 @@ void follow(host::BusConnection& bus, const RobotUpdate& update, std::span<const
     if (progress.is_due()) {
       std::vector<FlashProgress::Bar> bars;
       for (std::size_t i = 0; i < modules.size(); ++i) {
-        bars.push_back({name_of(modules[i]), update.progress(), state_of(update, update.modules()[i])});
+        const host::UpdatedModule& module = update.modules()[i];
+        bars.push_back({name_of(modules[i]), module.has_image ? 1.0 : update.progress(), state_of(update, module)});
       }
       progress.draw(bars);
     }
@@ -88,10 +89,10 @@ UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image, std::s
     throw;
   }
   connection.detach(update);
-  const auto seconds = [&update](RobotUpdate::Step step) { return static_cast<double>(update.ended_at(step)) / 1e6; };
-  const double transfer = seconds(RobotUpdate::Step::transfer);
-  const double installation = seconds(RobotUpdate::Step::installation);
-  return {update.modules(), {transfer, installation - transfer, seconds(RobotUpdate::Step::restart) - installation}};
+  const auto seconds = [&update](RobotUpdate::Step step) { return static_cast<double>(update.duration(step)) / 1e6; };
+  return {update.modules(),
+          {seconds(RobotUpdate::Step::transfer), seconds(RobotUpdate::Step::installation),
+           seconds(RobotUpdate::Step::restart)}};
 }
 
 }  // namespace proleg::tools

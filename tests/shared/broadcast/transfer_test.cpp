@@ -369,6 +369,37 @@ TEST_F(BlockReception, TakesNoSymbolsBeforeTheChecksumOfAHostThatSendsThem) {
   EXPECT_TRUE(has_image());
 }
 
+TEST_F(BlockReception, ComputesTheChecksumOfABlockOnce) {
+  // It takes longer than a frame, and other modules may need many repair symbols.
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0);
+  EXPECT_EQ(report().blocks, 1U);
+  buffer[0] ^= 1U;  // a second look would find that
+  give(block_frame(session, 0, BlockKind::repairs));
+  give_checksum(0);
+  for (unsigned repair = 0; repair < 20; ++repair) {
+    give(symbol_frame(repair, repair_symbol(block_of(std::span<const std::uint8_t>(image), 0), 0, repair)));
+  }
+  EXPECT_EQ(report().blocks, 1U);
+}
+
+TEST_F(BlockReception, ForgetsWhatCameBeforeTheFirstChecksum) {
+  begin_block(0);
+  give_symbols(0, 0, 100);
+  give_symbols(1, 100);  // all frames between were lost, the checksums among them
+  begin_block(1);
+  give_checksum(1);
+  begin_block(1);
+  give_checksum(1);
+  give_symbols(1);
+  EXPECT_EQ(report().blocks, 1U);
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0);
+  EXPECT_TRUE(has_image());
+}
+
 TEST_F(BlockReception, NeedsNoChecksumsOfAHostThatSendsNone) {
   for (const unsigned block : {0U, 1U}) {
     begin_block(block);

@@ -13,14 +13,19 @@ using host::UpdatedModule;
 using host::UpdateOutcome;
 namespace flag = broadcast::module_flag;
 
+/// Hears nothing.
+class DeafListener final : public sim::BusListener {
+  void received(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
+  void transmitted(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
+};
+
 /// Another node on the bus, whose frames go before those of the transfer.
-class OtherNode final : public host::BusUser, sim::BusListener {
+class OtherNode final : public host::BusUser {
  public:
   OtherNode(LiveBus& bus, Microseconds period)
-      : controller_(bus.robot().bus().attach(*this)), period_(period), next_(bus.now()) {}
+      : controller_(bus.robot().bus().attach(listener_)), period_(period), next_(bus.now()) {}
 
   void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
-  void transmitted(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
   void poll(Microseconds /*now*/) override {
     next_ += period_;
     static_cast<void>(controller_.send({0x050, 8, {1, 2, 3, 4, 5, 6, 7, 8}}));
@@ -28,9 +33,7 @@ class OtherNode final : public host::BusUser, sim::BusListener {
   [[nodiscard]] Microseconds next_deadline() const override { return next_; }
 
  private:
-  void received(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
-  void transmitted(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
-
+  DeafListener listener_;
   sim::Controller& controller_;
   const Microseconds period_;
   Microseconds next_;

@@ -164,9 +164,9 @@ TEST(ImageTransfer, CompletesWithBurstsOfLossThatAllModulesShare) {
   // As an adapter whose queue is full: it drops frames of the host, of more than one block or of the end of a block
   // and the beginning of the next.
   constexpr unsigned longest_burst = 60'000;  // us: 400 symbols
-  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    std::mt19937 random(seed);
+  for (std::uint32_t noise = 1; noise <= 60; ++noise) {
+    SCOPED_TRACE(testing::Message() << "seed " << noise);
+    std::mt19937 random(noise);
     const auto image = random_image(3'000 + random() % 30'000);
     Transfer transfer(image, 2);
     const unsigned longest = 1'000 + random() % longest_burst;

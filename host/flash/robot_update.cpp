@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/robot/frame_load.hpp"
+
 namespace proleg::host {
 namespace {
 
@@ -11,11 +13,8 @@ using broadcast::ReceiverState;
 
 std::uint8_t after(std::uint8_t session) { return session == 0xFF ? 1 : static_cast<std::uint8_t>(session + 1U); }
 
-/// On a bus of 1 Mbit/s: ISO 11898-1, section 10.4, and a bit of stuffing after each sixteen.
 Microseconds duration_of(const CanFrame& frame) {
-  constexpr Microseconds bits_without_data = 47;
-  const Microseconds bits = bits_without_data + 8U * frame.length;
-  return bits + bits / 16U;
+  return static_cast<Microseconds>(average_bits(frame) * 1e6 / bus_bit_rate);
 }
 
 /// Errors that the host's image cannot have: something has changed it on the way.
@@ -101,7 +100,6 @@ void RobotUpdate::send_again(Microseconds now, const std::vector<std::uint32_t>&
       module.has_image = false;
     }
   }
-  sent_before_ += sender_->symbols_sent();
   session_ = after(session_);
   prepare_attempt(serials);
   sender_->start(now);

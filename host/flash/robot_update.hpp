@@ -68,8 +68,6 @@ class RobotUpdate final : public BusUser, private CanPort {
   [[nodiscard]] const std::vector<UpdatedModule>& modules() const { return modules_; }
   /// Of the transfer, 0 to 1.
   [[nodiscard]] double progress() const;
-  /// Symbols of 7 bytes that were sent, repair symbols included.
-  [[nodiscard]] std::uint32_t symbols_sent() const { return sent_before_ + sender_->symbols_sent(); }
   /// What the transfers, the installations and the restart have taken.
   [[nodiscard]] Microseconds duration(Step step) const { return durations_[static_cast<std::size_t>(step)]; }
 
@@ -111,7 +109,6 @@ class RobotUpdate final : public BusUser, private CanPort {
   unsigned attempts_ = 0;
   std::vector<broadcast::Target> targets_;  ///< of the present attempt
   std::optional<broadcast::ImageSender> sender_;
-  std::uint32_t sent_before_ = 0;  ///< symbols of earlier attempts
   std::unique_ptr<ModuleQuery> query_;
 
   Step step_ = Step::transfer;

@@ -72,7 +72,7 @@ class ImageReceiver {
   [[nodiscard]] CanFrame answer(Code code);
   [[nodiscard]] HeaderWord header_word(std::uint8_t number) const;
   [[nodiscard]] ReportAnswer report() const;
-  [[nodiscard]] std::span<std::uint8_t> bytes_of(unsigned block) const;
+  [[nodiscard]] std::span<std::uint8_t> bytes_of(unsigned block) const;  ///< as one function: the bootloader is small
   [[nodiscard]] unsigned missing_in(unsigned block) const;
   void count_received(unsigned symbols);
 

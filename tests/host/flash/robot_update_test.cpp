@@ -2,6 +2,7 @@
 
 #include "host/flash/robot_update.hpp"
 
+#include "examined_bus.hpp"
 #include "flashed_robot.hpp"
 
 namespace proleg::test {
@@ -13,30 +14,19 @@ using host::UpdatedModule;
 using host::UpdateOutcome;
 namespace flag = broadcast::module_flag;
 
-/// Hears nothing.
-class DeafListener final : public sim::BusListener {
-  void received(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
-  void transmitted(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
-};
-
 /// Another node on the bus, whose frames go before those of the transfer.
 class OtherNode final : public host::BusUser {
  public:
-  OtherNode(LiveBus& bus, Microseconds period)
-      : controller_(bus.robot().bus().attach(listener_)), period_(period), next_(bus.now()) {}
+  OtherNode(LiveBus& bus, sim::BusTime period) : sender_(bus.robot().bus()) {
+    sender_.repeat(period, [](unsigned /*n*/) { return CanFrame{0x050, 8, {1, 2, 3, 4, 5, 6, 7, 8}}; });
+  }
 
   void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
-  void poll(Microseconds /*now*/) override {
-    next_ += period_;
-    static_cast<void>(controller_.send({0x050, 8, {1, 2, 3, 4, 5, 6, 7, 8}}));
-  }
-  [[nodiscard]] Microseconds next_deadline() const override { return next_; }
+  void poll(Microseconds now) override { sender_.advance_to(now * 1'000); }
+  [[nodiscard]] Microseconds next_deadline() const override { return sender_.next_event() / 1'000; }
 
  private:
-  DeafListener listener_;
-  sim::Controller& controller_;
-  const Microseconds period_;
-  Microseconds next_;
+  Sender sender_;
 };
 
 double seconds(Microseconds time) { return static_cast<double>(time) / 1e6; }
@@ -97,7 +87,7 @@ TEST(RobotUpdate, AnAdapterThatConfirmsFramesBeforeTheyAreOnTheBusIsNotFlooded) 
     FlashedRobot robot;
     constexpr std::size_t room = 128;
     robot.bus.confirm_at_once(room);
-    OtherNode other(robot.bus, 1'000);  // an eighth of the bus
+    OtherNode other(robot.bus, 1'000'000);  // an eighth of the bus
     if (has_traffic) {
       robot.bus.attach(other);
     }
@@ -123,8 +113,8 @@ class DamagedTransfer {
       if (frame.identifier != broadcast::host_identifier) {
         return false;
       }
-      constexpr unsigned begin = 2;
-      constexpr unsigned check = 10;
+      constexpr auto begin = static_cast<unsigned>(broadcast::Code::begin);
+      constexpr auto check = static_cast<unsigned>(broadcast::Code::check);
       const unsigned code = frame.length < CanFrame::max_length ? frame.data[0] : 0U;
       if (receiver == 0) {
         count_ = code == begin ? 0 : count_ + 1;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/common/build_id.hpp"
 
 namespace {
 

@@ -40,7 +40,7 @@ class Store {
     resume,  ///< the file must exist, with the same experiment and result key
   };
   /// Throws StoreError: the file does (not) exist, is no store, or is of another experiment or result
-  /// key (tools/proleg/build_id.hpp).
+  /// key (tools/proleg/common/build_id.hpp).
   Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,
         Opening opening);
   ~Store();

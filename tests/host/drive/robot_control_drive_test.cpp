@@ -1,7 +1,7 @@
 // Scenarios on robots behind plug-ins: emulated bus servos on virtual time and behind a pseudo terminal, and the
 // example of docs/robot-control.md. The expected goal positions are those of `simulate`, converted with integers.
 
-#include "tools/proleg/robot_control_drive.hpp"
+#include "tools/proleg/robot/robot_control_drive.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "sim/scenario/reader.hpp"
 #include "tests/host/dynamixel/emulated_line.hpp"
 #include "tests/support/files.hpp"
-#include "tools/proleg/robot_control_drive.hpp"
+#include "tools/proleg/robot/robot_control_drive.hpp"
 
 namespace proleg {
 

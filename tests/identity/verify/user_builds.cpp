@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/program_run.hpp"
+#include "tools/proleg/common/program_run.hpp"
 
 namespace proleg::verify {
 namespace {

@@ -25,9 +25,9 @@
 #include "tests/identity/golden.hpp"
 #include "tests/identity/verify/forbidden_symbols.hpp"
 #include "tests/identity/verify/user_builds.hpp"
-#include "tools/proleg/command_line.hpp"
-#include "tools/proleg/program_run.hpp"
-#include "tools/proleg/source_tree.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/program_run.hpp"
+#include "tools/proleg/common/source_tree.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "tools/proleg/live_changes.hpp"
+#include "tools/proleg/robot/live_changes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Robots on virtual time with modules that do not start, or do not answer: each comes back, and the others are left
 // alone.
 
-#include "tools/proleg/recovery.hpp"
+#include "tools/proleg/flash/recovery.hpp"
 
 #include <gtest/gtest.h>
 

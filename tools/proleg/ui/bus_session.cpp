@@ -12,10 +12,10 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/master/controlwords.hpp"
+#include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/bus_document.hpp"
 #include "tools/proleg/ui/operation.hpp"
 #include "tools/proleg/ui/recording_place.hpp"
-#include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/robot_row.hpp"
 
 namespace proleg::tools {

@@ -17,7 +17,7 @@
 #include "host/server/session_output.hpp"
 #include "host/server/session_requests.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/ui/change_delivery.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/proleg/ui/parameter_table.hpp"
+#include "tools/proleg/document/parameter_table.hpp"
 
 namespace proleg::tools {
 

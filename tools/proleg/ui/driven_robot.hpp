@@ -13,7 +13,7 @@
 #include "host/robot/sdo_queue.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "tools/proleg/gait_run.hpp"
+#include "tools/proleg/robot/gait_run.hpp"
 #include "tools/proleg/ui/ghost.hpp"
 #include "tools/proleg/ui/joint_targets.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/mirror.hpp"
+#include "tools/proleg/robot/mirror.hpp"
 
 namespace proleg::tools {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/server/server_certificate.hpp"
-#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/common/command_line.hpp"
 
 namespace proleg::tools {
 

@@ -10,7 +10,7 @@
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/settings.hpp"
-#include "tools/proleg/simulation_results.hpp"
+#include "tools/proleg/run/simulation_results.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
 
 namespace proleg::tools {

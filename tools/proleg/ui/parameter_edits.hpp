@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "sim/scenario/scenario.hpp"
+#include "tools/proleg/document/parameter_table.hpp"
 #include "tools/proleg/ui/change_history.hpp"
-#include "tools/proleg/ui/parameter_table.hpp"
 
 namespace proleg::tools {
 

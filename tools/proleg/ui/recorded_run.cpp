@@ -9,9 +9,9 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/ui/recording_document.hpp"
-#include "tools/proleg/ui/robot_document.hpp"
-#include "tools/proleg/ui/telemetry_row.hpp"
+#include "tools/proleg/document/recording_document.hpp"
+#include "tools/proleg/document/robot_document.hpp"
+#include "tools/proleg/document/telemetry_row.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -6,8 +6,8 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/record/recorded_algorithms.hpp"
-#include "tools/proleg/simulate_command.hpp"
-#include "tools/proleg/ui/recording_document.hpp"
+#include "tools/proleg/document/recording_document.hpp"
+#include "tools/proleg/run/simulate_command.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "shared/fixed/unit.hpp"
-#include "tools/proleg/ui/telemetry_row.hpp"
+#include "tools/proleg/document/telemetry_row.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -12,11 +12,11 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "tools/proleg/document/robot_document.hpp"
+#include "tools/proleg/document/telemetry_row.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
 #include "tools/proleg/ui/operation.hpp"
 #include "tools/proleg/ui/recording_place.hpp"
-#include "tools/proleg/ui/robot_document.hpp"
-#include "tools/proleg/ui/telemetry_row.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/proleg/ui/robot_document.hpp"
+#include "tools/proleg/document/robot_document.hpp"
 
 #include <gtest/gtest.h>
 

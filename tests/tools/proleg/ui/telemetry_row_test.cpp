@@ -1,4 +1,4 @@
-#include "tools/proleg/ui/telemetry_row.hpp"
+#include "tools/proleg/document/telemetry_row.hpp"
 
 #include <gtest/gtest.h>
 

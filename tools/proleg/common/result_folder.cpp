@@ -1,0 +1,57 @@
+#include "tools/proleg/common/result_folder.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "tools/proleg/common/command_line.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder itself, or the nearest above it that exists.
+fs::path existing_part(const fs::path& folder) {
+  std::error_code error;
+  fs::path path = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(path, error) && path.has_relative_path()) {
+    path = path.parent_path();
+  }
+  return path;
+}
+
+}  // namespace
+
+void check_result_folder(const fs::path& folder, std::span<const std::string_view> files) {
+  const fs::path existing = existing_part(folder);
+  std::error_code error;
+  if (!fs::is_directory(existing, error)) {
+    throw InputError(existing.string(), 0, "something that is not a folder", "a folder for the results (--out)");
+  }
+  for (const std::string_view name : files) {
+    if (fs::exists(fs::symlink_status(folder / name, error))) {
+      throw BadInput((folder / name).string() +
+                     ": found an existing file, expected none; --out FOLDER names another folder");
+    }
+  }
+  if (access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(existing.string(), 0,
+                     std::string("a folder that cannot be written (") + std::strerror(errno) + ")",
+                     "one with write permission (--out)");
+  }
+}
+
+void create_result_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
+  }
+}
+
+}  // namespace proleg::tools

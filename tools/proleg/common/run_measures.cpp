@@ -1,0 +1,153 @@
+#include "tools/proleg/common/run_measures.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <sstream>
+
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/command_line.hpp"
+
+namespace proleg::tools {
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+constexpr double much = sim::ServoTracking::much_time;
+constexpr double large_error_deg = sim::ServoTracking::large_error * degrees;
+
+/// "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above.
+std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,
+                        double (sim::ServoTracking::*share)() const) {
+  std::size_t worst = 0;
+  std::size_t joints = 0;
+  for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
+    const double its_share = (measures.servos[joint].*share)();
+    if (!(its_share > much) ||
+        !(measures.servos[joint].rms_error() * degrees > large_error_deg)) {  // also if not a number
+      continue;
+    }
+    ++joints;
+    if (joints == 1 || its_share > (measures.servos[worst].*share)()) {
+      worst = joint;
+    }
+  }
+  if (joints == 0) {
+    return {};
+  }
+  std::ostringstream text;
+  text << robot.joints[worst].name << " is at its " << limit << " limit for "
+       << std::lround(100.0 * (measures.servos[worst].*share)()) << " % of the time";
+  if (joints > 1) {
+    text << " (" << joints << " joints above " << std::lround(100.0 * much) << " %)";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+RunMeasures measures_of(const sim::GaitMeter& meter) {
+  return {meter.values(), meter.link_duty_factors(), {meter.tracking().begin(), meter.tracking().end()}};
+}
+
+Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot) {
+  Json servos = Json::empty_array();
+  for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
+    const sim::ServoTracking& servo = measures.servos[joint];
+    servos.append(Json{{"joint", robot.joints[joint].name},
+                       {"rms_error_deg", servo.rms_error() * degrees},
+                       {"max_error_deg", servo.max_error() * degrees},
+                       {"at_speed_limit", servo.at_speed_limit()},
+                       {"at_torque_limit", servo.at_torque_limit()}});
+  }
+  return servos;
+}
+
+void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot) {
+  const std::string speed = worst_joint(measures, robot, "speed", &sim::ServoTracking::at_speed_limit);
+  const std::string torque = worst_joint(measures, robot, "torque", &sim::ServoTracking::at_torque_limit);
+  if (speed.empty() && torque.empty()) {
+    return;
+  }
+  std::array<char, 80> errors{};
+  std::snprintf(errors.data(), errors.size(), "; angles differ from it by up to %.1f deg",
+                measures.values[sim::Measure::max_tracking_error]);
+  print_warning(program, "the servos cannot follow this gait: " + speed +
+                             (speed.empty() || torque.empty() ? "" : ", ") + torque + errors.data());
+}
+
+Json measures_object(const sim::MeasureValues& values) {
+  Json object = Json::empty_object();
+  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
+    object.add(declaration.name, values[declaration.measure]);
+  }
+  return object;
+}
+
+void print_measures(const sim::MeasureValues& values) {
+  std::printf("measures (docs/gait-measures.md)\n");
+  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
+    if (const double value = values[declaration.measure]; std::isfinite(value)) {
+      const std::string unit(declaration.unit);
+      std::printf("  %-28s  %.4g%s\n", std::string(declaration.name).c_str(), value,
+                  unit.empty() ? "" : (' ' + unit).c_str());
+    }
+  }
+}
+
+Json sensors_array(const std::vector<sim::SensorSummary>& sensors) {
+  Json array = Json::empty_array();
+  for (const sim::SensorSummary& summary : sensors) {
+    array.append(Json{{"sensor", summary.name},
+                      {"type", std::string(sim::name_of(summary.kind))},
+                      {"quantity", std::string(summary.quantity)},
+                      {"unit", std::string(summary.unit)},
+                      {"least", summary.least},
+                      {"greatest", summary.greatest},
+                      {"mean", summary.mean()}});
+  }
+  return array;
+}
+
+void print_sensors(const std::vector<sim::SensorSummary>& sensors) {
+  if (sensors.empty()) {
+    return;
+  }
+  std::printf("sensors\n");
+  for (const sim::SensorSummary& summary : sensors) {
+    const std::string name = summary.name + ' ' + std::string(summary.quantity);
+    if (summary.kind == sim::SensorKind::touch) {
+      std::printf("  %-28s  %.3g %% of the time\n", name.c_str(), 100.0 * summary.mean());
+    } else {
+      std::printf("  %-28s  %.4g to %.4g %s, mean %.4g\n", name.c_str(), summary.least, summary.greatest,
+                  std::string(summary.unit).c_str(), summary.mean());
+    }
+  }
+}
+
+void append_sensors(const std::vector<sim::SensorSummary>& sensors,
+                    std::vector<std::pair<std::string, std::string>>& results) {
+  for (const sim::SensorSummary& summary : sensors) {
+    const std::string name = "sensor." + summary.name + '.' + std::string(summary.quantity) + '.';
+    if (summary.count > 0) {
+      results.emplace_back(name + "least", exact_text(summary.least));
+      results.emplace_back(name + "greatest", exact_text(summary.greatest));
+      results.emplace_back(name + "mean", exact_text(summary.mean()));
+    }
+  }
+}
+
+void append_results(const RunMeasures& measures, const sim::RobotModel& robot,
+                    std::vector<std::pair<std::string, std::string>>& results) {
+  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
+    if (std::isfinite(measures.values[declaration.measure])) {
+      results.emplace_back(declaration.name, exact_text(measures.values[declaration.measure]));
+    }
+  }
+  for (std::size_t link = 0; link < robot.links.size(); ++link) {
+    results.emplace_back("duty_factor." + robot.links[link].name, exact_text(measures.link_duty_factors[link]));
+  }
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,53 @@
+#pragma once
+
+// How programs show the measures of a run (docs/gait-measures.md).
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/measure/gait_meter.hpp"
+#include "sim/measure/measure.hpp"
+#include "sim/robot/robot_model.hpp"
+#include "sim/sensor/attached_sensors.hpp"
+#include "tools/proleg/common/json_output.hpp"
+
+namespace proleg::tools {
+
+struct RunMeasures {
+  sim::MeasureValues values;
+  std::vector<double> link_duty_factors;   ///< from the head
+  std::vector<sim::ServoTracking> servos;  ///< by joint, from the head
+};
+
+[[nodiscard]] RunMeasures measures_of(const sim::GaitMeter& meter);
+
+/// An object of all measures by name; null where the run does not define one.
+[[nodiscard]] Json measures_object(const sim::MeasureValues& values);
+
+/// An array with the tracking of each joint's servo, from the head: joint, rms_error_deg, max_error_deg,
+/// at_speed_limit, at_torque_limit; null where the run does not define one.
+[[nodiscard]] Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot);
+
+/// An array with what the sensors of the robot's file measured: sensor, type, quantity, unit, least, greatest, mean.
+[[nodiscard]] Json sensors_array(const std::vector<sim::SensorSummary>& sensors);
+
+/// The same on standard output, one quantity a line; nothing if there are no sensors.
+void print_sensors(const std::vector<sim::SensorSummary>& sensors);
+
+/// Prints a warning if servos are at a limit for more than a fifth of the time and miss their angles
+/// by more than 5 degrees (root mean square). program: as the line begins.
+void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
+
+/// Prints the measures that the run defines on standard output, one a line.
+void print_measures(const sim::MeasureValues& values);
+
+/// Adds least, greatest and mean value of the sensors' quantities to the results of a recording.
+void append_sensors(const std::vector<sim::SensorSummary>& sensors,
+                    std::vector<std::pair<std::string, std::string>>& results);
+
+/// Adds the measures that the run defines, and the duty factors of the links, to the results of a recording.
+void append_results(const RunMeasures& measures, const sim::RobotModel& robot,
+                    std::vector<std::pair<std::string, std::string>>& results);
+
+}  // namespace proleg::tools

@@ -1,0 +1,250 @@
+#include "tools/proleg/document/robot_document.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "sim/robot/bounds.hpp"
+#include "sim/scenario/names.hpp"
+#include "sim/scenario/settings.hpp"
+#include "tools/proleg/document/telemetry_row.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using nlohmann::json;
+
+json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+/// To whole micrometres, in m.
+double to_micrometres(double metres) { return std::round(metres * 1e6) / 1e6; }
+
+/// The meshes of a document. Shapes that share one name it by its number.
+class Meshes {
+ public:
+  /// The shape of a mesh. Its origin is the middle of the box around the mesh, as of other shapes, and its size half of
+  /// that box. pose: of the mesh.
+  json shape(const std::shared_ptr<const sim::TriangleMesh>& mesh, const sim::Pose& pose) {
+    const auto [known, is_new] = numbers_.try_emplace(mesh.get(), documents_.size());
+    const sim::Bounds bounds = sim::bounds_of(*mesh, {});
+    const Eigen::Vector3d middle = (bounds.lowest + bounds.highest) / 2.0;
+    if (is_new) {
+      documents_.push_back(mesh_json(*mesh, middle));
+    }
+    return {{"kind", "mesh"},
+            {"pose", pose_json(pose * sim::Pose{middle, Eigen::Quaterniond::Identity()})},
+            {"size", vector_json((bounds.highest - bounds.lowest) / 2.0)},
+            {"mesh", known->second}};
+  }
+
+  json take() { return std::move(documents_); }
+
+ private:
+  static json mesh_json(const sim::TriangleMesh& mesh, const Eigen::Vector3d& middle) {
+    json vertices = json::array();
+    for (const Eigen::Vector3d& vertex : mesh.vertices) {
+      for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
+        vertices.push_back(to_micrometres(coordinate));
+      }
+    }
+    json triangles = json::array();
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        triangles.push_back(corner);
+      }
+    }
+    json colours = json::array();
+    for (const Eigen::Vector3f& colour : mesh.colours) {
+      for (const float part : colour) {
+        colours.push_back(std::lround(part * 255.0F));
+      }
+    }
+    return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
+  }
+
+  json documents_ = json::array();
+  std::map<const sim::TriangleMesh*, std::size_t> numbers_;
+};
+
+json shapes_json(std::span<const sim::Geometry> geometries, std::span<const sim::Look> looks, Meshes& meshes) {
+  json shapes = json::array();
+  for (const sim::Geometry& geometry : geometries) {
+    if (!geometry.is_shown) {
+      continue;
+    }
+    const Eigen::Vector3d& extents = geometry.extents;
+    json shape{{"pose", pose_json(geometry.pose)}};
+    switch (geometry.shape) {
+      case sim::Shape::box:
+        shape["kind"] = "box";
+        shape["size"] = vector_json(extents);
+        break;
+      case sim::Shape::sphere:
+        shape["kind"] = "sphere";
+        shape["size"] = {extents.x(), 0.0, 0.0};
+        break;
+      case sim::Shape::cylinder:
+        shape["kind"] = "cylinder";
+        shape["size"] = {extents.x(), extents.y(), 0.0};
+        break;
+      case sim::Shape::hull:
+      case sim::Shape::surface:
+      case sim::Shape::height_field:
+        shape = meshes.shape(geometry.mesh, geometry.pose);
+        break;
+    }
+    shapes.push_back(std::move(shape));
+  }
+  for (const sim::Look& look : looks) {
+    shapes.push_back(meshes.shape(look.mesh, look.pose));
+  }
+  return shapes;
+}
+
+/// Of a link, a static object or one that moves.
+template <typename Body>
+json body_json(const Body& body, Meshes& meshes) {
+  return {{"name", body.name},
+          {"pose", pose_json(body.pose)},
+          {"shapes", shapes_json(body.geometries, body.looks, meshes)}};
+}
+
+template <typename Body>
+json bodies_json(const std::vector<Body>& bodies, Meshes& meshes) {
+  json result = json::array();
+  for (const Body& body : bodies) {
+    result.push_back(body_json(body, meshes));
+  }
+  return result;
+}
+
+json rulers_json(const std::vector<sim::Ruler>& rulers) {
+  json result = json::array();
+  for (const sim::Ruler& ruler : rulers) {
+    result.push_back({{"from", vector_json(ruler.from)},
+                      {"to", vector_json(ruler.to)},
+                      {"division", ruler.division},
+                      {"width", ruler.width}});
+  }
+  return result;
+}
+
+double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+
+json joints_json(const sim::Scenario& scenario) {
+  json joints = json::array();
+  for (std::size_t j = 0; j < scenario.robot.joints.size(); ++j) {
+    const sim::Joint& joint = scenario.robot.joints[j];
+    json object{{"name", joint.name},
+                {"lower", degrees(joint.lower_limit)},
+                {"upper", degrees(joint.upper_limit)},
+                {"anchor", vector_json(joint.anchor)},
+                {"axis", vector_json(joint.axis)}};
+    if (j < scenario.modules.size()) {
+      object["node"] = scenario.modules[j].node;
+    }
+    joints.push_back(std::move(object));
+  }
+  return joints;
+}
+
+json joints_of(JointMask group) {
+  json joints = json::array();
+  for (const unsigned joint : group) {
+    joints.push_back(joint);
+  }
+  return joints;
+}
+
+json parameter_json(const sim::Scenario& scenario, const ParameterTable& table, unsigned slot, unsigned index) {
+  const Slot& used = scenario.kernel.slots[slot];
+  const Parameter& parameter = used.algorithm->declaration().parameters[index];
+  json object{{"slot", slot + 1},
+              {"name", parameter.name},
+              {"unit", sim::shown_unit(parameter.unit)},
+              {"scale", value_of_step(parameter.unit)},
+              {"wraps", wraps(parameter.unit)},
+              {"minimum", parameter.minimum},
+              {"maximum", parameter.maximum},
+              {"default", parameter.default_value},
+              {"help", parameter.help},
+              {"internal", false},
+              {"joints", joints_of(used.group)}};
+  json& file = object["file"] = json::array();
+  json& wanted = object["wanted"] = json::array();
+  json& confirmed = object["confirmed"] = json::array();
+  json& tick = object["tick"] = json::array();
+  for (const unsigned joint : used.group) {
+    const ParameterTable::Values& values =
+        table.at({static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint), static_cast<std::uint8_t>(index)});
+    file.push_back(values.file);
+    wanted.push_back(values.wanted);
+    confirmed.push_back(values.confirmed);
+    tick.push_back(values.tick);
+  }
+  return object;
+}
+
+/// An internal value has no wanted value: it can be overwritten once, a distortion.
+json internal_value_json(const sim::Scenario& scenario, unsigned slot, const InternalValue& value) {
+  return {{"slot", slot + 1},
+          {"name", value.name},
+          {"unit", sim::shown_unit(value.unit)},
+          {"scale", value_of_step(value.unit)},
+          {"wraps", wraps(value.unit)},
+          {"help", value.help},
+          {"internal", true},
+          {"joints", joints_of(scenario.kernel.slots[slot].group)}};
+}
+
+}  // namespace
+
+json pose_json(const sim::Pose& pose) {
+  const Eigen::Quaterniond& turn = pose.orientation;
+  return {pose.position.x(), pose.position.y(), pose.position.z(), turn.w(), turn.x(), turn.y(), turn.z()};
+}
+
+json robot_document(const sim::Scenario& scenario, std::string_view kind) {
+  Meshes meshes;
+  json links = bodies_json(scenario.robot.links, meshes);
+  json terrain = bodies_json(scenario.environment.objects, meshes);
+  json objects = bodies_json(scenario.environment.moving_objects, meshes);
+  json slots = json::array();
+  for (const unsigned slot : sim::used_slots(scenario)) {
+    slots.push_back({{"number", slot + 1},
+                     {"algorithm", scenario.kernel.slots[slot].algorithm->declaration().name},
+                     {"help", scenario.kernel.slots[slot].algorithm->declaration().help},
+                     {"joints", joints_of(scenario.kernel.slots[slot].group)}});
+  }
+  return {{"name", scenario.robot.name},
+          {"file", std::filesystem::path(scenario.path).filename().string()},
+          {"kind", kind},
+          {"joints", joints_json(scenario)},
+          {"links", std::move(links)},
+          {"terrain", std::move(terrain)},
+          {"objects", std::move(objects)},
+          {"rulers", rulers_json(scenario.environment.rulers)},
+          {"meshes", meshes.take()},
+          {"slots", std::move(slots)}};
+}
+
+json parameters_document(const sim::Scenario& scenario, const ParameterTable& table) {
+  json document = json::array();
+  for (const unsigned slot : sim::used_slots(scenario)) {
+    const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
+    for (unsigned index = 0; index < declaration.parameters.size(); ++index) {
+      document.push_back(parameter_json(scenario, table, slot, index));
+    }
+    for (const InternalValue& value : declaration.internal_values) {
+      document.push_back(internal_value_json(scenario, slot, value));
+    }
+  }
+  return document;
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,286 @@
+#include "tools/proleg/flash/flash_bare.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "firmware/module/board_record.hpp"
+#include "firmware/module/module_identity.hpp"
+#include "firmware/stm32f405/flash_layout.hpp"
+#include "host/flash/bare_commands.hpp"
+#include "host/flash/bare_failure.hpp"
+#include "host/flash/bootloader_file.hpp"
+#include "host/flash/image_file.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/program_run.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace flash_layout = stm32f405::flash_layout;
+using firmware::BoardRecord;
+using host::BarePlan;
+using host::BareProbe;
+using host::BareStep;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr const char* default_bootloader = "proleg_boot_stm32f405.bin";
+
+/// A folder for the files of the commands.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "proleg_flash_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("cannot make a folder in " + std::filesystem::temp_directory_path().string());
+    }
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code error;  // what is left does no harm
+    std::filesystem::remove_all(path_, error);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  void write(const std::string& name, std::string_view content) const {
+    write_file((path_ / name).string(), std::string(content));
+  }
+  void write(const std::string& name, const Bytes& content) const {
+    write(name, std::string(content.begin(), content.end()));
+  }
+  /// A file that does not exist has none.
+  [[nodiscard]] std::string content(const std::string& name) const {
+    std::ifstream file(path_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What goes onto the chip, and how.
+struct Work {
+  BarePlan plan;
+  std::string bootloader_name;
+  Bytes bootloader;
+  Bytes image;
+  Bytes settings;  ///< with the board record; empty: none is written
+};
+
+BareProbe parse_probe(const std::optional<std::string>& word) {
+  constexpr const char* expected = "stlink, dfu or uart";
+  if (!word) {
+    throw InputError("--bare", 0, "no --probe", std::string("--probe ") + expected);
+  }
+  if (*word == "stlink") {
+    return BareProbe::stlink;
+  }
+  if (*word == "dfu") {
+    return BareProbe::dfu;
+  }
+  if (*word == "uart") {
+    return BareProbe::uart;
+  }
+  throw InputError("--probe", 0, in_quotes(*word), expected);
+}
+
+/// Absolute: the commands run in another folder.
+std::string parse_port(const BareOptions& options, BareProbe probe) {
+  if (probe != BareProbe::uart) {
+    if (options.port) {
+      throw InputError("--port", 0, "it without --probe uart", "the serial line of the chip's UART");
+    }
+    return "";
+  }
+  if (!options.port || options.port->empty()) {
+    throw InputError("--probe", 0, "uart without --port",
+                     "the serial line of the chip's UART, for example /dev/ttyUSB0");
+  }
+  return std::filesystem::absolute(*options.port).string();
+}
+
+void check_rights(const std::string& port) {
+  if (access(port.c_str(), F_OK) != 0) {
+    throw InputError("--port", 0, "no file " + port, "the serial line of the chip's UART: plug the converter in");
+  }
+  if (access(port.c_str(), R_OK | W_OK) != 0) {
+    throw InputError("--port", 0, "no rights to use " + port,
+                     "rights: host/udev/70-proleg.rules gives them to you; the file says how to install it");
+  }
+}
+
+Bytes read_settings(const std::string& word, const BarePlan& plan) {
+  const auto node = parse_whole<std::uint8_t>(word);
+  if (!node || *node < 1 || *node > BoardRecord::max_node) {
+    throw InputError("--node", 0, in_quotes(word), "a node id from 1 to " + std::to_string(BoardRecord::max_node));
+  }
+  BoardRecord record;
+  record.node = *node;
+  const auto bytes = encode(record, 1);
+  Bytes settings(settings_file_size(plan, BoardRecord::size), 0xFF);
+  std::ranges::copy(bytes, settings.begin());
+  return settings;
+}
+
+Bytes read_checked_image(const std::string& file) {
+  host::ImageFile image = host::read_image(file);
+  image::Place place;
+  place.board_id = firmware::ModuleIdentity{}.board_id;
+  place.revision = image.header.lowest_revision;  // nothing but the board knows its own
+  place.address = flash_layout::image_body;
+  place.room = flash_layout::max_image_size - image::header_size;
+  if (const image::Error error = check_place(image.header, place); error != image::Error::none) {
+    throw InputError(file, 0, std::string(describe(error)),
+                     "an image for board " + std::to_string(place.board_id) + " and the address " +
+                         hexadecimal(place.address, 8) + ", as 'proleg image info' shows");
+  }
+  return std::move(image.bytes);
+}
+
+Work read_work(const BareOptions& options) {
+  Work work;
+  BarePlan& plan = work.plan;
+  plan.probe = parse_probe(options.probe);
+  plan.port = parse_port(options, plan.probe);
+  plan.bootloader = {flash_layout::bootloader_sector.address, flash_layout::bootloader_sector.size};
+  plan.settings = {flash_layout::board_records, flash_layout::board_records_size};
+  plan.image = {flash_layout::image_sector_a.address, flash_layout::image_sector_a.size};
+  if (options.node) {
+    work.settings = read_settings(*options.node, plan);
+    plan.settings_size = static_cast<std::uint32_t>(work.settings.size());
+  }
+  work.image = read_checked_image(options.image);
+  work.bootloader_name =
+      options.bootloader.value_or((std::filesystem::path(options.image).parent_path() / default_bootloader).string());
+  work.bootloader = host::read_bootloader(work.bootloader_name, plan.bootloader);
+  plan.image_size = static_cast<std::uint32_t>(work.image.size());
+  plan.bootloader_size = static_cast<std::uint32_t>(work.bootloader.size());
+  return work;
+}
+
+void print_files(const BareOptions& options, const Work& work) {
+  const auto print = [](std::string name, const Bytes& bytes, const std::string& what, const host::FlashPart& part) {
+    name.resize(16, ' ');
+    std::cout << name << bytes.size() << " bytes, " << what << ", for " << hexadecimal(part.address, 8) << '\n';
+  };
+  print(host::bare_file::bootloader, work.bootloader, one_line(work.bootloader_name), work.plan.bootloader);
+  print(host::bare_file::image, work.image, one_line(options.image), work.plan.image);
+  if (work.plan.settings_size > 0) {
+    print(host::bare_file::settings, work.settings, "the board record of node " + *options.node, work.plan.settings);
+  }
+  if (work.plan.probe == BareProbe::stlink) {
+    std::cout << host::bare_file::script << ":\n";
+    const std::string script = host::bare_script(work.plan);
+    for (std::size_t at = 0; at < script.size();) {
+      const std::size_t end = script.find('\n', at);
+      std::cout << (end == at ? "" : "    ") << script.substr(at, end - at) << '\n';
+      at = end + 1;
+    }
+  }
+}
+
+void print_step(const BareStep& step, std::string_view remark) {
+  std::cout << step.what << remark << ":\n    " << one_line(host::shell_text(step.command)) << std::endl;
+}
+
+void run_step(const BarePlan& plan, const BareStep& step, const WorkFolder& folder) {
+  print_step(step, "");
+  const ProgramResult result = run_program(step.command, folder.path().string());
+  if (!result.was_found) {
+    throw std::runtime_error(host::missing_program(step.command.front()));
+  }
+  if (interrupted()) {
+    throw std::runtime_error("interrupted; the command can be repeated");
+  }
+  // An exit status of 0 does not prove that there is a result.
+  if (result.status != 0 || (!step.result.empty() && folder.content(step.result).empty())) {
+    throw std::runtime_error(host::bare_failure(plan, step, result.output));
+  }
+  if (!step.expected.empty() && folder.content(step.result) != folder.content(step.expected)) {
+    throw std::runtime_error(host::bare_difference(step));
+  }
+}
+
+void run_all(const Work& work) {
+  const WorkFolder folder;
+  folder.write(host::bare_file::bootloader, work.bootloader);
+  folder.write(host::bare_file::image, work.image);
+  folder.write(host::bare_file::script, host::bare_script(work.plan));
+  if (work.plan.settings_size > 0) {
+    folder.write(host::bare_file::settings, work.settings);
+  }
+  std::cout << "in " << folder.path().string() << ":\n";
+  for (const BareStep& step : bare_steps(work.plan)) {
+    if (step.is_for_other_bootloader &&
+        folder.content(host::bare_file::present) == folder.content(host::bare_file::bootloader)) {
+      std::cout << step.what << ": not needed, the chip has this bootloader\n";
+      continue;
+    }
+    run_step(work.plan, step, folder);
+  }
+}
+
+void print_end(const BarePlan& plan) {
+  std::cout << "flashed  the bootloader and the image, which starts on trial\n";
+  if (sets_option_bytes(plan.probe)) {
+    std::cout << "options  brown-out level 3, sector 0 write-protected\n";
+    return;
+  }
+  std::cout << "options  not set: brown-out level and write protection of sector 0 are as they were. The same command "
+               "with --probe stlink sets them, once for each board\n"
+               "to do    set BOOT0 to low and reset the board\n";
+}
+
+}  // namespace
+
+void add_bare_options(CommandLine& command_line, BareOptions& options) {
+  command_line
+      .add_option(
+          "--probe", options.probe,
+          "how the chip is reached, with --bare: stlink (an ST-LINK at the connector SWD, by openocd), dfu (its "
+          "USB, by dfu-util) or uart (a serial line, by stm32flash); for dfu and uart BOOT0 is high")
+      .value_name("PROBE");
+  command_line.add_option("--port", options.port, "the serial line, with --probe uart: /dev/ttyUSB0")
+      .value_name("DEVICE");
+  command_line
+      .add_option("--bootloader", options.bootloader,
+                  std::string("the bootloader, an ELF file or a raw binary, with --bare; without it: ") +
+                      default_bootloader + " in the folder of IMAGE")
+      .value_name("FILE");
+}
+
+int run_flash_bare(const BareOptions& options) {
+  const Work work = read_work(options);
+  print_files(options, work);
+  if (options.dry_run) {
+    for (const BareStep& step : bare_steps(work.plan)) {
+      print_step(step, step.is_for_other_bootloader ? ", if the chip has another one" : "");
+    }
+    return exit_success;
+  }
+  if (work.plan.probe == BareProbe::uart) {
+    check_rights(work.plan.port);
+  }
+  catch_interrupts();
+  run_all(work);
+  print_end(work.plan);
+  return exit_success;
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,57 @@
+#include "tools/proleg/hil/gateway_line.hpp"
+
+#include <string_view>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+
+namespace proleg::tools {
+
+GatewayPlace parse_gateway(const sim::Scenario& scenario, const std::string& word) {
+  const std::size_t equal = word.find('=');
+  const std::string node = word.substr(0, equal);
+  GatewayPlace place;
+  place.joint = joint_of_node(scenario, parse_whole<std::uint32_t>(node), "--gateway", in_quotes(node));
+  if (equal != std::string::npos && word.substr(equal + 1) != "pty") {
+    place.tcp = parse_served_port("--gateway", word.substr(equal + 1));
+  }
+  return place;
+}
+
+GatewayLine::GatewayLine(boost::asio::io_context& context, std::function<sim::BusTime()> now,
+                         std::function<void(const std::string& line)> event)
+    : now_(std::move(now)),
+      server_(context, {[this](std::string_view bytes) { sender_.send(now_() + reaction_ns, bytes); },
+                        [this] { return room(); }, std::move(event)}) {}
+
+std::string GatewayLine::open(const GatewayPlace& place) {
+  if (!place.tcp) {
+    return "serial:" + server_.open_pseudo_terminal();
+  }
+  ServedPort served = *place.tcp;
+  served.port = server_.listen(served.address, served.port);
+  return bus_word(served);
+}
+
+void GatewayLine::received(sim::BusTime /*time*/, std::uint8_t byte) {
+  const char character = static_cast<char>(byte);
+  server_.send({&character, 1});
+}
+
+std::optional<sim::SerialCharacter> GatewayLine::take(sim::BusTime now) {
+  const auto character = sender_.take(now);
+  if (is_waiting_ && sender_.pending() <= capacity / 2) {
+    is_waiting_ = false;
+    server_.resume();
+  }
+  return character;
+}
+
+std::size_t GatewayLine::room() {
+  is_waiting_ = sender_.pending() >= capacity;
+  return is_waiting_ ? 0 : capacity - sender_.pending();
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,299 @@
+#include "tools/proleg/hil/hil_modules.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/loop/module_making.hpp"
+#include "sim/loop/native_program.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/hil/debugger.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* trace_title = "node\ttick\tto_state_frame\twhole_tick\n";
+
+/// The image that the preset stm32f405 builds, found from the path of this program.
+fs::path default_image() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path().parent_path() / "stm32f405" / "bin" / "proleg_stm32f405.elf";
+}
+
+fs::path bootloader_beside(const fs::path& image) {
+  fs::path file = image.parent_path() / "proleg_boot_stm32f405.elf";
+  if (!fs::exists(file)) {
+    throw BadInput(file.string() +
+                   ": found no bootloader, expected it beside the image; 'cmake --preset stm32f405 && cmake --build "
+                   "--preset stm32f405' builds both");
+  }
+  return file;
+}
+
+sim::FirmwareImage read_image(const std::optional<std::string>& name) {
+  const fs::path file = name ? fs::path(*name) : default_image();
+  if (!name && !fs::exists(file)) {
+    throw BadInput(file.string() +
+                   ": found no image, expected one; build it with 'cmake --preset stm32f405 && cmake --build --preset "
+                   "stm32f405', or give --image ELF");
+  }
+  try {
+    return sim::FirmwareImage(file);
+  } catch (const sim::ElfError& error) {
+    throw BadInput(error.what());
+  }
+}
+
+}  // namespace
+
+/// The table of a module's instruction counts, in a file or on standard error.
+struct HilModules::InstructionTrace {
+  unsigned node = 0;
+  std::string file;
+  std::ofstream stream;
+
+  [[nodiscard]] std::ostream& out() { return file.empty() ? std::cerr : stream; }
+};
+
+void add_module_options(CommandLine& command_line, ModuleOptions& options) {
+  command_line
+      .add_option(
+          "--modules", options.modules,
+          "what runs the program of the modules. native: this computer; mcu: a virtual STM32F405 for each module, "
+          "with the image that is flashed; 1,3=mcu: a virtual chip for nodes 1 and 3, the others native")
+      .shows_default();
+  command_line.add_option("--image", options.image,
+                          "ELF: use this image instead of the one that the preset stm32f405 builds");
+  command_line.add_option("--uart", options.consoles,
+                          "NODE: show the console of a virtual module on standard error. May be repeated.");
+  command_line.add_option(
+      "--trace", options.traces,
+      "NODE or NODE=FILE: print a table of the instructions that a virtual module executes in each tick, on "
+      "standard error or in a file. May be repeated.");
+  command_line.add_option(
+      "--gdb", options.gdb,
+      "PORT or NODE:PORT: wait until gdb-multiarch attaches to a virtual module (by default the first) with "
+      "'target remote :PORT'. While the program is stopped, so is the simulation.");
+}
+
+HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario)
+    : scenario_(scenario),
+      virtual_joints_(scenario.modules.size()),
+      consoles_(scenario.modules.size()),
+      traces_(scenario.modules.size()),
+      modules_(scenario.modules.size()) {
+  parse_modules(options.modules);
+  for (const std::string& word : options.consoles) {
+    consoles_[virtual_joint_of("--uart", word)] = true;
+  }
+  if (std::ranges::find(virtual_joints_, true) != virtual_joints_.end()) {
+    image_.emplace(read_image(options.image));
+  } else if (options.image) {
+    throw InputError("--image", 0, "no module that runs the image", "--modules mcu");
+  }
+  if (options.gdb) {
+    const std::size_t colon = options.gdb->find(':');
+    const auto port =
+        parse_whole<std::uint16_t>(std::string_view(*options.gdb).substr(colon == std::string::npos ? 0 : colon + 1));
+    if (!port || *port == 0) {
+      throw InputError("--gdb", 0, in_quotes(*options.gdb), "PORT or NODE:PORT, with a port from 1 to 65535");
+    }
+    if (!image_) {
+      throw InputError("--gdb", 0, "no virtual module", "--modules mcu");
+    }
+    const auto first = std::ranges::find(virtual_joints_, true) - virtual_joints_.begin();
+    const unsigned joint = colon == std::string::npos ? static_cast<unsigned>(first)
+                                                      : virtual_joint_of("--gdb", options.gdb->substr(0, colon));
+    debugger_ = std::make_unique<Debugger>(*port, joint, image_->file());
+  }
+  parse_traces(options.traces);
+}
+
+HilModules::~HilModules() = default;
+
+void HilModules::parse_modules(const std::string& word) {
+  constexpr std::string_view suffix = "=mcu";
+  if (word == "native") {
+    return;
+  }
+  if (word == "mcu") {
+    virtual_joints_.assign(virtual_joints_.size(), true);
+    return;
+  }
+  if (!word.ends_with(suffix)) {
+    throw InputError("--modules", 0, in_quotes(word), "native, mcu, or a list of nodes with =mcu, for example 1,3=mcu");
+  }
+  std::string_view rest = std::string_view(word).substr(0, word.size() - suffix.size());
+  for (bool more = true; more;) {
+    const std::size_t comma = rest.find(',');
+    virtual_joints_[joint_of("--modules", std::string(rest.substr(0, comma)))] = true;
+    more = comma != std::string_view::npos;
+    rest = more ? rest.substr(comma + 1) : rest;
+  }
+}
+
+unsigned HilModules::joint_of(const std::string& option, const std::string& word) const {
+  return joint_of_node(scenario_, parse_whole<std::uint32_t>(word), option, in_quotes(word));
+}
+
+unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& word) const {
+  const unsigned joint = joint_of(option, word);
+  if (!is_virtual(joint)) {
+    throw InputError(option, 0, "node " + word + ", which is native", "a virtual module (--modules mcu)");
+  }
+  return joint;
+}
+
+void HilModules::parse_traces(const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    const std::size_t equal = word.find('=');
+    const unsigned joint = virtual_joint_of("--trace", word.substr(0, equal));
+    if (traces_[joint]) {
+      throw InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node at most once");
+    }
+    traces_[joint] = std::make_unique<InstructionTrace>();
+    traces_[joint]->node = scenario_.modules[joint].node;
+    if (equal != std::string::npos) {
+      traces_[joint]->file = word.substr(equal + 1);
+      if (traces_[joint]->file.empty()) {
+        throw InputError("--trace", 0, in_quotes(word), "NODE or NODE=FILE");
+      }
+    }
+  }
+}
+
+std::vector<PlannedOutput> HilModules::planned_traces() const {
+  std::vector<PlannedOutput> outputs;
+  for (const auto& trace : traces_) {
+    if (trace && !trace->file.empty()) {
+      outputs.push_back({"--trace", trace->file, "trace", starts_with(trace_title)});
+    }
+  }
+  return outputs;
+}
+
+void HilModules::open_traces() {
+  bool has_title = false;
+  for (const auto& trace : traces_) {
+    if (!trace) {
+      continue;
+    }
+    if (!trace->file.empty()) {
+      trace->stream.open(trace->file);
+      if (!trace->stream) {
+        throw BadInput("--trace: found " + in_quotes(trace->file) + ", expected a file that can be written");
+      }
+    }
+    if (!trace->file.empty() || !has_title) {
+      trace->out() << trace_title;
+      has_title = has_title || trace->file.empty();
+    }
+  }
+}
+
+void HilModules::flash(const std::string& program) {
+  if (!image_) {
+    return;
+  }
+  const auto count = std::ranges::count(virtual_joints_, true);
+  const auto first = std::ranges::find(virtual_joints_, true) - virtual_joints_.begin();
+  try {
+    flashed_ = sim::flash_chip(*image_, bootloader_beside(image_->file()),
+                               sim::make_identity(scenario_, static_cast<std::size_t>(first)).unique_id);
+  } catch (const sim::ElfError& error) {
+    throw BadInput(error.what());
+  }
+  for (const std::string& problem : flashed_->problems) {
+    std::cerr << program << ": while the chip was flashed: " << problem << '\n';
+  }
+  if (flashed_->start_time) {
+    std::ostringstream line;
+    line << program << ": flashed a chip through its bootloader, " << flashed_->image_size << " bytes in " << std::fixed
+         << std::setprecision(1) << static_cast<double>(flashed_->flash_time) * 1e-9 << " s of its time; " << count
+         << (count == 1 ? " module starts" : " modules start") << " with its flash\n";
+    flash_report_ = line.str();
+  } else if (debugger_ == nullptr) {
+    throw std::runtime_error(image_->file().string() +
+                             ": flashed, found a program that did not confirm itself, expected that it runs for half a "
+                             "second; --gdb runs it nevertheless");
+  }
+}
+
+std::uint32_t HilModules::start_time_us() const {
+  constexpr sim::BusTime ns_per_us = 1'000;
+  return flashed_ && flashed_->start_time ? static_cast<std::uint32_t>(*flashed_->start_time / ns_per_us)
+                                          : static_cast<std::uint32_t>(sim::NativeProgram::start_time_us);
+}
+
+std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts) {
+  const unsigned joint = parts.joint;
+  if (!is_virtual(joint)) {
+    return nullptr;
+  }
+  std::cerr << std::exchange(flash_report_, {});
+  sim::VirtualModuleOptions options;
+  options.flash = &flashed_.value().flash;
+  if (consoles_[joint]) {
+    options.console = [node = parts.identity.node](const std::string& line) {
+      std::cerr << "node " << unsigned{node} << ": " << line << '\n';
+    };
+  }
+  if (traces_[joint]) {
+    options.on_tick = [trace = traces_[joint].get()](const sim::TickCost& cost) {
+      trace->out() << trace->node << '\t' << cost.tick << '\t' << cost.to_state_frame << '\t' << cost.whole << '\n';
+    };
+  }
+  auto module = std::make_unique<sim::VirtualModule>(parts, *image_, std::move(options));
+  modules_[joint] = module.get();
+  if (debugger_ && debugger_->joint() == joint) {
+    debugger_->attach(module->chip());
+  }
+  return module;
+}
+
+std::string HilModules::kind() const {
+  std::string nodes;
+  for (unsigned joint = 0; joint < virtual_joints_.size(); ++joint) {
+    if (is_virtual(joint)) {
+      nodes += (nodes.empty() ? "" : ", ") + std::to_string(scenario_.modules[joint].node);
+    }
+  }
+  if (nodes.empty()) {
+    return "native";
+  }
+  return std::ranges::find(virtual_joints_, false) == virtual_joints_.end() ? "mcu" : "native and mcu (" + nodes + ")";
+}
+
+std::optional<HilModules::CostliestTick> HilModules::costliest_tick() const {
+  std::optional<CostliestTick> worst;
+  for (unsigned joint = 0; joint < modules_.size(); ++joint) {
+    if (modules_[joint] != nullptr &&
+        (!worst || modules_[joint]->worst_tick().to_state_frame > worst->cost.to_state_frame)) {
+      worst = {scenario_.modules[joint].node, modules_[joint]->worst_tick()};
+    }
+  }
+  return worst;
+}
+
+void HilModules::finish() {
+  for (const auto& trace : traces_) {
+    if (trace && !trace->file.empty()) {
+      trace->stream.close();
+      if (!trace->stream) {
+        throw std::runtime_error(trace->file + ": cannot write the end of the table");
+      }
+    }
+  }
+}
+
+}  // namespace proleg::tools

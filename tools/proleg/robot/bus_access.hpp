@@ -1,0 +1,72 @@
+#pragma once
+
+// For the subcommands that use a bus.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/robot/bus_connection.hpp"
+#include "host/robot/bus_scan.hpp"
+#include "host/robot/sdo_queue.hpp"
+#include "tools/proleg/common/command_line.hpp"
+
+namespace proleg::tools {
+
+struct BusOptions {
+  std::optional<std::string> bus;  ///< --bus
+
+  /// The address in use: --bus, else the environment variable PROLEG_BUS, else `auto`.
+  [[nodiscard]] std::string address() const;
+};
+
+/// Adds --bus.
+void add_bus_option(CommandLine& command_line, BusOptions& options);
+
+/// The bus of a subcommand, open as long as this object.
+class BusAccess {
+ public:
+  /// Throws InputError for a bad address, TransportError if it cannot be reached.
+  explicit BusAccess(const BusOptions& options);
+  /// A bus of the caller's own.
+  explicit BusAccess(const host::BusConnection::Open& open);
+  ~BusAccess();
+  BusAccess(const BusAccess&) = delete;
+  BusAccess& operator=(const BusAccess&) = delete;
+
+  [[nodiscard]] host::BusConnection& connection();
+  /// Waits until `done`; throws std::runtime_error if that takes longer than the time, the connection is lost, or the
+  /// user interrupts. what: what was waited for, for the message.
+  void wait_for(const std::string& what, Microseconds at_most, const std::function<bool()>& done);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Listens until a host would have sent heartbeats. Throws std::runtime_error if one drives the robot: then nothing may
+/// be changed.
+void require_no_host(BusAccess& bus);
+
+/// Scans the bus; throws std::runtime_error if the connection is lost or interrupted.
+void scan(BusAccess& bus, host::BusScan& scan);
+
+/// Options of SDO transfers that a user waits for: they survive a bus that loses one frame in ten.
+[[nodiscard]] canopen::SdoTransferOptions patient_transfers();
+
+/// The modules that a NODE argument names; for `all` those that a scan finds. Throws std::runtime_error if there is
+/// none.
+[[nodiscard]] std::vector<std::uint8_t> nodes_of(BusAccess& bus, const std::string& word);
+
+/// Waits until all transfers of a queue have ended.
+void finish(BusAccess& bus, host::SdoQueue& queue);
+
+/// "node 3: no answer to a request for OBJECT; CAUSE", or "node 3: OBJECT: the abort code in words". cause: what is
+/// known about the bus.
+[[nodiscard]] std::string failure_text(std::uint8_t node, const std::string& object, canopen::AbortCode code,
+                                       const std::string& cause);
+
+}  // namespace proleg::tools

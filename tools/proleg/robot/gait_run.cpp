@@ -1,0 +1,181 @@
+#include "tools/proleg/robot/gait_run.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "host/robot/sdo_queue.hpp"
+#include "host/robot/session_token.hpp"
+#include "host/robot/state_text.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/master_text/master_text.hpp"
+#include "shared/kernel/fingerprint.hpp"
+
+namespace proleg::tools {
+
+using canopen::MasterState;
+
+GaitRun::GaitRun(const sim::Scenario& scenario, host::BusConnection& bus, const GaitRunOptions& options)
+    : scenario_(scenario),
+      bus_(bus),
+      input_(scenario),
+      changes_(scenario, std::move(input_.changes)),
+      drive_(bus_, input_.setup, master_options(options.holds), changes_.span()),
+      watch_(bus_, {input_.setup.nodes.begin(), input_.setup.nodes.end()}),
+      check_(scenario),
+      end_tick_(options.end_tick) {
+  bus_.attach(answer_times_);  // before the master: it answers an answer with the next request
+  bus_.attach(change_times_);
+  bus_.attach(drive_);
+  bus_.attach(watch_);
+}
+
+GaitRun::~GaitRun() {
+  bus_.detach(drive_);
+  bus_.detach(watch_);
+  bus_.detach(answer_times_);
+  bus_.detach(change_times_);
+}
+
+canopen::MasterOptions GaitRun::master_options(bool holds) const {
+  canopen::MasterOptions options;
+  options.core_fingerprint = core_fingerprint;
+  options.serials = input_.serials;
+  options.resets_modules = true;
+  options.ramps_down = true;
+  options.reads_checksums = true;
+  options.ramp_in_speed = ramp_in_speed;
+  options.holds = holds;
+  options.session_token = host::random_token();
+  options.answer_timeout_us = host::patient_timeout_us;
+  options.attempts = host::patient_attempts;
+  return options;
+}
+
+bool GaitRun::has_ended() const {
+  return state() == MasterState::failed || !bus_.state().is_connected || watch_.loss();
+}
+
+std::string GaitRun::why_ended() const {
+  using canopen::ProblemCode;
+  const canopen::Problem& problem = drive_.master().problem();
+  if (!bus_.state().is_connected) {
+    return bus_.diagnosis();
+  }
+  if (const auto& loss = watch_.loss(); loss && state() != MasterState::failed) {
+    return text_of(*loss);
+  }
+  if (problem.code == ProblemCode::none) {
+    return "the set-up has not ended in time; " + bus_.diagnosis();
+  }
+  std::string text = problem_text(problem, [this](std::uint8_t node) { return name_of(node); });
+  if (problem.code == ProblemCode::missing_module || problem.code == ProblemCode::cannot_send ||
+      problem.code == ProblemCode::no_answer) {
+    text += "; " + bus_.diagnosis();
+  }
+  return text;
+}
+
+std::string GaitRun::text_of(const host::GaitWatch::Loss& loss) const {
+  using Reason = host::GaitWatch::Reason;
+  const std::string what = loss.reason == Reason::drive ? std::string(host::drive_text(loss.statusword))
+                           : loss.reason == Reason::mode
+                               ? "its mode is " + std::to_string(loss.mode) + ", expected -1 (gait)"
+                               : "its module is " + std::string(host::state_text(loss.state));
+  const std::string text = name_of(loss.node) + " does not follow the gait any more: " + what;
+  return text + (loss.emergency == canopen::EmergencyCode::none
+                     ? "; another program may have done that"
+                     : "; the module has reported: " + std::string(canopen::describe(loss.emergency)));
+}
+
+void GaitRun::report_events(bool is_verbose, const std::function<void(const std::string& line)>& report) {
+  while (const auto event = drive_.master().take_event()) {
+    const bool is_news = event->kind != canopen::EventKind::emergency || event->code != canopen::EmergencyCode::none;
+    if (is_news || is_verbose) {
+      report(event_text(*event, [this](std::uint8_t node) { return name_of(node); }));
+    }
+    are_all_off_ = are_all_off_ && event->kind != canopen::EventKind::not_stopped;
+    if (event->kind == canopen::EventKind::rejoined || event->kind == canopen::EventKind::rejoin_failed) {
+      watch_.return_to_gait(event->node);
+    }
+    if (event->kind == canopen::EventKind::rejoined) {
+      rejoined_.push_back(event->node);
+    }
+    if (event->kind == canopen::EventKind::restarted) {
+      check_.end_comparison(name_of(event->node) + " has restarted");
+    }
+  }
+}
+
+void GaitRun::take_ticks(bool at_end, const Observer& observer) {
+  if (!is_following_) {
+    return;
+  }
+  is_following_ = false;  // an observer that fails does not work for the rest either
+  while (auto tick = drive_.take_tick(at_end)) {
+    for (const sim::Change& change : changes_.take_decided(tick->tick)) {
+      check_.add_change(change);
+      observer.changed(change);
+    }
+    if (check_.ticks() >= end_tick_) {
+      check_.follow_stopping(*tick);
+      continue;
+    }
+    const sim::Change* change = check_.follow(*tick);
+    observer.tick(change);
+  }
+  while (const auto measured = drive_.take_measurement()) {
+    observer.measured(*measured);
+  }
+  is_following_ = true;
+}
+
+void GaitRun::add_change(const std::string& word) {
+  if (changes_.add(word, drive_.master().tick().value_or(0), end_tick_)) {
+    give_new_change(word);
+  }
+}
+
+void GaitRun::add_change(const std::vector<sim::Setting>& settings) {
+  changes_.add(settings);
+  give_new_change("a change");
+}
+
+void GaitRun::give_new_change(const std::string& what) {
+  const std::span<canopen::Change> changes = changes_.span();
+  if (changes.back().tick == canopen::Change::soon) {
+    change_times_.accepted(changes.size() - 1, bus_.now(), drive_.master().tick().value_or(0));
+  }
+  give_changes(what);
+}
+
+/// To the master: those that are behind the ones that it has. what: the last one. Throws InputError.
+void GaitRun::give_changes(const std::string& what) {
+  if (!drive_.master().extend_changes(bus_.now(), changes_.span())) {
+    changes_.remove_last();
+    static_cast<void>(drive_.master().extend_changes(bus_.now(), changes_.span()));
+    throw InputError(what, 0, "a change that is not later than the one before it, or has too many values",
+                     "a later tick");
+  }
+}
+
+void GaitRun::release_changes() {
+  while (changes_.release(drive_.master().tick().value_or(0))) {
+    give_changes("the change for tick " + std::to_string(changes_.span().back().tick));
+  }
+}
+
+void GaitRun::stop() {
+  are_all_off_ = true;
+  watch_.stop();
+  // What the modules send while they stop is not part of the gait.
+  end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
+  drive_.master().stop(bus_.now());
+}
+
+void GaitRun::compare_setpoints() {
+  for (unsigned joint = 0; is_following_ && joint < scenario_.modules.size(); ++joint) {
+    check_.compare_setpoints(joint, drive_.master().checksum(joint));
+  }
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,116 @@
+#pragma once
+
+// A gait on the modules of a robot: the master that drives them, what watches the joints, and the comparison with the
+// gait of this computer. Whoever has one lets time pass on the bus.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/robot/answer_times.hpp"
+#include "host/robot/bus_connection.hpp"
+#include "host/robot/change_times.hpp"
+#include "host/robot/gait_watch.hpp"
+#include "host/robot/robot_drive.hpp"
+#include "sim/scenario/master_input.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "tools/proleg/robot/gait_check.hpp"
+#include "tools/proleg/robot/live_changes.hpp"
+
+namespace proleg::tools {
+
+struct GaitRunOptions {
+  std::uint32_t end_tick;  ///< the first one that is not part of the run
+  bool holds = false;      ///< the joints stay where they are, as MasterOptions says
+};
+
+class GaitRun {
+ public:
+  /// scenario, bus: must outlive this.
+  GaitRun(const sim::Scenario& scenario, host::BusConnection& bus, const GaitRunOptions& options);
+  ~GaitRun();
+  GaitRun(const GaitRun&) = delete;
+  GaitRun& operator=(const GaitRun&) = delete;
+
+  /// Sets the modules up and gives the servos power. Then state() is `running`, or has_ended().
+  void start() { drive_.master().start(bus_.now()); }
+  /// From now on the joints should follow.
+  void watch() { watch_.start(bus_.now()); }
+  [[nodiscard]] canopen::MasterState state() const { return drive_.master().state(); }
+  /// The start has failed, the connection is lost, or a joint does not follow any more.
+  [[nodiscard]] bool has_ended() const;
+  /// In one line.
+  [[nodiscard]] std::string why_ended() const;
+
+  /// What the modules have reported since the last call, in lines. is_verbose: also the end of an error.
+  void report_events(bool is_verbose, const std::function<void(const std::string& line)>& report);
+
+  /// Nodes whose modules have restarted and take part again, since the last call.
+  [[nodiscard]] std::vector<std::uint8_t> take_rejoined() { return std::exchange(rejoined_, {}); }
+
+  struct Observer {
+    /// The last tick of check(), and the change that took effect at it, or null. Not called while the robot stops.
+    std::function<void(const sim::Change* change)> tick;
+    std::function<void(const host::Measurement& measurement)> measured = [](const host::Measurement&) {};
+    /// A change that the master has made.
+    std::function<void(const sim::Change& change)> changed = [](const sim::Change&) {};
+  };
+  /// The ticks whose frames have come. at_end: no more frames come. What an observer throws goes through, and then
+  /// nothing is followed any more.
+  void take_ticks(bool at_end, const Observer& observer);
+
+  /// A change as for --set while the robot moves. Throws InputError.
+  void add_change(const std::string& word);
+  /// Values that take effect together, as soon as all modules have them. Throws InputError.
+  void add_change(const std::vector<sim::Setting>& settings);
+  /// The changes of the scenario whose time has come.
+  void release_changes();
+  [[nodiscard]] const LiveChanges& changes() const { return changes_; }
+  /// Whether the master has nothing to change but what waits for its tick.
+  [[nodiscard]] bool has_made_changes() { return drive_.master().changes_made() == changes_.span().size(); }
+
+  /// Ramps down and takes the power from the servos. Then state() is `stopped`, at the latest after stop_time_us.
+  void stop();
+  static constexpr Microseconds stop_time_us = 20'000'000;
+  /// Since stop(): whether all modules have confirmed that their servos have no power.
+  [[nodiscard]] bool are_all_off() const { return are_all_off_ && state() == canopen::MasterState::stopped; }
+  /// Compares all bits of the set-points. After stop().
+  void compare_setpoints();
+
+  [[nodiscard]] host::RobotDrive& drive() { return drive_; }
+  [[nodiscard]] const host::RobotDrive& drive() const { return drive_; }
+  [[nodiscard]] host::GaitWatch& gait_watch() { return watch_; }
+  [[nodiscard]] const host::GaitWatch& gait_watch() const { return watch_; }
+  [[nodiscard]] GaitCheck& check() { return check_; }
+  [[nodiscard]] const GaitCheck& check() const { return check_; }
+  [[nodiscard]] const Durations& answers_us() const { return answer_times_.microseconds(); }
+  [[nodiscard]] const host::ChangeTimes& change_times() const { return change_times_; }
+
+ private:
+  static constexpr std::uint16_t ramp_in_speed = 90;  // degrees a second, as in a quick stop
+
+  [[nodiscard]] canopen::MasterOptions master_options(bool holds) const;
+  [[nodiscard]] std::string name_of(std::uint8_t node) const { return sim::name_of_node(scenario_, node); }
+  [[nodiscard]] std::string text_of(const host::GaitWatch::Loss& loss) const;
+  void give_new_change(const std::string& what);
+  void give_changes(const std::string& what);
+
+  const sim::Scenario& scenario_;
+  host::BusConnection& bus_;
+  sim::MasterInput input_;
+  LiveChanges changes_;
+  host::RobotDrive drive_;
+  host::AnswerTimes answer_times_;
+  host::ChangeTimes change_times_;
+  host::GaitWatch watch_;
+  GaitCheck check_;
+  std::vector<std::uint8_t> rejoined_;
+  bool is_following_ = true;  ///< no observer has failed
+  bool are_all_off_ = true;   ///< since stop()
+  std::uint32_t end_tick_;
+};
+
+}  // namespace proleg::tools

@@ -1,0 +1,138 @@
+#include "tools/proleg/robot/mirror.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/record/axis.hpp"
+#include "sim/record/figure_page.hpp"
+#include "sim/record/plot_frame.hpp"
+
+namespace proleg::tools {
+
+Mirror::Mirror(const sim::Scenario& scenario)
+    : scenario_(scenario),
+      plant_(scenario),
+      player_(plant_, {scenario.robot.servo.period_us, scenario.kernel.tick_period_us}),
+      lines_(scenario.robot.joints.size()) {
+  remember_angles();
+}
+
+/// Some ticks that are not recorded: the way of each servo at 90 degrees a second, and half a second at rest.
+void Mirror::ramp_in(std::span<const sim::ServoPulse> first_pulses) {
+  const std::uint32_t tick_us = scenario_.kernel.tick_period_us;
+  const std::int32_t step =
+      std::max(1, static_cast<std::int32_t>(servo_quarter_turn * std::uint64_t{tick_us} / 1'000'000));
+  const std::uint32_t resting_ticks = 500'000 / tick_us;
+  std::vector<std::int32_t> goals(plant_.servo_commands().begin(), plant_.servo_commands().end());
+  for (std::size_t i = std::min(first_pulses.size(), goals.size()); i-- > 0;) {
+    goals[first_pulses[i].joint] = first_pulses[i].command;
+  }
+  std::vector<std::int32_t> commands(plant_.servo_commands().begin(), plant_.servo_commands().end());
+  std::vector<sim::ServoPulse> pulses(goals.size());
+  for (std::uint32_t rested = 0; rested < resting_ticks; rested += commands == goals ? 1U : 0U) {
+    for (std::uint32_t joint = 0; joint < goals.size(); ++joint) {
+      commands[joint] = std::clamp(goals[joint], commands[joint] - step, commands[joint] + step);
+      pulses[joint] = {0, joint, commands[joint]};
+    }
+    player_.advance(0, pulses);
+  }
+  angles_.clear();
+  next_tick_ = 0;
+  remember_angles();
+}
+
+sim::TickSample Mirror::follow(const sim::TickSample& real) {
+  if (real.tick == 0) {
+    ramp_in(real.servo_pulses);
+  }
+  player_.advance(real.tick, real.servo_pulses);
+  remember_angles();
+  compare();
+  sim::TickSample sample = real;
+  sample.link_poses = plant_.link_poses();
+  sample.joint_angles = plant_.joint_angles();
+  sample.motor_torques = plant_.motor_torques();
+  sample.servo_currents = plant_.servo_currents();
+  sample.contact_forces = plant_.contact_forces();
+  sample.object_poses = plant_.object_poses();
+  sample.sensor_values = plant_.sensors().values();
+  sample.measured_sensors = plant_.sensors().measured();
+  return sample;
+}
+
+void Mirror::note_measured(std::uint32_t tick, unsigned joint, double angle) {
+  waiting_.push_back({tick, joint, angle});
+  compare();
+}
+
+void Mirror::remember_angles() {
+  constexpr std::size_t kept_ticks = 256;
+  angles_.emplace_back(plant_.joint_angles().begin(), plant_.joint_angles().end());
+  ++next_tick_;
+  if (angles_.size() > kept_ticks) {
+    angles_.pop_front();
+  }
+}
+
+void Mirror::compare() {
+  const std::uint32_t oldest = next_tick_ - static_cast<std::uint32_t>(angles_.size());
+  while (!waiting_.empty() && waiting_.front().tick < next_tick_) {
+    const Measurement& measured = waiting_.front();
+    if (measured.tick >= oldest) {
+      const double difference = measured.angle - angles_[measured.tick - oldest][measured.joint];
+      lines_[measured.joint].push_back(
+          {measured.tick * (scenario_.kernel.tick_period_us * 1e-6), difference * (180.0 / std::numbers::pi)});
+    }
+    waiting_.pop_front();
+  }
+}
+
+std::vector<Mirror::Difference> Mirror::differences() const {
+  std::vector<Difference> differences;
+  for (const sim::Polyline& line : lines_) {
+    Difference& difference = differences.emplace_back();
+    difference.over_time = line;
+    double squares = 0.0;
+    for (const sim::Point& point : line) {
+      squares += point.y * point.y;
+      difference.largest = std::max(difference.largest, std::abs(point.y));
+    }
+    difference.root_mean_square = line.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(line.size()));
+  }
+  return differences;
+}
+
+std::string Mirror::picture(const std::string& title, double seconds) const {
+  constexpr double bottom = 470.0;
+  double lowest = 0.0;
+  double highest = 0.0;
+  for (const sim::Polyline& line : lines_) {
+    for (const sim::Point& point : line) {
+      lowest = std::min(lowest, point.y);
+      highest = std::max(highest, point.y);
+    }
+  }
+  const sim::Axis x{0.0, std::max(seconds, 0.1), sim::page_left, sim::page_right};
+  const sim::Axis y = sim::axis_over(lowest, highest, bottom, sim::first_panel_top);
+  sim::Svg svg(sim::page_width, bottom + 56.0, title, "Measured minus simulated angle of each joint, against time.");
+  sim::draw_title(svg, title, "the robot and the simulation of it with the same pulses");
+  sim::draw_plot_grid(svg, x, y, "time, s", "measured minus simulated angle, degrees");
+  std::vector<sim::LineName> names;
+  for (std::size_t joint = 0; joint < lines_.size(); ++joint) {
+    if (lines_[joint].empty()) {
+      continue;
+    }
+    const char* colour = sim::distinct_colours.at(joint % sim::distinct_colours.size());
+    svg.begin_group("joint");
+    svg.polyline(sim::to_pixels(lines_[joint], x, y),
+                 std::string("stroke=\"") + colour + R"(" stroke-width="1.6" stroke-linejoin="round")");
+    svg.end_group();
+    names.push_back({lines_[joint].back().y, scenario_.robot.joints[joint].name, colour});
+  }
+  sim::draw_line_names(svg, y, sim::page_right, names);
+  sim::draw_plot_frame(svg, x, y);
+  return svg.finish();
+}
+
+}  // namespace proleg::tools

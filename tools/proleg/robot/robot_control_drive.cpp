@@ -1,0 +1,123 @@
+#include "tools/proleg/robot/robot_control_drive.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <numbers>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/gait/actuation_module.hpp"
+
+namespace proleg {
+namespace {
+
+const sim::RobotControlEntry& entry_of(const sim::Scenario& scenario) {
+  if (!scenario.robot_control) {
+    throw InputError(scenario.path, 0, "a robot without <robot_control> in its file",
+                     "one that names the plug-in (docs/robot-control.md), or a robot with modules and --bus");
+  }
+  return *scenario.robot_control;
+}
+
+double degrees(std::int32_t angle) { return angle * 90.0 / (1 << 30); }
+
+bool senses_contacts(const sim::Scenario& scenario) {
+  return std::ranges::any_of(scenario.kernel.slots, [](const auto& slot) {
+    return slot.algorithm != nullptr && slot.algorithm->senses_contacts();
+  });
+}
+
+/// Calls a hook before each tick.
+class HookedGait final : public host::SetpointSource {
+ public:
+  HookedGait(ScenarioGait& gait, const std::function<void(ScenarioGait&)>& hook) : gait_(gait), hook_(hook) {}
+
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return gait_.setpoints(); }
+  void advance(std::span<const std::uint8_t> contacts) override {
+    if (hook_) {
+      hook_(gait_);
+    }
+    gait_.advance(contacts);
+  }
+
+ private:
+  ScenarioGait& gait_;
+  const std::function<void(ScenarioGait&)>& hook_;
+};
+
+}  // namespace
+
+ScenarioGait::ScenarioGait(const sim::Scenario& scenario)
+    : scenario_(scenario), chain_(scenario.kernel, scenario.joint_limits, scenario.settings) {}
+
+void ScenarioGait::advance(std::span<const std::uint8_t> contacts) {
+  if (next_change_ < scenario_.changes.size() && scenario_.changes[next_change_].tick == chain_.tick()) {
+    chain_.apply(scenario_.changes[next_change_++]);
+  }
+  chain_.advance(contacts);
+}
+
+host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario) {
+  const sim::RobotControlEntry& entry = entry_of(scenario);
+  host::RobotControlSetup setup;
+  setup.file = entry.file;
+  setup.line = entry.line;
+  setup.tick_us = scenario.kernel.tick_period_us;
+  for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {
+    const sim::JointLimits& limits = scenario.joint_limits[joint];
+    setup.joints.push_back({scenario.robot.joints[joint].name, degrees(limits.lower), degrees(limits.upper),
+                            scenario.robot.joints[joint].max_speed * 180.0 / std::numbers::pi});
+  }
+  for (const auto& parameter : entry.parameters) {
+    setup.parameters.push_back({parameter.name, parameter.value, parameter.joint.value_or(PROLEG_ALL_JOINTS),
+                                static_cast<std::uint32_t>(parameter.line)});
+  }
+  return setup;
+}
+
+host::DriveLimits drive_limits(const sim::Scenario& scenario) {
+  host::DriveLimits limits;
+  for (const sim::JointLimits& joint : scenario.joint_limits) {
+    limits.lower.push_back(joint.lower);
+    limits.upper.push_back(joint.upper);
+  }
+  limits.command_speed = scenario.robot.servo.command_speed;
+  return limits;
+}
+
+host::Plugin robot_control_plugin(const sim::Scenario& scenario) {
+  const sim::RobotControlEntry& entry = entry_of(scenario);
+  try {
+    return host::load_plugin(host::find_plugin(entry.plugin, entry.folder, host::plugin_folders()));
+  } catch (const host::RobotControlError& error) {
+    throw host::RobotFileError(entry.file + ":" + std::to_string(entry.line) + ": " + error.what());
+  }
+}
+
+host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive) {
+  host::SteadyClock clock;
+  return drive_robot_control(scenario, drive, robot_control_plugin(scenario), clock);
+}
+
+host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive,
+                                      const host::Plugin& plugin, host::Clock& clock) {
+  std::mutex mutex;
+  const auto show = [&](const std::string& text) {
+    const std::lock_guard lock(mutex);
+    if (drive.show) {
+      drive.show(text);
+    }
+  };
+  host::RobotControl control(plugin, robot_control_setup(scenario), show);
+  show("the kernels of the gait run on this computer; the robot has no modules with a core of their own");
+  if (senses_contacts(scenario) && control.description().sensor_modules == 0) {
+    show("the gait reads touch sensors, and plug-in " + in_quotes(control.name()) +
+         " has none: all read 'not pressed'");
+  }
+  ScenarioGait gait(scenario);
+  HookedGait hooked(gait, drive.before_tick);
+  host::GaitDriver driver(control, hooked, drive_limits(scenario), drive.ticks, drive.observer);
+  return host::drive(driver, clock, drive.must_stop);
+}
+
+}  // namespace proleg

@@ -1,0 +1,211 @@
+// proleg plot: a recording, or columns of it or of a data file, as a picture.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/output/output_check.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/data_file/data_file.hpp"
+#include "sim/record/figure.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/record/series.hpp"
+#include "sim/record/series_figure.hpp"
+#include "sim/record/tsv.hpp"
+#include "tools/proleg/common/beside_recording.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/run/png_file.hpp"
+
+using namespace proleg;
+
+namespace {
+
+struct Options {
+  std::string recording;
+  std::string out;
+  std::optional<std::string> series;
+  std::optional<std::string> x;
+  sim::TimeWindow window;
+  bool png = false;
+};
+
+/// A picture, and what the user is told beside it.
+struct Drawing {
+  std::string svg;
+  std::string remark;
+};
+
+void require_finite(const char* option, const std::optional<double>& seconds) {
+  if (seconds && !std::isfinite(*seconds)) {
+    throw InputError(option, 0, "a number that is not finite", "seconds from the start of the run");
+  }
+}
+
+bool is_svg(const std::filesystem::path& path) {
+  constexpr std::size_t max_head = 1000;  // with a declaration and comments of another program
+  const std::string head = first_bytes(path, max_head);
+  return head.starts_with('<') && head.find("<svg") != std::string::npos;
+}
+
+/// Throws InputError for a name that promises a picture of another format.
+void require_format(const std::filesystem::path& picture, bool png) {
+  constexpr std::array<std::string_view, 13> known{".svg", ".png",  ".jpg", ".jpeg", ".gif", ".webp", ".bmp",
+                                                   ".tif", ".tiff", ".pdf", ".ps",   ".eps", ".html"};
+  const std::string extension = lower_case(picture.extension().string());
+  if (std::ranges::find(known, extension) != known.end() && extension != (png ? ".png" : ".svg")) {
+    throw InputError("--out", 0, in_quotes(picture.string()),
+                     png ? "a name that ends with .png, because of --png"
+                         : "a name that ends with .svg: the picture is SVG; --png makes a PNG");
+  }
+}
+
+std::filesystem::path picture_of(const Options& options, bool is_data_file) {
+  const char* extension = options.png ? ".png" : ".svg";
+  if (!options.out.empty()) {
+    return options.out;
+  }
+  return is_data_file ? std::filesystem::path(options.recording).replace_extension(extension)
+                      : tools::beside_recording(options.recording, extension);
+}
+
+std::vector<std::string> names_in(const std::string& list) {
+  std::vector<std::string> names;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string_view name = trimmed(std::string_view(list).substr(begin, end - begin));
+    if (name.empty()) {
+      throw InputError("--series", 0, in_quotes(list), "names of columns with commas between them");
+    }
+    names.emplace_back(name);
+    begin = end + 1;
+  }
+  return names;
+}
+
+/// What of a data file is drawn without --series: what its modules command; else what the joints do; else the first
+/// type.
+std::vector<std::string> usual_series(const sim::DataFile& data) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& type) {
+    for (const std::string& column : data.columns()) {
+      if (column.starts_with(type + ".") && names.size() < sim::max_series) {
+        names.push_back(column);
+      }
+    }
+  };
+  add("Angle");
+  add("desired_angle");
+  if (names.empty()) {
+    add("real_joint_positions");
+  }
+  if (names.empty()) {
+    constexpr std::size_t first_of_modules = 3;
+    const std::string& column = data.columns()[first_of_modules];
+    add(column.substr(0, column.find('.')));
+  }
+  return names;
+}
+
+std::string draw_table(const Options& options, std::vector<std::string> names, const sim::WriteTable& table) {
+  const sim::SeriesSet set =
+      sim::collect_series(table, {std::move(names), options.x.value_or("time_s"), options.window, options.recording});
+  const std::string about = number_text(set.from_s) + " to " + number_text(set.to_s) + " s" +
+                            (options.x && *options.x != "time_s" ? "; a dot marks the first value" : "");
+  return sim::draw_series(set, shortened(std::filesystem::path(options.recording).filename().string(), 55), about);
+}
+
+Drawing draw_data_file(const Options& options) {
+  sim::DataFile data(options.recording);
+  std::vector<std::string> names = options.series ? names_in(*options.series) : usual_series(data);
+  std::string svg = draw_table(options, std::move(names), [&](const auto& write) { data.write_table(write); });
+  return {std::move(svg), data.remark_on_cut()};
+}
+
+Drawing draw_recording(const Options& options) {
+  const sim::Recording recording(options.recording);
+  std::string svg = options.series ? draw_table(options, names_in(*options.series),
+                                                [&](const auto& write) { sim::write_tsv(recording, write); })
+                                   : sim::draw_figure(recording, options.window);
+  return {std::move(svg), sim::remark_on_unfinished_run(recording)};
+}
+
+int plot(const tools::CommandLine& command_line, const Options& options) {
+  require_finite("--from", options.window.from_s);
+  require_finite("--to", options.window.to_s);
+  const bool is_data_file = sim::is_xml_file(options.recording);
+  if (options.x && !options.series && !is_data_file) {
+    throw InputError("--x", 0, "no --series", "--series with the columns that are drawn over this one");
+  }
+  const std::filesystem::path picture = picture_of(options, is_data_file);
+  require_format(picture, options.png);
+  const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
+  const std::array outputs{options.png ? PlannedOutput{"--out", picture, "PNG picture", starts_with("\x89PNG")}
+                                       : PlannedOutput{"--out", picture, "SVG picture", is_svg}};
+  const bool to_standard_output = options.out == "-";
+  if (!to_standard_output) {
+    check_outputs(outputs);
+  }
+  const std::string bytes = options.png ? tools::png_of(drawing.svg) : drawing.svg;
+  if (!drawing.remark.empty()) {
+    tools::print_warning(command_line.name(), drawing.remark);
+  }
+  if (!to_standard_output) {
+    write_file(picture, bytes);
+  }
+  try {
+    Output standard_output;
+    standard_output.write(to_standard_output ? bytes : picture.string() + "\n");
+    standard_output.finish();
+  } catch (const ReaderGone&) {
+    // The program at the other end of the pipe needed no more of the picture, or not its name.
+  }
+  return tools::exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::CommandLine command_line(
+      "proleg plot",
+      "Draws a recording of 'proleg simulate --record' as an SVG picture: the robot in a stride, the joint angles and\n"
+      "the contacts over time, and the path of the robot over the whole run, from above. With --series it draws "
+      "columns\n"
+      "of the table of 'proleg export', of a recording or of a data file of the thesis. Prints the name of the "
+      "picture.");
+  Options options;
+  command_line.add_option("RUN", options.recording, "the recording, or a data file (XML), of which it draws the angles")
+      .required()
+      .value_name("");
+  command_line
+      .add_option(
+          "--series", options.series,
+          "columns, with commas between them: angle_deg.J1,setpoint_deg.J1; angle_deg means that of every joint")
+      .value_name("NAMES");
+  command_line.add_option("--x", options.x, "the column over which they are drawn; by default time_s")
+      .value_name("NAME");
+  command_line.add_flag("--png", options.png, "write a PNG, with the program rsvg-convert (Debian: librsvg2-bin)");
+  command_line
+      .add_option(
+          "--out", options.out,
+          "the picture, - for standard output; by default run.svg (run.png) for run.proleg, run.1.svg for run.1")
+      .value_name("FILE");
+  command_line
+      .add_option(
+          "--from", options.window.from_s,
+          "start of the time axis in s; by default three strides before its end, with --series the start of the\n"
+          "run")
+      .value_name("SECONDS");
+  command_line.add_option("--to", options.window.to_s, "end of the time axis in s; by default the end of the run")
+      .value_name("SECONDS");
+  command_line.add_algorithms_option();
+  return command_line.run(argc, argv, [&] { return plot(command_line, options); });
+}

@@ -1,0 +1,73 @@
+#pragma once
+
+// What `proleg optimise` and `proleg experiment` have in common: a store in a folder, workers, and a run of a search.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/evaluation/confirmation.hpp"
+#include "sim/optimize/evaluation/evaluator.hpp"
+#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/workers.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/json_output.hpp"
+
+namespace proleg::tools {
+
+/// Options that replace values of the experiment's files: --engine, --trials, --evaluations, --seed.
+struct ExperimentOptions {
+  std::optional<std::string> engine;
+  std::optional<std::string> trials;
+  std::optional<std::string> evaluations;
+  std::optional<std::string> seed;
+};
+
+void add_engine_option(CommandLine& command_line, ExperimentOptions& options);
+
+/// Applies the options to an experiment. Throws InputError, also if the method or the engine rejects the experiment.
+void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment);
+
+/// Path of the store in the folder of an experiment.
+[[nodiscard]] std::filesystem::path store_path(const std::filesystem::path& folder);
+/// Opens the store in a folder, which is made if it does not exist. Throws BadInput.
+[[nodiscard]] std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
+                                                          const optimize::Experiment& experiment,
+                                                          optimize::Store::Opening opening);
+
+/// The result of a run of a search.
+struct SearchOutcome {
+  std::vector<optimize::Evaluation> evaluations;
+  optimize::SearchProgress progress;
+  std::string ending;  ///< why it ended; empty if it was interrupted
+  double wall_s = 0.0;
+  double confirmation_wall_s = 0.0;  ///< of the fresh runs after the search
+  double own_cpu_s = 0.0;            ///< processor time of optimiser, store and scheduling
+};
+
+/// Runs a search until its method ends, its evaluations are used up, or the user interrupts it. Shows progress on the
+/// terminal, under this label.
+[[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
+                                       optimize::Workers& workers, optimize::Store& store, const std::string& label);
+
+/// Whether a run has ended: with more evaluations than it had, one that has used them up goes on.
+[[nodiscard]] bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run);
+
+/// Rates the best candidates of a search again, if it has ended and needs_confirmation(); otherwise returns nothing.
+/// Best first. If the user interrupts, the result is empty, and the search counts as interrupted.
+[[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,
+                                                               optimize::Workers& workers, optimize::Store& store,
+                                                               SearchOutcome& outcome);
+
+/// Share of optimiser, store and scheduling in all processor time.
+[[nodiscard]] double overhead(const SearchOutcome& outcome);
+
+/// The values of a candidate by the names of their dimensions.
+[[nodiscard]] Json values_object(const optimize::SearchSpace& space, const optimize::Candidate& candidate);
+
+}  // namespace proleg::tools

@@ -1,0 +1,267 @@
+// proleg optimise: searches for the parameters of a gait.
+
+#include "tools/proleg/search/optimise.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/optimize/method/search.hpp"
+#include "sim/physics/physics_error.hpp"
+#include "sim/scenario/overrides.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tools/proleg/common/build_id.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/result_folder.hpp"
+#include "tools/proleg/common/run_measures.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/shell_words.hpp"
+#include "tools/proleg/search/search_result.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using optimize::Experiment;
+
+std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment& experiment) {
+  if (options.resume && options.out && *options.out != *options.resume) {
+    throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
+                   ", expected one of them: a resumed search stays in its folder");
+  }
+  const std::string folder = options.resume ? *options.resume : options.out.value_or(experiment.title());
+  if (folder.empty()) {
+    throw InputError(options.resume ? "--resume" : "--out", 0, "an empty name", "the name of a folder");
+  }
+  return folder;
+}
+
+void print_json(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+                const std::filesystem::path& folder, std::uint32_t workers) {
+  const optimize::SearchProgress& progress = outcome.progress;
+  Json object{
+      {"experiment", experiment.path},
+      {"method", optimize::method_name(experiment.method)},
+      {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+      {"judge", optimize::is_judged(experiment) ? Json(std::string(sim::name_of(optimize::judging_engine))) : Json()},
+      {"trials", experiment.trials.count},
+      {"seed", experiment.seed}};
+  add_result(experiment, result, object);
+  object.add("evaluations", progress.evaluations);
+  object.add("simulated", progress.simulated);
+  object.add("reused", progress.reused);
+  object.add("restored", progress.restored);
+  object.add("failed", progress.failed);
+  object.add("simulated_ahead_in_vain", progress.wasted);
+  object.add("ended", outcome.ending);
+  object.add("workers", workers);
+  object.add("wall_s", outcome.wall_s);
+  object.add("simulated_s", progress.simulated_s);
+  object.add("simulated_s_per_s", progress.simulated_s / outcome.wall_s);
+  object.add("workers_busy", progress.workers_s / (outcome.wall_s * workers));
+  object.add("overhead", overhead(outcome));
+  object.add("out", folder.string());
+  object.add("fingerprint", experiment.fingerprint());
+  object.add("build_id", build_id);
+  std::cout << object.text() << '\n';
+}
+
+void print_text(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+                const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
+  print_result(experiment, outcome, result);
+  const optimize::SearchProgress& progress = outcome.progress;
+  std::printf("%-24s %s\n", "engine", std::string(sim::name_of(experiment.scenario.environment.engine)).c_str());
+  std::printf("%-24s %.1f s, %.0f simulated s/s; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
+              outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
+              100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
+  if (outcome.confirmation_wall_s > 0.0) {
+    std::printf("%-24s %.1f s, after the search\n", "time of fresh runs", outcome.confirmation_wall_s);
+  }
+  for (const std::filesystem::path& file : files) {
+    std::printf("%-24s %s\n", "written", file.c_str());
+  }
+}
+
+/// The command that continues this search, with all options that its store depends on.
+std::string command_to_continue(const OptimiseOptions& options, const std::filesystem::path& folder) {
+  std::string command = "proleg optimise" + (options.file ? " " + shell_word(*options.file) : "");
+  const auto add = [&](const char* option, const std::optional<std::string>& value) {
+    if (value) {
+      command += std::string(" ") + option + " " + shell_word(*value);
+    }
+  };
+  add("--simulation", options.simulation);
+  add("--engine", options.engine);
+  add("--trials", options.trials);
+  add("--evaluations", options.evaluations);
+  add("--seed", options.seed);
+  add("--resume", folder.string());
+  return command + algorithm_options();
+}
+
+/// A resumed search keeps all evaluations that its store has.
+void keep_stored_evaluations(optimize::Store& store, Experiment& experiment) {
+  const std::uint64_t stored = store.evaluation_count(0);
+  if (experiment.evaluations > 0 && experiment.evaluations < stored) {
+    print_warning("proleg optimise", "the store has " + std::to_string(stored) + " evaluations, more than " +
+                                         std::to_string(experiment.evaluations) + "; all of them are kept");
+    experiment.evaluations = stored;
+  }
+  store.save_search(experiment.evaluations, build_id);
+}
+
+/// The files of a stored experiment.
+class StoredFiles final : public sim::FileSource {
+ public:
+  explicit StoredFiles(const std::vector<sim::SourceFile>& sources) : sources_(sources) {}
+
+  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+    const auto found = std::ranges::find_if(sources_, [&](const sim::SourceFile& source) {
+      return std::filesystem::path(source.path).lexically_normal() == path.lexically_normal();
+    });
+    return found == sources_.end() ? std::nullopt : std::optional(found->text);
+  }
+
+ private:
+  const std::vector<sim::SourceFile>& sources_;
+};
+
+Experiment read_stored(const OptimiseOptions& options) {
+  if (!options.resume) {
+    throw BadInput("found no FILE, expected an experiment (*.optimise.xml), or --resume FOLDER");
+  }
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {  // only the first process may open the store
+    throw BadInput("found mpirun without FILE, expected the experiment's file before --resume");
+  }
+  if (options.simulation) {
+    throw BadInput("found --simulation without FILE, expected FILE: the store has a scenario of its own");
+  }
+  try {
+    const optimize::StoredExperiment stored = optimize::read_stored_experiment(store_path(*options.resume));
+    StoredFiles files(stored.sources);
+    Experiment experiment = optimize::read_experiment(stored.path, files, stored.scenario);
+    experiment.seed = stored.seed;
+    experiment.evaluations = stored.evaluations;
+    return experiment;
+  } catch (const optimize::StoreError& error) {
+    throw BadInput(error.what());
+  }
+}
+
+/// Runs the best scenario once more and warns as `proleg simulate` does: the measures of a search are means over the
+/// joints, and do not say whether the limits cut the gait.
+void print_warnings_on(const std::filesystem::path& best) {
+  sim::DiskFiles files;
+  const sim::Scenario scenario = sim::read_scenario(best, files);
+  sim::Simulation simulation(scenario);
+  try {
+    while (simulation.time_s() < scenario.duration_s - 1e-9 && !interrupted()) {
+      simulation.advance();
+    }
+  } catch (const sim::PhysicsError&) {
+    return;
+  }
+  print_warning_on_servos("proleg optimise", measures_of(simulation.plant().meter()), scenario.robot);
+  print_warning_on_clipping("proleg optimise", scenario, simulation.chain().clipped_ticks(), simulation.tick());
+}
+
+int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
+  Experiment experiment = read_experiment(options);
+  const std::filesystem::path folder = folder_of(options, experiment);
+  print_warnings("proleg optimise", experiment.scenario);
+  refuse_overwriting(experiment, folder);
+  if (!options.resume && !std::filesystem::exists(store_path(folder))) {  // otherwise the store says how to go on
+    check_result_folder(folder, search_result_files);
+  }
+  if (options.verbose) {
+    for (const std::string& remark : experiment.scenario.remarks) {
+      std::cerr << remark << '\n';
+    }
+    std::cerr << experiment.space.dimensions.size() << " dimensions, " << experiment.space.size() << " candidates\n";
+  }
+  catch_interrupts();
+  // Before the store is opened: workers are processes that should not inherit it.
+  const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
+  const std::unique_ptr<optimize::Store> store = open_store(
+      folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
+  keep_stored_evaluations(*store, experiment);
+  SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
+  const std::string continuation = command_to_continue(options, folder);
+  if (outcome.progress.evaluations == 0) {
+    std::cerr << "proleg optimise: interrupted before the first evaluation; continue with: " << continuation << '\n';
+    return exit_failed;
+  }
+  const bool has_score = outcome.progress.best.has_value();
+  if (!has_score) {
+    write_results(experiment, outcome, nullptr, folder);
+    std::cerr << "proleg optimise: none of " << outcome.progress.evaluations
+              << " evaluations has a score, so there is no best scenario; the first failure: "
+              << outcome.progress.first_failure << '\n';
+  } else {
+    std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, *workers, *store, outcome);
+    const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
+    const std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
+    if (options.json) {
+      print_json(experiment, outcome, result, folder, workers->count());
+    } else {
+      print_text(experiment, outcome, result, files, workers->count());
+    }
+    print_warnings_on(folder / "best.simulation.xml");
+  }
+  if (outcome.ending.empty()) {
+    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
+              << " evaluations; continue with: " << continuation << '\n';
+  }
+  return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
+}
+
+}  // namespace
+
+optimize::Experiment read_experiment(const OptimiseOptions& options) {
+  if (options.file) {
+    refuse_folder(*options.file, ".optimise.xml");
+  }
+  if (options.simulation) {
+    refuse_folder(*options.simulation, ".simulation.xml");
+  }
+  sim::DiskFiles files;
+  optimize::Experiment experiment =
+      options.file ? optimize::read_experiment(*options.file, files, options.simulation) : read_stored(options);
+  apply_options(options, experiment);
+  return experiment;
+}
+
+int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
+  CommandLine command_line(
+      "proleg optimise",
+      "Searches for the parameters of a gait: simulates candidates, stores all results, and writes the best scenario.");
+  OptimiseOptions options;
+  add_optimise_options(command_line, options);
+  command_line.add_algorithms_option();
+  return command_line.run(argc, argv, [&] { return optimise(options, make_workers); });
+}
+
+void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
+  command_line.add_option("FILE", options.file, "experiment: a *.optimise.xml file; may be omitted with --resume");
+  command_line.add_option("--simulation", options.simulation, "scenario to optimise; default: the one that FILE names");
+  add_engine_option(command_line, options);
+  command_line.add_option(
+      "--trials", options.trials,
+      "number of worlds in which each candidate is simulated; they differ as <trials> of FILE says, "
+      "or else in friction, mass, servo gain and latency");
+  command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
+  command_line.add_option("--workers", options.workers,
+                          "number of simulations at the same time; default: number of processors");
+  command_line.add_option("--seed", options.seed, "seed of all random numbers of the search; default: that of FILE");
+  command_line.add_option("--out", options.out,
+                          "folder for store, tables and figures; default: the name of FILE up to its first dot");
+  command_line.add_option("--resume", options.resume, "continue the search whose store is in this folder");
+  command_line.add_flag("--verbose", options.verbose, "print remarks on the files and the size of the search space");
+  command_line.add_flag("--json", options.json, "print one JSON object");
+}
+
+}  // namespace proleg::tools

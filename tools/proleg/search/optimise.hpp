@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sim/optimize/evaluation/workers.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/search/optimisation.hpp"
+
+namespace proleg::tools {
+
+struct OptimiseOptions : ExperimentOptions {
+  std::optional<std::string> file;  ///< required unless a search is resumed
+  std::optional<std::string> simulation;
+  std::optional<std::string> workers;
+  std::optional<std::string> out;
+  std::optional<std::string> resume;
+  bool verbose = false;
+  bool json = false;
+};
+
+void add_optimise_options(CommandLine& command_line, OptimiseOptions& options);
+
+/// Reads the experiment from its file, or without a file from the store that is resumed, and applies the options.
+/// Throws InputError or BadInput.
+[[nodiscard]] optimize::Experiment read_experiment(const OptimiseOptions& options);
+
+/// Makes the workers: processes of this computer, or of a cluster.
+using WorkersMaker =
+    std::function<std::unique_ptr<optimize::Workers>(const optimize::Experiment&, const OptimiseOptions& options)>;
+
+/// The subcommand, with the workers that `make_workers` makes.
+int optimise_command(int argc, char** argv, const WorkersMaker& make_workers);
+
+}  // namespace proleg::tools

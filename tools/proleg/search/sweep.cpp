@@ -1,0 +1,324 @@
+// proleg sweep: runs a scenario with all combinations of some values.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/optimize/evaluation/local_workers.hpp"
+#include "sim/optimize/experiment/trials.hpp"
+#include "sim/optimize/sweep/sweep.hpp"
+#include "sim/scenario/overrides.hpp"
+#include "tools/proleg/common/build_id.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/result_folder.hpp"
+#include "tools/proleg/common/run_progress.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/worker_count.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+using optimize::Sweep;
+using optimize::SweepGroup;
+using optimize::SweepRun;
+using optimize::SweptQuantity;
+
+struct SweepOptions {
+  ScenarioOptions scenario;
+  std::vector<std::string> over;
+  std::string measure = "distance";
+  std::optional<std::string> workers;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+struct SweepResult {
+  std::vector<SweepRun> runs;
+  std::vector<SweepGroup> groups;
+  std::vector<std::filesystem::path> files;
+  std::uint64_t failed = 0;
+  const SweepRun* first_failure = nullptr;  ///< in the order of the combinations
+  std::uint64_t limited = 0;                ///< runs whose servos cannot follow the gait
+  const SweepRun* worst_limited = nullptr;  ///< with the largest difference between an angle and that of its pulse
+  std::uint32_t workers = 0;
+  double wall_s = 0.0;
+};
+
+sim::Measure read_measure(const std::string& name) {
+  if (const auto measure = sim::find_measure(name)) {
+    return *measure;
+  }
+  throw InputError("--measure", 0, in_quotes(name), "one of " + listed(sim::measure_names()));
+}
+
+/// The folder of the results; none of the files may exist in it.
+std::filesystem::path result_folder(const SweepOptions& options) {
+  if (options.out && options.out->empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
+  const std::string file = std::filesystem::path(options.scenario.file).filename().string();
+  std::filesystem::path folder = options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
+  constexpr std::array<std::string_view, 3> names{"sweep.tsv", "summary.tsv", "sweep.svg"};
+  check_result_folder(folder, names);
+  return folder;
+}
+
+/// Several seeds of a gait without noise give equal runs.
+void warn_of_equal_runs(const Sweep& sweep) {
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    if (quantity.name.find("noise") != std::string::npos) {
+      return;
+    }
+  }
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    if (quantity.kind == SweptQuantity::Kind::seed && quantity.values.size() > 1 &&
+        !optimize::depends_on_seed(sweep.scenario, {}, {})) {
+      print_warning(
+          "proleg sweep",
+          "all seeds give the same run, because neither the start state of an algorithm nor the touch sensors "
+          "have noise");
+    }
+  }
+}
+
+/// Whether any run has a value of the measure.
+bool has_values(const SweepResult& result) {
+  return std::ranges::any_of(result.groups, [](const SweepGroup& group) { return !group.values.empty(); });
+}
+
+/// Counts the runs that failed and those whose servos cannot follow.
+void count_runs(SweepResult& result) {
+  constexpr sim::Measure error = sim::Measure::max_tracking_error;
+  for (const SweepRun& done : result.runs) {
+    if (!done.result.failure.empty()) {
+      ++result.failed;
+      result.first_failure = result.first_failure == nullptr ? &done : result.first_failure;
+    }
+    if (done.result.limited_joints > 0) {
+      ++result.limited;
+      if (result.worst_limited == nullptr ||
+          done.result.measures[error] > result.worst_limited->result.measures[error]) {
+        result.worst_limited = &done;
+      }
+    }
+  }
+}
+
+SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
+  optimize::Experiment experiment;  // the workers take their time limit from it
+  experiment.scenario.duration_s = sweep.scenario.duration_s;
+  optimize::LocalWorkers workers(
+      experiment, worker_count,
+      [&sweep](const optimize::Experiment& /*experiment*/, std::span<const optimize::Task> tasks) {
+        return optimize::run_combinations(sweep, tasks);
+      });
+  CountProgress progress("runs", sweep.size());
+  const auto show = [&](std::uint64_t done) {
+    for (const std::string& message : workers.messages()) {
+      progress.erase();
+      print_warning("proleg sweep", message);
+    }
+    progress.show(done);
+  };
+  SweepResult result;
+  const auto start = std::chrono::steady_clock::now();
+  result.runs = optimize::run_sweep(sweep, workers, interrupted, show);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.workers = workers.count();
+  count_runs(result);
+  return result;
+}
+
+void write_results(const Sweep& sweep, sim::Measure measure, const std::filesystem::path& folder, SweepResult& result) {
+  const auto write = [&](const char* name, const std::string& text) {
+    result.files.push_back(folder / name);
+    write_file(result.files.back(), text);
+  };
+  write("sweep.tsv", optimize::sweep_table(sweep, result.runs));
+  write("summary.tsv", optimize::sweep_summary(sweep, result.groups, measure));
+  if (const std::string picture = optimize::draw_sweep(sweep, result.groups, measure); !picture.empty()) {
+    write("sweep.svg", picture);
+  }
+}
+
+/// "amplitude 10, seed 1".
+std::string values_text(const Sweep& sweep, const optimize::Candidate& combination, bool with_seed) {
+  std::string text;
+  for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
+    const SweptQuantity& quantity = sweep.quantities[i];
+    if (with_seed || quantity.kind != SweptQuantity::Kind::seed) {
+      text += (text.empty() ? "" : ", ") + quantity.name + ' ' + quantity.values[combination[i]];
+    }
+  }
+  return text;
+}
+
+std::string description(const Sweep& sweep, const SweepGroup& group) {
+  const std::string text = values_text(sweep, group.combination, false);
+  return text.empty() ? "all runs" : text;
+}
+
+std::string description(const Sweep& sweep, const SweepRun& run) {
+  return values_text(sweep, sweep.combination(run.number), true);
+}
+
+/// "amplitude 10, seed 1: the robot fell".
+std::string first_failure(const Sweep& sweep, const SweepResult& result) {
+  return description(sweep, *result.first_failure) + ": " + one_line(result.first_failure->result.failure);
+}
+
+std::string figure(double value) { return std::isfinite(value) ? number_text(value) : "-"; }
+
+void print_table(const Sweep& sweep, sim::Measure measure, const SweepResult& result) {
+  const sim::MeasureDeclaration& declaration = sim::declaration_of(measure);
+  const std::string unit(declaration.unit);
+  std::printf("%s%s: mean, standard deviation, number of values\n", std::string(declaration.name).c_str(),
+              unit.empty() ? "" : (" (" + unit + ")").c_str());
+  constexpr std::size_t max_lines = 60;
+  for (std::size_t i = 0; i < result.groups.size() && i < max_lines; ++i) {
+    const SweepGroup& group = result.groups[i];
+    std::printf("  %-40s %10s %10s %6zu\n", description(sweep, group).c_str(), figure(group.mean()).c_str(),
+                figure(group.deviation()).c_str(), group.values.size());
+  }
+  if (result.groups.size() > max_lines) {
+    std::printf("  ... and %zu more lines in summary.tsv\n", result.groups.size() - max_lines);
+  }
+  std::printf("%-10s %zu of %llu, %llu of them failed; engine %s, %u workers, %.1f s\n", "runs", result.runs.size(),
+              static_cast<unsigned long long>(sweep.size()), static_cast<unsigned long long>(result.failed),
+              std::string(sim::name_of(sweep.scenario.environment.engine)).c_str(), result.workers, result.wall_s);
+  if (result.failed > 0) {
+    std::printf("%-10s the first at %s\n", "failed", first_failure(sweep, result).c_str());
+  }
+  for (const std::filesystem::path& file : result.files) {
+    std::printf("%-10s %s\n", "written", file.c_str());
+  }
+}
+
+void print_json(const SweepOptions& options, const Sweep& sweep, const std::filesystem::path& folder,
+                const SweepResult& result) {
+  Json groups = Json::empty_array();
+  for (const SweepGroup& group : result.groups) {
+    Json values = Json::empty_object();
+    for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
+      if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {
+        values.add(sweep.quantities[i].name, parse_number(sweep.quantities[i].values[group.combination[i]]));
+      }
+    }
+    groups.append({{"at", values},
+                   {"mean", group.mean()},
+                   {"standard_deviation", group.deviation()},
+                   {"values", group.values.size()}});
+  }
+  const Json object{{"scenario", options.scenario.file},
+                    {"engine", std::string(sim::name_of(sweep.scenario.environment.engine))},
+                    {"measure", options.measure},
+                    {"combinations", sweep.size()},
+                    {"runs", result.runs.size()},
+                    {"failed", result.failed},
+                    {"first_failure", result.failed > 0 ? Json(first_failure(sweep, result)) : Json()},
+                    {"servos_cannot_follow", result.limited},
+                    {"groups", groups},
+                    {"overrides", overrides_object(sweep.scenario.overrides)},
+                    {"workers", result.workers},
+                    {"wall_s", result.wall_s},
+                    {"out", folder.string()},
+                    {"build_id", build_id}};
+  std::cout << object.text() << '\n';
+}
+
+void warn_of_limited_servos(const Sweep& sweep, const SweepResult& result) {
+  if (result.limited > 0) {
+    const optimize::TrialResult& worst = result.worst_limited->result;
+    std::fprintf(
+        stderr,
+        "proleg sweep: warning: the servos cannot follow the gait in %llu of %zu runs; worst at %s: %u of %zu joints, "
+        "angles differ from it by up to %.1f deg\n",
+        static_cast<unsigned long long>(result.limited), result.runs.size(),
+        description(sweep, *result.worst_limited).c_str(), worst.limited_joints, sweep.scenario.robot.joints.size(),
+        worst.measures[sim::Measure::max_tracking_error]);
+  }
+}
+
+/// Why there is no value of the measure.
+std::string why_without_values(const Sweep& sweep, const SweepOptions& options, const SweepResult& result) {
+  const std::string runs = std::to_string(result.runs.size());
+  if (result.failed == result.runs.size()) {
+    return "all " + runs + " runs failed; the first at " + first_failure(sweep, result);
+  }
+  const std::string text = "none of " + runs + " runs defines " + options.measure;
+  return result.failed == 0
+             ? text
+             : text + "; " + std::to_string(result.failed) + " failed, the first at " + first_failure(sweep, result);
+}
+
+int sweep(const SweepOptions& options) {
+  const sim::Measure measure = read_measure(options.measure);
+  ScenarioRun setup = prepare_run(options.scenario);
+  const Sweep sweep = optimize::read_sweep(std::move(setup.scenario), options.over, options.scenario.settings);
+  const std::uint32_t worker_count = parse_workers(options.workers);
+  const std::filesystem::path folder = result_folder(options);
+  static_cast<void>(sim::Simulation(sweep.scenario));  // an engine that does not have the world refuses it now
+  catch_interrupts();
+  create_result_folder(folder);
+  print_warnings("proleg sweep", sweep.scenario);
+  warn_of_equal_runs(sweep);
+  SweepResult result = run(sweep, worker_count);
+  result.groups = optimize::group_runs(sweep, result.runs, measure);
+  write_results(sweep, measure, folder, result);
+  const bool has_result = has_values(result) || result.runs.empty();
+  if (!has_result) {
+    std::cerr << "proleg sweep: " << why_without_values(sweep, options, result) << '\n';
+  } else if (options.json) {
+    print_json(options, sweep, folder, result);
+  } else {
+    print_table(sweep, measure, result);
+  }
+  warn_of_limited_servos(sweep, result);
+  if (interrupted()) {
+    std::cerr << "proleg sweep: interrupted after " << result.runs.size() << " of " << sweep.size()
+              << " runs; they are in " << (folder / "sweep.tsv").string() << '\n';
+    return exit_failed;
+  }
+  return has_result ? exit_success : exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line("proleg sweep",
+                           "Runs a scenario with all combinations of some values, several runs at a time. Writes "
+                           "sweep.tsv (all measures of every run),\nsummary.tsv (mean and standard deviation over the "
+                           "seeds) and sweep.svg (if one or two quantities vary besides the seed).");
+  SweepOptions options;
+  add_start_options(command_line, options.scenario);
+  command_line
+      .add_option("--over", options.over,
+                  "NAME=FIRST:LAST:STEP (step 1 if it is omitted): the values of a parameter, named as in --set, or "
+                  "of seed, friction or heading as in the options, or of x or y of the start position. Several --over "
+                  "give all combinations, at most 100000.")
+      .required();
+  command_line.add_option("--measure", options.measure, "measure of summary and picture (docs/gait-measures.md)")
+      .value_name("NAME")
+      .shows_default();
+  command_line.add_option("--workers", options.workers,
+                          "number of simulations at the same time; default: number of processors");
+  command_line.add_option("--out", options.out,
+                          "folder for tables and picture; default: the name of FILE up to its first dot, and _sweep");
+  command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
+  return command_line.run(argc, argv, [&] { return sweep(options); });
+}

@@ -1,0 +1,263 @@
+// proleg ui: a page in the browser that shows and drives a simulated robot, and shows recordings.
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "host/remote/binding_file.hpp"
+#include "host/server/session_requests.hpp"
+#include "host/server/web_server.hpp"
+#include "host/transport/bus_address.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/record/recording_file.hpp"
+#include "sim/scenario/robot_move.hpp"
+#include "tools/proleg/common/build_id.hpp"
+#include "tools/proleg/common/built_page.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/document/robot_document.hpp"
+#include "tools/proleg/new/robot_files.hpp"
+#include "tools/proleg/robot/bus_access.hpp"
+#include "tools/proleg/run/simulate_command.hpp"
+#include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/lan_access.hpp"
+#include "tools/proleg/ui/recorded_session.hpp"
+#include "tools/proleg/ui/remote_session.hpp"
+#include "tools/proleg/ui/session_router.hpp"
+#include "tools/proleg/ui/simulated_session.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+
+constexpr const char* recording_extension = ".proleg";
+
+struct UiOptions {
+  ScenarioOptions scenario;
+  BusOptions bus;
+  LanOptions lan;
+  std::string port = "0";
+  std::string recordings = ".";
+  std::optional<std::string> page;
+  bool no_browser = false;
+  bool paused = false;
+};
+
+/// The files of a robot with five joints, for those who give none.
+class NewRobot final : public sim::FileSource {
+ public:
+  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+    for (const NewFile& file : files_) {
+      if (path.lexically_normal() == std::filesystem::path(file.name)) {
+        return file.text;
+      }
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] const std::string& name() const { return files_.front().name; }
+
+ private:
+  std::vector<NewFile> files_ = robot_files(robot_kinds().front(), "ppppp");
+};
+
+/// The scenario; for a simulation as its files have it, because the session applies the settings.
+ScenarioRun prepare(ScenarioOptions& options, bool is_simulated) {
+  NewRobot new_robot;
+  const bool has_file = !options.file.empty();
+  if (!has_file) {
+    options.file = new_robot.name();
+  }
+  ScenarioOptions as_file = options;
+  if (is_simulated) {
+    as_file.settings.clear();
+  }
+  as_file.moves.clear();
+  ScenarioRun run = has_file ? prepare_run(as_file) : prepare_run(as_file, new_robot);
+  for (const std::string& move : options.moves) {
+    sim::add_move(run.scenario, move);  // also after the duration in the file: the run has no end
+  }
+  return run;
+}
+
+/// The command that simulates the same scenario.
+std::string command_of(const UiOptions& options, bool has_file) {
+  const ScenarioOptions& scenario = options.scenario;
+  const std::string file = has_file ? scenario.file : "robot/" + scenario.file;
+  return (has_file ? "" : "proleg new robot --joints 5 && ") +
+         simulate_command(file, scenario.overrides, scenario.settings, scenario.moves);
+}
+
+std::uint16_t parse_port(const std::string& word) {
+  const std::optional<std::uint16_t> port = parse_whole<std::uint16_t>(word);
+  if (!port) {
+    throw InputError("--port", 0, in_quotes(word), "0 to 65535; 0: any free one");
+  }
+  return *port;
+}
+
+void require_folder(const std::string& folder) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError("--recordings", 0, in_quotes(folder), "a folder");
+  }
+}
+
+/// The bindings of gamepads that were saved for the scenario. Throws InputError if the robot has no such parameters.
+host::BindingStore bindings_beside(const UiOptions& options, bool has_file, const sim::Scenario& scenario) {
+  if (!has_file) {
+    return {};
+  }
+  const std::filesystem::path path = host::binding_file_of(options.scenario.file);
+  host::BindingStore store(path);
+  ParameterWords words;
+  words.set_robot(robot_document(scenario, "simulation"));
+  words.set_parameters(parameters_document(scenario, ParameterTable(scenario, scenario)));
+  std::size_t number = 0;
+  for (const host::Binding& binding : store.read_bindings()) {
+    check_binding(binding, words, path.string() + ": binding " + std::to_string(++number));
+  }
+  return store;
+}
+
+/// What the page shows besides the robot that FILE describes; FILE may also be a recording or a folder.
+RecordedSessionOptions recordings_of(const UiOptions& options) {
+  const std::filesystem::path file(options.scenario.file);
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    return {file, std::nullopt, true};
+  }
+  if (sim::is_recording(file)) {
+    if (file.extension() != recording_extension) {
+      throw InputError(file.string(), 0, "a recording with another name", "a name that ends in .proleg");
+    }
+    return {file.has_parent_path() ? file.parent_path() : ".", file.filename().string(), true};
+  }
+  if (file.extension() == recording_extension) {
+    throw InputError(file.string(), 0, std::filesystem::exists(file, error) ? "no recording" : "no file",
+                     "a recording, as the option --record makes it");
+  }
+  require_folder(options.recordings);
+  return {options.recordings, std::nullopt, false};
+}
+
+/// Options of a robot have no effect without one.
+void refuse_robot_options(const UiOptions& options) {
+  const ScenarioOptions& scenario = options.scenario;
+  const sim::OverrideWords& overrides = scenario.overrides;
+  const bool has_override = std::ranges::any_of(
+      sim::override_declarations(), [&](const auto& declaration) { return (overrides.*declaration.word).has_value(); });
+  if (options.paused || options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || has_override) {
+    throw BadInput("found an option of a robot with " + scenario.file + ", expected a scenario");
+  }
+}
+
+int serve(UiOptions& options) {
+  const bool has_file = !options.scenario.file.empty();
+  const std::uint16_t port = parse_port(options.port);
+  const RecordedSessionOptions recordings = recordings_of(options);
+  std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
+  std::optional<ScenarioRun> run;
+  if (recordings.is_alone) {
+    refuse_robot_options(options);
+  } else {
+    run = prepare(options.scenario, !options.bus.bus);
+    print_warnings("proleg ui", run->scenario);
+  }
+  const std::filesystem::path page_folder =
+      options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
+  const host::AccessToken token = host::AccessToken::make();
+  host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
+  server.certificate = std::move(certificate);
+  for (const std::vector<std::string>& operations :
+       {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
+        RecordedSession::free_operations(), RemoteSession::free_operations()}) {
+    server.free_operations.insert(operations.begin(), operations.end());
+  }
+  std::optional<BusAccess> bus;
+  if (options.bus.bus) {
+    refuse_world_options(options.scenario, {{"--paused", options.paused}, {"--move", !options.scenario.moves.empty()}});
+    bus.emplace(options.bus);
+  }
+  catch_interrupts();
+  boost::asio::io_context context{1};
+  host::SessionRequests recording_requests;
+  host::SessionRequests requests;
+  RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
+                       RemoteSession::kernel_devices);
+  SessionRouter router(recording_requests, remote);
+  host::WebServer page(context, std::move(server), router);
+  const RecordedSession recorded(recordings, recording_requests, page);
+  const RemoteThread remote_thread(remote, page);
+  std::optional<SimulatedSession> simulated;
+  std::optional<BusSession> driven;
+  if (bus) {
+    driven.emplace(run->scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id},
+                   requests, remote);
+  } else {
+    std::unique_ptr<LiveSimulation> live;
+    if (run) {
+      live = std::make_unique<LiveSimulation>(run->scenario, options.scenario.settings, &run->losses);
+    }
+    simulated.emplace(std::move(live),
+                      SimulatedSessionOptions{recordings.folder, run ? command_of(options, has_file) : std::string(),
+                                              has_file, build_id, options.paused},
+                      requests, remote);
+  }
+  const PageAddress address(page.origin(), page.port(), token.text());
+  std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
+            << std::flush;
+  if (!options.no_browser && !address.open()) {
+    std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
+  }
+  constexpr std::chrono::milliseconds signal_period{100};
+  while (!interrupted()) {
+    context.restart();
+    context.run_for(signal_period);
+  }
+  page.stop();
+  constexpr std::chrono::seconds goodbye{2};
+  context.restart();
+  context.run_for(goodbye);
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line(
+      "proleg ui",
+      "Serves a page on this computer that shows a simulated robot, drives it and changes its parameters while it "
+      "moves, and opens it in the browser. With a recording or a folder it shows recordings, also those that still "
+      "grow. "
+      "Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
+  UiOptions options;
+  command_line.add_option("FILE", options.scenario.file,
+                          "scenario, a *.simulation.xml file; or a recording, or a folder with recordings");
+  add_override_options(command_line, options.scenario);
+  add_move_option(command_line, options.scenario);
+  command_line
+      .add_option("--bus", options.bus.bus,
+                  "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
+      .value_name("BUS");
+  command_line.add_option("--port", options.port, "TCP port; 0: any free one").shows_default();
+  add_lan_options(command_line, options.lan);
+  command_line.add_option("--recordings", options.recordings, "folder for recordings")
+      .value_name("FOLDER")
+      .shows_default();
+  command_line.add_option("--page", options.page, "another page, a folder with index.html").value_name("FOLDER");
+  command_line.add_flag("--no-browser", options.no_browser, "only print the address");
+  command_line.add_flag("--paused", options.paused, "begin at tick 0, paused");
+  command_line.add_algorithms_option();
+  return command_line.run(argc, argv, [&] { return serve(options); });
+}

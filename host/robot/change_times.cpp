@@ -3,7 +3,7 @@
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/sdo_frame.hpp"
-#include "shared/master/change_plan.hpp"
+#include "shared/computer/master/change_plan.hpp"
 
 namespace proleg::host {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "host/robot/bus_user.hpp"
 #include "host/robot/sdo_queue.hpp"
-#include "shared/master/master.hpp"
+#include "shared/computer/master/master.hpp"
 
 namespace proleg::host {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "shared/master/lss_master.hpp"
-#include "shared/master/lss_renumbering.hpp"
+#include "shared/computer/master/lss_master.hpp"
+#include "shared/computer/master/lss_renumbering.hpp"
 
 namespace proleg::host {
 

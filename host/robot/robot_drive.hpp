@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/robot/bus_user.hpp"
-#include "shared/master/master.hpp"
+#include "shared/computer/master/master.hpp"
 
 namespace proleg::host {
 

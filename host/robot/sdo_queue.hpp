@@ -13,7 +13,7 @@
 
 #include "host/robot/bus_user.hpp"
 #include "shared/canopen/messages.hpp"
-#include "shared/master/sdo_transfer.hpp"
+#include "shared/computer/master/sdo_transfer.hpp"
 
 namespace proleg::host {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/computer/master/master.hpp"
 #include "shared/fixed/crc32.hpp"
-#include "shared/master/master.hpp"
 
 namespace proleg::host {
 

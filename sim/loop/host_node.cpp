@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "shared/computer/master_text/master_text.hpp"
+#include "shared/computer/master/master_text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::sim {

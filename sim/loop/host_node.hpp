@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/master/master.hpp"
+#include "shared/computer/master/master.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/crystal.hpp"
 #include "sim/scenario/master_input.hpp"

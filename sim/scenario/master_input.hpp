@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/master/master.hpp"
+#include "shared/computer/master/master.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {

@@ -8,9 +8,9 @@
 
 #include "firmware/bootloader/program_objects.hpp"
 #include "shared/broadcast/image_sender.hpp"
+#include "shared/computer/master/lss_master.hpp"
+#include "shared/computer/master/sdo_transfer.hpp"
 #include "shared/fixed/crc32.hpp"
-#include "shared/master/lss_master.hpp"
-#include "shared/master/sdo_transfer.hpp"
 #include "sim/bus/bus.hpp"
 #include "updated_module.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "host/robot/machine_user.hpp"
 #include "live_bus.hpp"
-#include "shared/master/lss_master.hpp"
-#include "shared/master/lss_renumbering.hpp"
+#include "shared/computer/master/lss_master.hpp"
+#include "shared/computer/master/lss_renumbering.hpp"
 #include "shipped.hpp"
 
 namespace proleg::test {

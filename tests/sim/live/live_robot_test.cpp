@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "gateway_bench.hpp"
+#include "shared/computer/master/master.hpp"
 #include "shared/kernel/fingerprint.hpp"
-#include "shared/master/master.hpp"
 #include "shipped.hpp"
 #include "sim/fault/fault_reader.hpp"
 #include "sim/loop/simulation.hpp"

@@ -15,10 +15,10 @@
 
 #include "shared/canopen/lss_frame.hpp"
 #include "shared/canopen/sdo_frame.hpp"
+#include "shared/computer/master/lss_master.hpp"
+#include "shared/computer/master/sdo_transfer.hpp"
 #include "shared/gait/registry.hpp"
 #include "shared/kernel/fingerprint.hpp"
-#include "shared/master/lss_master.hpp"
-#include "shared/master/sdo_transfer.hpp"
 #include "shipped.hpp"
 #include "sim/bus/candump_log.hpp"
 #include "sim/loop/host_node.hpp"

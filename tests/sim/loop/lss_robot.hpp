@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "shared/master/lss_master.hpp"
+#include "shared/computer/master/lss_master.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/joint_module.hpp"
 

@@ -17,7 +17,7 @@ DETERMINE_A_RESULT = [
     "sim/mujoco", "sim/ode", "sim/reduced", "sim/measure", "sim/loop", "sim/optimize/experiment", "sim/optimize/evaluation",
     "sim/optimize/method"]
 OTHERS = [
-    "docs", "firmware/module", "shared/canopen", "shared/master", "sim/bus", "sim/mcu/cpu", "sim/optimize/mpi",
+    "docs", "firmware/module", "shared/canopen", "shared/computer/master", "sim/bus", "sim/mcu/cpu", "sim/optimize/mpi",
     "sim/optimize/report", "sim/record", "sim/scenarios/travelling_wave", "tests/sim/ode", "tools/proleg"]
 
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "shared/computer/master_text/master_text.hpp"
+#include "shared/computer/master/master_text.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {

@@ -7,7 +7,7 @@
 #include "host/robot/session_token.hpp"
 #include "host/robot/state_text.hpp"
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/master_text/master_text.hpp"
+#include "shared/computer/master/master_text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::tools {

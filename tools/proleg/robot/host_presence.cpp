@@ -1,7 +1,7 @@
 #include "tools/proleg/robot/host_presence.hpp"
 
 #include "shared/canopen/messages.hpp"
-#include "shared/master/master.hpp"
+#include "shared/computer/master/master.hpp"
 
 namespace proleg::tools {
 

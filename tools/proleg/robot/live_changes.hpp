@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/master/change_plan.hpp"
+#include "shared/computer/master/change_plan.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {

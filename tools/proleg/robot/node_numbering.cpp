@@ -6,7 +6,7 @@
 
 #include "host/robot/machine_user.hpp"
 #include "host/robot/node_plan.hpp"
-#include "shared/computer/master_text/master_text.hpp"
+#include "shared/computer/master/master_text.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {

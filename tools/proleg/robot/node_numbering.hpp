@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "shared/master/lss_renumbering.hpp"
+#include "shared/computer/master/lss_renumbering.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
 namespace proleg::tools {

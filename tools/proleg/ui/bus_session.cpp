@@ -10,8 +10,8 @@
 
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/master/controlwords.hpp"
 #include "shared/computer/text/text.hpp"
-#include "shared/master/controlwords.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/bus_document.hpp"
 #include "tools/proleg/ui/operation.hpp"

@@ -7,9 +7,9 @@
 
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
+#include "shared/computer/master/controlwords.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/servo_command.hpp"
-#include "shared/master/controlwords.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "firmware/module/module.hpp"
 #include "shared/broadcast/transfer_frame.hpp"
+#include "shared/computer/master/setup_list.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"
-#include "shared/master/setup_list.hpp"
 #include "tests/support/fuzz_input.hpp"
 
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "module_node.hpp"
-#include "shared/master/sdo_client.hpp"
-#include "shared/master/sdo_transfer.hpp"
+#include "shared/computer/master/sdo_client.hpp"
+#include "shared/computer/master/sdo_transfer.hpp"
 
 namespace proleg::test {
 

@@ -3,7 +3,7 @@
 // A robot of modules on a bus, driven the way a host drives it.
 
 #include "robot.hpp"
-#include "shared/master/setup_list.hpp"
+#include "shared/computer/master/setup_list.hpp"
 #include "test_bus.hpp"
 
 namespace proleg::test {

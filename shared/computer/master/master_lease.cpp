@@ -1,0 +1,103 @@
+#include <algorithm>
+
+#include "shared/canopen/objects.hpp"
+#include "shared/computer/master/master.hpp"
+
+// The lease of the robot: of two hosts exactly one gets it (docs/protocol.md, The lease).
+
+namespace proleg::canopen {
+
+/// A module that is not there costs this many answers' time.
+constexpr unsigned lease_attempts = 2;
+
+std::optional<SdoStep> Master::lease_step(std::size_t position) const {
+  const Object& token = object::session_token;
+  switch (position + (only_reads_lease_ ? 1U : 0U)) {
+    case 0:
+      return SdoStep{true, token.address, size_of(token.type), options_.session_token};
+    case 1:
+      // The answer to a write may be that to the write of another host, which has the same identifier.
+      return SdoStep{false, token.address};
+    default:
+      return std::nullopt;
+  }
+}
+
+void Master::begin_lease() {
+  if (options_.session_token == 0) {
+    enter(Phase::reset);
+    return;
+  }
+  lease_node_ = 0;
+  lease_ends_ = now_ + lease_timeout_us - listening_time_us;
+  take_next_lease();
+}
+
+/// In ascending order of the node ids: of two hosts, one at most is refused by a module that the other has taken.
+void Master::take_next_lease() {
+  const unsigned attempts = has_missing_lease_ ? 1 : lease_attempts;
+  sdo_clients_.set_attempts(std::min(options_.attempts, attempts));
+  while (lease_node_ < max_node_id) {
+    if (joint_of_[++lease_node_] != no_joint) {
+      only_reads_lease_ = false;
+      enter(Phase::take_lease);
+      return;
+    }
+  }
+  sdo_clients_.set_attempts(options_.attempts);
+  only_reads_lease_ = false;
+  heartbeat_at_ = std::min(heartbeat_at_, now_);
+  enter(Phase::reset);
+}
+
+/// holder: the token that the module has. Always false: the list ends.
+bool Master::on_lease(unsigned joint, std::uint32_t holder) {
+  if (holder != options_.session_token) {
+    refuse_lease(joint);
+  } else if (phase_ == Phase::take_lease && !has_lease_) {
+    has_lease_ = true;
+    heartbeat_at_ = now_;  // it keeps the lease
+  }
+  return false;
+}
+
+void Master::on_lease_abort(unsigned joint, Address address, AbortCode code) {
+  if (code == AbortCode::no_such_object) {
+    return;  // its program is older
+  }
+  if (code == AbortCode::refused_by_state && phase_ == Phase::take_lease && now_ < lease_ends_) {
+    // It may be the answer to another host's request: the lease may be this host's. The value decides.
+    is_lease_refused_ = true;
+    only_reads_lease_ = true;
+    deadline_ = now_;
+  } else if (code == AbortCode::refused_by_state) {
+    refuse_lease(joint);
+  } else if (phase_ == Phase::take_lease) {
+    has_missing_lease_ = true;  // if it is not there, that will be found after the reset
+  } else {
+    Problem problem = problem_of(code == AbortCode::timeout ? ProblemCode::no_answer : ProblemCode::refused, joint);
+    problem.address = address;
+    problem.abort_code = code;
+    static_cast<void>(joint_failed(problem));
+  }
+}
+
+/// The module has given its lease to another host. That host may be dead: then its lease ends soon.
+void Master::refuse_lease(unsigned joint) {
+  if (phase_ == Phase::keep_lease) {
+    static_cast<void>(joint_failed(problem_of(ProblemCode::lease_refused, joint)));
+  } else if (now_ < lease_ends_) {
+    is_lease_refused_ = true;
+    only_reads_lease_ = false;
+    deadline_ = now_ + lease_pause_us;
+  } else {
+    fail_without_lease(joint);
+  }
+}
+
+void Master::fail_without_lease(unsigned joint) {
+  fail(problem_of(ProblemCode::lease_refused, joint));
+  heartbeat_at_ = never;
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,106 @@
+#include "shared/computer/master/master_report.hpp"
+
+namespace proleg::canopen {
+
+std::string_view describe(ProblemCode code) {
+  switch (code) {
+    case ProblemCode::none:
+      return "no problem";
+    case ProblemCode::bus_too_small:
+      return "the state frames may fill the bus";
+    case ProblemCode::bad_setup:
+      return "the set-up needs one node and one pair of limits for each joint";
+    case ProblemCode::bad_change:
+      return "a change is not possible";
+    case ProblemCode::missing_module:
+      return "a module is missing";
+    case ProblemCode::duplicate_node:
+      return "two modules have one node id, or a module has restarted";
+    case ProblemCode::unexpected_node:
+      return "the node does not belong to the robot";
+    case ProblemCode::other_host:
+      return "another host uses the bus";
+    case ProblemCode::lease_refused:
+      return "another host drives this robot";
+    case ProblemCode::wrong_serial:
+      return "wrong serial number";
+    case ProblemCode::wrong_protocol:
+      return "wrong version of the protocol";
+    case ProblemCode::wrong_fingerprint:
+      return "wrong core fingerprint";
+    case ProblemCode::missing_algorithm:
+      return "the program of the module lacks an algorithm";
+    case ProblemCode::refused:
+      return "a module refuses its set-up";
+    case ProblemCode::no_answer:
+      return "a module does not answer";
+    case ProblemCode::wrong_configuration:
+      return "a module has the wrong configuration";
+    case ProblemCode::not_enabled:
+      return "a servo does not get power";
+    case ProblemCode::not_ramped_in:
+      return "a joint does not reach the angle at which the gait starts";
+    case ProblemCode::not_operational:
+      return "a module does not become operational";
+    case ProblemCode::commit_too_late:
+      return "a change came too late for its tick";
+    case ProblemCode::change_refused:
+      return "a module refuses a change";
+    case ProblemCode::sync_lost:
+      return "SYNC is lost";
+    case ProblemCode::cannot_send:
+      return "the master cannot send on the bus";
+  }
+  return "unknown problem";
+}
+
+std::string_view describe(EventKind kind) {
+  switch (kind) {
+    case EventKind::emergency:
+      return "emergency message";
+    case EventKind::restarted:
+      return "module has restarted";
+    case EventKind::rejoined:
+      return "module is set up again";
+    case EventKind::rejoin_failed:
+      return "module could not be set up again";
+    case EventKind::silent:
+      return "module is silent";
+    case EventKind::heartbeat_returned:
+      return "heartbeat of the module is back";
+    case EventKind::not_reached:
+      return "module did not answer while a change was staged";
+    case EventKind::left_operational:
+      return "module is no longer operational";
+    case EventKind::unexpected_node:
+      return "node does not belong to the robot";
+    case EventKind::change_dropped:
+      return "change was dropped";
+    case EventKind::not_stopped:
+      return "module did not confirm that its servo has no power";
+    case EventKind::other_host:
+      return "another host uses the bus";
+  }
+  return "unknown event";
+}
+
+void EventLog::add(const Event& event) {
+  if (size_ == capacity) {
+    ++overflow_;
+    return;
+  }
+  events_[(first_ + size_) % capacity] = event;
+  ++size_;
+}
+
+std::optional<Event> EventLog::take() {
+  if (size_ == 0) {
+    return std::nullopt;
+  }
+  const Event event = events_[first_];
+  first_ = (first_ + 1) % capacity;
+  --size_;
+  return event;
+}
+
+}  // namespace proleg::canopen

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -17,11 +21,50 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/shell_words.hpp"
 #include "tools/proleg/common/source_tree.hpp"
-#include "tools/proleg/new/algorithm_files.hpp"
+#include "tools/proleg/new/algorithm_texts.hpp"
 #include "tools/proleg/new/new_files.hpp"
+#include "tools/proleg/new/robot_files.hpp"
 
 namespace proleg::tools {
 namespace {
+
+/// Where the algorithm is and which checkout it is for, for the commands in README.md. id: of the algorithm.
+struct AlgorithmPlace {
+  std::string name;
+  std::uint8_t id;
+  std::string folder;
+  std::string source_tree;
+};
+
+std::string filled(std::string_view text, const AlgorithmPlace& place) {
+  std::string result(text);
+  const auto replace = [&result](std::string_view key, const std::string& value) {
+    for (std::size_t at = result.find(key); at != std::string::npos; at = result.find(key, at + value.size())) {
+      result.replace(at, key.size(), value);
+    }
+  };
+  replace("@NAME@", place.name);
+  replace("@ID@", std::to_string(place.id));
+  replace("@SOURCE@", place.source_tree);
+  replace("@FOLDER@", place.folder);
+  return result;
+}
+
+/// One source with a small algorithm that moves a robot, its test, CMakeLists.txt, README.md, and in robot/ the files
+/// of a robot of five joints that it moves.
+std::vector<NewFile> algorithm_files(const AlgorithmPlace& place) {
+  std::vector<NewFile> files{{"README.md", filled(algorithm_readme_text(), place)},
+                             {place.name + ".cpp", filled(algorithm_source_text(), place)},
+                             {place.name + "_test.cpp", filled(algorithm_test_text(), place)},
+                             {"CMakeLists.txt", filled(algorithm_cmake_text(), place)}};
+  for (NewFile& file : robot_files(robot_kinds().front(), "ppppp")) {
+    if (file.name == "robot.actuation.xml") {
+      file.text = filled(algorithm_actuation_text(), place);
+    }
+    files.push_back({"robot/" + file.name, std::move(file.text)});
+  }
+  return files;
+}
 
 struct AlgorithmOptions {
   std::string name;

@@ -1,20 +1,68 @@
 #include "tools/proleg/run/html_file.hpp"
 
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
+#include <string>
 #include <vector>
 
+#include "shared/computer/deflate/deflate.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/document/recording_document.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/document/telemetry_row.hpp"
-#include "tools/proleg/run/column_block.hpp"
 
 namespace proleg::tools {
 namespace {
 
 using nlohmann::json;
+
+/// Some ticks of a recording in the form of the player (docs/page-interface.md, The file of a recording): columns of
+/// differences, which compress well.
+class ColumnBlock {
+ public:
+  static constexpr std::size_t max_rows = 4096;
+
+  explicit ColumnBlock(std::size_t columns) : columns_(columns) {}
+
+  /// Only if the block is not full.
+  void add(std::span<const std::int32_t> row);
+  [[nodiscard]] bool is_empty() const { return rows_ == 0; }
+  [[nodiscard]] bool is_full() const { return rows_ == max_rows; }
+  /// The rows as text, in base64. The block is empty then.
+  [[nodiscard]] std::string take();
+
+ private:
+  std::size_t columns_;
+  std::size_t rows_ = 0;
+  std::vector<std::int32_t> values_;  ///< row by row
+};
+
+void ColumnBlock::add(std::span<const std::int32_t> row) {
+  values_.insert(values_.end(), row.begin(), row.end());
+  ++rows_;
+}
+
+std::string ColumnBlock::take() {
+  std::string bytes;
+  bytes.reserve(values_.size() * sizeof(std::int32_t));
+  for (std::size_t column = 0; column < columns_; ++column) {
+    std::uint32_t before = 0;
+    for (std::size_t row = 0; row < rows_; ++row) {
+      const auto value = static_cast<std::uint32_t>(values_[row * columns_ + column]);
+      const std::uint32_t difference = value - before;
+      before = value;
+      for (unsigned shift = 0; shift < 32; shift += 8) {
+        bytes += static_cast<char>(difference >> shift & 0xFFU);
+      }
+    }
+  }
+  rows_ = 0;
+  values_.clear();
+  return base64(deflate(bytes));
+}
 
 constexpr std::string_view place_mark = "<!-- the recording -->";
 

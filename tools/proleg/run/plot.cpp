@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,11 +26,56 @@
 #include "sim/record/tsv.hpp"
 #include "tools/proleg/common/beside_recording.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/run/png_file.hpp"
+#include "tools/proleg/common/program_run.hpp"
 
 using namespace proleg;
+using namespace proleg::tools;
 
 namespace {
+
+/// A folder that is removed at the end.
+class WorkFolder {
+ public:
+  WorkFolder() : path_((std::filesystem::temp_directory_path() / "proleg-png-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw std::runtime_error("cannot create a folder in " + std::filesystem::temp_directory_path().string());
+    }
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// An SVG picture as PNG, two pixels for each of its own, made by librsvg's rsvg-convert if it is installed. Throws
+/// BadInput that names the Debian package if it is not, and std::runtime_error if it fails.
+std::string png_of(const std::string& svg) {
+  const WorkFolder folder;
+  write_file(folder.path() + "/picture.svg", svg);
+  const ProgramResult result = run_program(
+      {"rsvg-convert", "--format", "png", "--zoom", "2", "--output", "picture.png", "picture.svg"}, folder.path());
+  if (!result.was_found) {
+    throw BadInput(
+        "--png: found no program rsvg-convert, expected it in PATH (on Debian: apt install librsvg2-bin); without "
+        "--png "
+        "the picture is SVG");
+  }
+  std::ifstream file(folder.path() + "/picture.png", std::ios::binary);
+  std::ostringstream png;
+  png << file.rdbuf();
+  if (result.status != 0 || png.str().empty()) {
+    throw std::runtime_error("rsvg-convert ended with status " + std::to_string(result.status) +
+                             " and made no picture");
+  }
+  return png.str();
+}
 
 struct Options {
   std::string recording;
@@ -73,7 +122,7 @@ std::filesystem::path picture_of(const Options& options, bool is_data_file) {
     return options.out;
   }
   return is_data_file ? std::filesystem::path(options.recording).replace_extension(extension)
-                      : tools::beside_recording(options.recording, extension);
+                      : beside_recording(options.recording, extension);
 }
 
 std::vector<std::string> names_in(const std::string& list) {
@@ -138,7 +187,7 @@ Drawing draw_recording(const Options& options) {
   return {std::move(svg), sim::remark_on_unfinished_run(recording)};
 }
 
-int plot(const tools::CommandLine& command_line, const Options& options) {
+int plot(const CommandLine& command_line, const Options& options) {
   require_finite("--from", options.window.from_s);
   require_finite("--to", options.window.to_s);
   const bool is_data_file = sim::is_xml_file(options.recording);
@@ -154,9 +203,9 @@ int plot(const tools::CommandLine& command_line, const Options& options) {
   if (!to_standard_output) {
     check_outputs(outputs);
   }
-  const std::string bytes = options.png ? tools::png_of(drawing.svg) : drawing.svg;
+  const std::string bytes = options.png ? png_of(drawing.svg) : drawing.svg;
   if (!drawing.remark.empty()) {
-    tools::print_warning(command_line.name(), drawing.remark);
+    print_warning(command_line.name(), drawing.remark);
   }
   if (!to_standard_output) {
     write_file(picture, bytes);
@@ -168,13 +217,13 @@ int plot(const tools::CommandLine& command_line, const Options& options) {
   } catch (const ReaderGone&) {
     // The program at the other end of the pipe needed no more of the picture, or not its name.
   }
-  return tools::exit_success;
+  return exit_success;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::CommandLine command_line(
+  CommandLine command_line(
       "proleg plot",
       "Draws a recording of 'proleg simulate --record' as an SVG picture: the robot in a stride, the joint angles and\n"
       "the contacts over time, and the path of the robot over the whole run, from above. With --series it draws "

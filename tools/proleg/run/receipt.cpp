@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -13,18 +15,143 @@
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/reduced_world.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/run_progress.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/run/receipt_text.hpp"
 
 namespace {
 
 using namespace proleg;
 using namespace proleg::tools;
+
+/// What repeats a run, and what it gave: one line that another machine can verify.
+///
+///   proleg-receipt:1 scenario=9f86... core=1a2b3c4d engine=reduced-1 seconds=30 seed=7 set=amplitude=41
+///   distance=1.6408 world=0f81...
+struct Receipt {
+  std::string scenario;               ///< SHA-256 of the texts of its files
+  std::string core;                   ///< fingerprint of the algorithms
+  std::string engine;                 ///< with its version
+  std::string seconds;                ///< as --seconds
+  sim::OverrideWords overrides;       ///< as the options; no engine
+  std::vector<std::string> settings;  ///< as --set, in their order
+  std::string measure;                ///< its name
+  std::string value;                  ///< of the measure
+  std::string world;                  ///< hash of the states of the world
+
+  bool operator==(const Receipt&) const = default;
+};
+
+constexpr std::string_view first_word = "proleg-receipt:1";
+
+struct Word {
+  std::string_view name;
+  std::string Receipt::*text;
+};
+constexpr Word required_words[] = {{"scenario", &Receipt::scenario},
+                                   {"core", &Receipt::core},
+                                   {"engine", &Receipt::engine},
+                                   {"seconds", &Receipt::seconds},
+                                   {"world", &Receipt::world}};
+
+[[noreturn]] void refuse(const std::string& found, const std::string& expected) {
+  throw InputError("the receipt", 0, found, expected);
+}
+
+void take(std::string& place, std::string_view name, std::string_view text) {
+  if (!place.empty()) {
+    refuse("two words for " + in_quotes(name), "one");
+  }
+  place = text;
+}
+
+const sim::OverrideDeclaration* find_override(std::string_view name) {
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    if (declaration.name == name && name != "engine") {
+      return &declaration;
+    }
+  }
+  return nullptr;
+}
+
+void read_word(std::string_view word, Receipt& receipt) {
+  const std::size_t equals = word.find('=');
+  const std::string_view name = word.substr(0, equals);
+  const std::string_view text = equals == std::string_view::npos ? "" : word.substr(equals + 1);
+  if (text.empty()) {
+    refuse(in_quotes(word), "NAME=TEXT");
+  }
+  for (const Word& required : required_words) {
+    if (required.name == name) {
+      take(receipt.*required.text, name, text);
+      return;
+    }
+  }
+  if (name == "set") {
+    receipt.settings.emplace_back(text);
+  } else if (const sim::OverrideDeclaration* const declaration = find_override(name)) {
+    std::optional<std::string>& place = receipt.overrides.*declaration->word;
+    if (place) {
+      refuse("two words for " + in_quotes(name), "one");
+    }
+    place = text;
+  } else if (sim::find_measure(name)) {
+    take(receipt.measure, "the measure", name);
+    receipt.value = text;
+  } else {
+    refuse(in_quotes(word), "a word of 'proleg receipt': another version may have written it");
+  }
+}
+
+/// Without a line feed. No text may contain white space.
+std::string text_of(const Receipt& receipt) {
+  std::string text(first_word);
+  const auto add = [&](std::string_view name, const std::string& value) {
+    text += ' ' + std::string(name) + '=' + value;
+  };
+  add("scenario", receipt.scenario);
+  add("core", receipt.core);
+  add("engine", receipt.engine);
+  add("seconds", receipt.seconds);
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    if (const std::optional<std::string>& word = receipt.overrides.*declaration.word) {
+      add(declaration.name, *word);
+    }
+  }
+  for (const std::string& setting : receipt.settings) {
+    add("set", setting);
+  }
+  add(receipt.measure, receipt.value);
+  add("world", receipt.world);
+  return text;
+}
+
+/// White space between the words may be any. Throws InputError.
+Receipt read_receipt(std::string_view text) {
+  const std::vector<std::string_view> all = words(text);
+  if (all.empty() || all.front() != first_word) {
+    refuse(all.empty() ? "nothing" : in_quotes(all.front()),
+           in_quotes(first_word) + " and more, as 'proleg receipt FILE' prints it");
+  }
+  Receipt receipt;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    read_word(all[i], receipt);
+  }
+  for (const Word& required : required_words) {
+    if ((receipt.*required.text).empty()) {
+      refuse("no word " + in_quotes(std::string(required.name) + "="), "the whole line");
+    }
+  }
+  if (receipt.measure.empty()) {
+    refuse("no measure", "the whole line");
+  }
+  return receipt;
+}
 
 struct ReceiptOptions : ScenarioOptions {
   std::string measure = "distance";

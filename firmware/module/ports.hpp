@@ -5,11 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "firmware/module/board_record.hpp"
 #include "shared/can/can_port.hpp"
+#include "shared/gait/joint_readings.hpp"
 
 namespace proleg::firmware {
 
@@ -34,15 +34,6 @@ class ContactPort {
 
  protected:
   ~ContactPort() = default;
-};
-
-/// What the sensors of servo and chip measure.
-struct ServoReadings {
-  std::uint16_t current_ma = 0;  ///< of the servo: the mean since the last call
-  /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
-  std::optional<std::int32_t> angle;
-  std::int8_t temperature_c = 0;  ///< of the chip
-  bool are_new = true;            ///< measured since the last call; else they are those of an earlier one
 };
 
 class SensorPort {

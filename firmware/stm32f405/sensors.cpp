@@ -65,7 +65,7 @@ void Sensors::start_sampling() {
   taken_at_ = MicrosecondClock::stamp();
 }
 
-firmware::ServoReadings Sensors::take_readings() {
+ServoReadings Sensors::take_readings() {
   const bool is_current_new = take_current();
   readings_.are_new = take_others() && is_current_new;
   return readings_;

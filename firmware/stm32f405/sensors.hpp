@@ -19,7 +19,7 @@ class Sensors final : public firmware::SensorPort {
   static constexpr std::uint32_t sample_period_us = 239;
 
   void start();
-  [[nodiscard]] firmware::ServoReadings take_readings() override;
+  [[nodiscard]] ServoReadings take_readings() override;
   /// There is no angle without a potentiometer, as before the first call.
   void calibrate(const firmware::BoardRecord& board) override { feedback_ = board; }
 
@@ -33,7 +33,7 @@ class Sensors final : public firmware::SensorPort {
 
   firmware::BoardRecord feedback_;
   TemperatureCalibration temperature_;
-  firmware::ServoReadings readings_;
+  ServoReadings readings_;
   std::array<volatile std::uint16_t, ring_size> ring_{};  ///< DMA writes it
   std::uint32_t taken_ = 0;                               ///< where the next sample will be, as of the last reading
   std::uint32_t taken_at_ = 0;                            ///< MicrosecondClock::stamp() of the last reading

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace proleg {
 
@@ -45,6 +46,15 @@ struct JointReadings {
   }
 
   friend bool operator==(const JointReadings&, const JointReadings&) = default;
+};
+
+/// What the module of a joint reads from its servo and its own chip.
+struct ServoReadings {
+  std::uint16_t current_ma = 0;  ///< of the servo: the mean since the readings before
+  /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
+  std::optional<std::int32_t> angle;
+  std::int8_t temperature_c = 0;  ///< of the chip
+  bool are_new = true;            ///< measured since the readings before; else they are those of an earlier time
 };
 
 }  // namespace proleg

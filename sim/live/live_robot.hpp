@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/loop/hardware_options.hpp"
-#include "sim/loop/module_rack.hpp"
+#include "sim/hardware_loop/hardware_options.hpp"
+#include "sim/hardware_loop/module_rack.hpp"
+#include "sim/hardware_loop/plant_ticks.hpp"
 #include "sim/loop/plant.hpp"
-#include "sim/loop/plant_ticks.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {

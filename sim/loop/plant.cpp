@@ -300,7 +300,7 @@ void Plant::add_contact_noise() {
   }
 }
 
-firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
+ServoReadings Plant::servo_readings(std::size_t joint) const {
   constexpr std::int8_t chip_temperature_c = 25;
   constexpr ServoCurrent model;
   const Servo& servo = servos_[joint];

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/module/ports.hpp"
 #include "shared/fixed/random.hpp"
+#include "shared/gait/joint_readings.hpp"
 #include "sim/loop/module_readings.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/physics/world.hpp"
@@ -80,7 +80,7 @@ class Plant {
 
   /// What the module of a joint measures now: the current that its servo drew in the last step (an estimate,
   /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.
-  [[nodiscard]] firmware::ServoReadings servo_readings(std::size_t joint) const;
+  [[nodiscard]] ServoReadings servo_readings(std::size_t joint) const;
 
   /// What an algorithm on a joint can read of its module now (shared/gait/joint_readings.hpp), with sensors that no
   /// real module has. Those that no algorithm of the scenario reads are absent.

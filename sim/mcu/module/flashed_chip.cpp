@@ -15,7 +15,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/loop/crystal.hpp"
+#include "sim/hardware_loop/crystal.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -103,7 +103,7 @@ class Flashing final : private BusListener {
   static constexpr BusTime question_period = 100 * ms;
 
   [[nodiscard]] ModuleParts parts(const firmware::ModuleIdentity& identity) {
-    const auto readings = [] { return firmware::ServoReadings{}; };
+    const auto readings = [] { return ServoReadings{}; };
     return {bus_, 0, identity, Crystal(), [] { return std::uint8_t{0}; }, readings, readings, false};
   }
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/mcu/chip/stm32f405.hpp"
 #include "sim/mcu/cpu/back_trace.hpp"
 #include "sim/mcu/module/firmware_image.hpp"
@@ -84,7 +84,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   const FirmwareImage& image_;
   VirtualModuleOptions options_;
   std::function<std::uint8_t()> sensors_;
-  std::function<firmware::ServoReadings()> readings_;
+  std::function<ServoReadings()> readings_;
   std::uint16_t state_frame_;  ///< its identifier
   Stm32f405 chip_;
   std::uint64_t start_of_program_ = 0;  ///< Stm32f405::starts() when the program has last sent a frame

@@ -11,7 +11,7 @@ namespace {
 namespace object = canopen::object;
 using canopen::Monitoring;
 
-firmware::ServoReadings example() { return {350, test::degrees(44.9), 31}; }
+ServoReadings example() { return {350, test::degrees(44.9), 31}; }
 
 /// One module, joint 0, on a board with or without a potentiometer.
 class Measuring {

@@ -5,7 +5,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/native_module.hpp"
+#include "sim/hardware_loop/native_module.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg::tools {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/loop/hardware_options.hpp"
+#include "sim/hardware_loop/hardware_options.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {

@@ -13,7 +13,7 @@
 
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "sim/bus/candump_log.hpp"
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/scenario/module_sensors.hpp"
 #include "tools/proleg/common/command_line.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "shared/computer/output/output_check.hpp"
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/mcu/module/flashed_chip.hpp"
 #include "tools/proleg/common/command_line.hpp"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg::tools {
 

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
+#include "tools/proleg/hil/hil_modules.hpp"
+#include "tools/proleg/hil/hil_options.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/hil/hil_modules.hpp"
-#include "tools/proleg/hil/hil_options.hpp"
 
 namespace proleg::tools {
 

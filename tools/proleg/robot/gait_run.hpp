@@ -15,7 +15,7 @@
 #include "host/robot/change_times.hpp"
 #include "host/robot/gait_watch.hpp"
 #include "host/robot/robot_drive.hpp"
-#include "sim/scenario/master_input.hpp"
+#include "sim/hardware_loop/master_input.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/robot/gait_check.hpp"
 #include "tools/proleg/robot/live_changes.hpp"

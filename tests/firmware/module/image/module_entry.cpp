@@ -17,7 +17,7 @@ struct NoPorts final : proleg::CanPort, proleg::firmware::ServoPort, proleg::fir
 };
 
 struct NoSensors final : proleg::firmware::SensorPort {
-  proleg::firmware::ServoReadings take_readings() override { return {}; }
+  proleg::ServoReadings take_readings() override { return {}; }
 };
 
 struct NoFlash final : proleg::firmware::FlashPort {

@@ -16,11 +16,11 @@ namespace proleg::test {
 
 /// The module's sensors, with readings that a test sets.
 struct Meters final : firmware::SensorPort {
-  [[nodiscard]] firmware::ServoReadings take_readings() override {
+  [[nodiscard]] ServoReadings take_readings() override {
     ++count;
     return readings;
   }
-  firmware::ServoReadings readings;
+  ServoReadings readings;
   std::size_t count = 0;  ///< how often they were read
 };
 

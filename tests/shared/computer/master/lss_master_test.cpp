@@ -1,5 +1,5 @@
-// The LSS master against slaves that are written for the test, on the simulated bus. tests/sim/loop has the same with
-// modules.
+// The LSS master against slaves that are written for the test, on the simulated bus. tests/sim/hardware_loop has the
+// same with modules.
 
 #include "shared/computer/master/lss_master.hpp"
 

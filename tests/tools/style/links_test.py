@@ -9,7 +9,7 @@ import unittest
 
 WITHOUT_MODULES = ["confirm", "experiment", "optimise", "receipt", "replay", "simulate", "sweep"]
 ROOMS_OF_MODULES = re.compile(
-    r"CMakeFiles/((?:firmware|host|sim_mcu)_\w+|shared_(?:broadcast|can|canopen|image|master)"
+    r"CMakeFiles/((?:firmware|host|sim_mcu)_\w+|shared_(?:broadcast|can|canopen|image|computer_master)"
     r"|sim_(?:bus|fault|hardware_loop|live|serial))\.dir/")
 
 
@@ -27,7 +27,7 @@ class Links(unittest.TestCase):
                 self.assertEqual(rooms_of_modules_in(program), [])
 
     def test_a_program_with_modules_links_them(self):
-        self.assertLessEqual({"firmware_module", "shared_master", "sim_bus", "sim_hardware_loop"},
+        self.assertLessEqual({"firmware_module", "shared_computer_master", "sim_bus", "sim_hardware_loop"},
                              set(rooms_of_modules_in("hil")))
 
 

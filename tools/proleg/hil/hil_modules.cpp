@@ -13,8 +13,8 @@
 #include "sim/hardware_loop/module_making.hpp"
 #include "sim/hardware_loop/native_program.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/hil/debugger.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/hil/debugger.hpp"
 
 namespace proleg::tools {
 namespace {

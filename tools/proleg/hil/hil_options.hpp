@@ -8,8 +8,8 @@
 
 #include "sim/hardware_loop/hardware_loop.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/hil/hil_modules.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/hil/hil_modules.hpp"
 
 namespace proleg::tools {
 

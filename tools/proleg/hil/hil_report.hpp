@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "sim/hardware_loop/hardware_loop.hpp"
-#include "tools/proleg/hil/hil_modules.hpp"
-#include "tools/proleg/hil/hil_options.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/hil/hil_modules.hpp"
+#include "tools/proleg/hil/hil_options.hpp"
 
 namespace proleg::tools {
 

@@ -9,11 +9,9 @@
 
 namespace proleg::host {
 
-class SocketServer;
-
 /// The WebSocket of a viewer, which `request` asks for. The stream has no bytes behind it.
 [[nodiscard]] std::shared_ptr<Connection> open_viewer_connection(
-    std::shared_ptr<SocketServer> server, ClientStream stream,
+    std::shared_ptr<ConnectionServer> server, ClientStream stream,
     boost::beast::http::request<boost::beast::http::string_body> request);
 
 }  // namespace proleg::host

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "shared/computer/errors/file_error.hpp"
-#include "sim/record/recorded_fault.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "sim/environment/environment_model.hpp"
-#include "sim/mujoco/mujoco_world.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::mujoco {
+
+enum class Integrator : std::uint8_t {
+  implicit,  ///< in the velocity; what MuJoCo advises for articulated bodies that turn fast
+  euler,     ///< semi-implicit, as in ODE
+};
 
 /// A robot and its environment as MJCF, MuJoCo's XML, with what MuJoCo has that comes closest to sim/ode:
 /// - a pair of geometries for everything that may touch, with the friction of friction_of(); neighbouring links have

@@ -1,19 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "sim/environment/environment_model.hpp"
+#include "sim/mujoco/mjcf.hpp"
 #include "sim/physics/world.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::mujoco {
-
-enum class Integrator : std::uint8_t {
-  implicit,  ///< in the velocity; what MuJoCo advises for articulated bodies that turn fast
-  euler,     ///< semi-implicit, as in ODE
-};
 
 /// Whether the program is built with MuJoCo, which is optional.
 [[nodiscard]] bool is_built_in();

@@ -316,7 +316,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       return false;
     }
     const std::uint32_t address = cpu_.core_register(program_counter);
-    return address >= Cpu::flash_start && address - Cpu::flash_start < Cpu::flash_size;
+    return address >= ChipMemory::flash_start && address - ChipMemory::flash_start < ChipMemory::flash_size;
   }
 
   void execute(LocalTime until) {

@@ -248,7 +248,7 @@ std::string VirtualModule::describe(const ChipEvent& event) {
 std::vector<std::string> VirtualModule::trace(const ChipEvent& event) const {
   const auto read = [this](std::uint32_t address, std::span<std::uint8_t> bytes) { chip_.read(address, bytes); };
   const std::uint32_t pc = event.registers[program_counter];
-  if (options_.flash != nullptr && pc >= Cpu::flash_start && pc < flash_layout::slot_a) {
+  if (options_.flash != nullptr && pc >= ChipMemory::flash_start && pc < flash_layout::slot_a) {
     return trace_back(options_.flash->bootloader, event.registers, read);
   }
   image::HeaderBytes header{};

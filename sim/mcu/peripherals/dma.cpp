@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -252,8 +252,8 @@ void Dma::check_enable(const Stream& stream, unsigned number, std::uint32_t offs
   }
   const std::uint64_t end = std::uint64_t{stream.memory_address} + connection->bytes * std::uint64_t{stream.length};
   if (stream.peripheral_address != connection->data_register || stream.count == 0 ||
-      stream.memory_address % connection->bytes != 0 || stream.memory_address < Cpu::ram_start ||
-      end > Cpu::ram_start + Cpu::ram_size) {
+      stream.memory_address % connection->bytes != 0 || stream.memory_address < ChipMemory::ram_start ||
+      end > ChipMemory::ram_start + ChipMemory::ram_size) {
     reject_write(offset, value, "only the peripheral's data register and a buffer in RAM are modelled");
   }
   if (!stream.enabled() && ((flags_.at(number / 4) >> flag_shift(number)) & all_flags) != 0) {

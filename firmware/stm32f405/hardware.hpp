@@ -24,7 +24,7 @@ struct Hardware {
   Console console;
   GatewayLine line{console};
   BoardRecordFlash board_records;
-  ProgramPlace program;
+  ProgramPlace program{servo};
 };
 
 /// Nothing may use it before make_hardware().

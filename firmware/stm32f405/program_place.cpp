@@ -6,7 +6,6 @@
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/flash_operations.hpp"
 #include "firmware/stm32f405/handover.hpp"
-#include "firmware/stm32f405/hardware.hpp"
 #include "firmware/stm32f405/reset.hpp"
 #include "shared/fixed/little_endian.hpp"
 
@@ -34,8 +33,8 @@ bool was_started_by_bootloader() {
 }
 
 /// A reset would shorten the servo's last pulse.
-[[noreturn]] void restart_with(const bootloader::Handover& handover) {
-  hardware.servo.finish_last_pulse();
+[[noreturn]] void restart_with(const bootloader::Handover& handover, const Servo& servo) {
+  servo.finish_last_pulse();
   leave_handover(handover);
   reset_chip();
 }
@@ -70,9 +69,9 @@ void ProgramPlace::note_good_start() {
 
 void ProgramPlace::install(std::size_t size, std::uint8_t session, bool ends_line) {
   const bootloader::ImageInRam image{static_cast<std::uint32_t>(size), session, ends_line};
-  restart_with({HandoverAction::install, image.argument()});
+  restart_with({HandoverAction::install, image.argument()}, servo_);
 }
 
-void ProgramPlace::enter_bootloader() { restart_with({HandoverAction::stay, 0}); }
+void ProgramPlace::enter_bootloader() { restart_with({HandoverAction::stay, 0}, servo_); }
 
 }  // namespace proleg::stm32f405

@@ -1,7 +1,6 @@
 #include "tools/proleg/hil/hil_faults.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <string_view>
@@ -11,9 +10,10 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/fault/fault_reader.hpp"
 #include "sim/fault/random_faults.hpp"
-#include "sim/hardware_loop/fault_run.hpp"
+#include "sim/loop/fault_run.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/hil/hil_report.hpp"
 #include "tools/proleg/common/run_progress.hpp"
 
 namespace proleg::tools {
@@ -52,21 +52,6 @@ std::optional<FaultPlan> parse_seeds(const std::string& word) {
 /// The same faults follow from a seed and the length of the run.
 sim::FaultSchedule random_schedule(const ScenarioRun& run, std::uint64_t seed, bool has_chips) {
   return sim::random_faults({seed, run_us(run), has_chips}, run.scenario);
-}
-
-std::string worst_values(const sim::MotionWatch::Worst& worst) {
-  std::string text =
-      "change between pulses " + number_text(worst.change_steps) + " of what the greatest speed allows; ";
-  text += number_text(std::abs(worst.beyond_limit_deg)) + " deg " +
-          (worst.beyond_limit_deg > 0.0 ? "beyond" : "inside") + " the limits; motion " +
-          number_text(worst.motion_after_command_s) + " of 1.5 s after the last command";
-  return text;
-}
-
-Json worst_object(const sim::MotionWatch::Worst& worst) {
-  return {{"change_of_allowed", worst.change_steps},
-          {"beyond_limit_deg", worst.beyond_limit_deg},
-          {"motion_after_command_s", worst.motion_after_command_s}};
 }
 
 /// What a campaign has found.
@@ -197,46 +182,6 @@ int run_fault_campaign(const HilOptions& options, const ScenarioRun& run, HilMod
   std::cout.flush();
   const bool is_good = campaign.statistics.broken_runs == 0 && campaign.different == 0 && !interrupted();
   return is_good ? exit_success : exit_failed;
-}
-
-void print_fault_report(const ScenarioRun& run, const HilResult& result) {
-  for (const sim::Fault& fault : result.faults) {
-    std::printf("fault             %s\n", describe(fault, run.scenario.robot).c_str());
-  }
-  for (const sim::ModuleEvent& event : result.module_events) {
-    std::printf("%10.4f s      %s: %s\n", event.time_s, joint_and_node(run, event.joint).c_str(), event.text.c_str());
-  }
-  for (std::uint32_t joint = 0; joint < result.joint_ends.size(); ++joint) {
-    std::printf("ended             %s: %s\n", joint_and_node(run, joint).c_str(), describe(result.joint_ends[joint]));
-  }
-  std::printf("worst             %s\n", worst_values(result.worst_motion).c_str());
-}
-
-Json fault_json(const ScenarioRun& run, const HilResult& result) {
-  Json faults = Json::empty_array();
-  for (const sim::Fault& fault : result.faults) {
-    faults.append(describe(fault, run.scenario.robot));
-  }
-  Json events = Json::empty_array();
-  for (const sim::ModuleEvent& event : result.module_events) {
-    events.append({{"time_s", event.time_s},
-                   {"node", run.scenario.modules[event.joint].node},
-                   {"joint", run.scenario.robot.joints[event.joint].name},
-                   {"text", event.text}});
-  }
-  Json ends = Json::empty_array();
-  for (const sim::JointEnd end : result.joint_ends) {
-    ends.append(describe(end));
-  }
-  Json violations = Json::empty_array();
-  for (const std::string& violation : result.violations) {
-    violations.append(violation);
-  }
-  return {{"schedule", faults},
-          {"events", events},
-          {"joints_ended", ends},
-          {"violations", violations},
-          {"worst", worst_object(result.worst_motion)}};
 }
 
 }  // namespace proleg::tools

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "sim/fault/fault.hpp"
-#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/hil/hil_modules.hpp"
 #include "tools/proleg/hil/hil_options.hpp"
-#include "tools/proleg/hil/hil_report.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg::tools {
 
@@ -27,9 +27,5 @@ struct FaultPlan {
 /// modules can play too are run with both and compared. Returns the exit status.
 [[nodiscard]] int run_fault_campaign(const HilOptions& options, const ScenarioRun& run, HilModules& modules,
                                      const FaultPlan& plan);
-
-/// What happened in one run: the schedule, what each module did and when, how it ended.
-void print_fault_report(const ScenarioRun& run, const HilResult& result);
-[[nodiscard]] Json fault_json(const ScenarioRun& run, const HilResult& result);
 
 }  // namespace proleg::tools

@@ -64,6 +64,10 @@ struct HilResult {
 /// "J3 (node 3)".
 [[nodiscard]] std::string joint_and_node(const ScenarioRun& run, std::uint32_t joint);
 
+/// The worst motion of a run, or of a campaign, against the limits of a module that fails.
+[[nodiscard]] std::string worst_values(const sim::MotionWatch::Worst& worst);
+[[nodiscard]] Json worst_object(const sim::MotionWatch::Worst& worst);
+
 [[nodiscard]] Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModules& modules,
                             const HilResult& result);
 

@@ -36,7 +36,7 @@ const ChainKernel& choose_kernel(std::size_t chains) {
   const std::vector<const ChainKernel*> kernels = supported_kernels();
   const ChainKernel* chosen = kernels.front();
   for (const ChainKernel* kernel : kernels) {
-    if (static_cast<std::size_t>(kernel->width) <= 2 * chains - 2) {
+    if (static_cast<std::size_t>(kernel->width) + 2 <= 2 * chains) {
       chosen = kernel;
     }
   }

@@ -15,7 +15,7 @@ namespace proleg::sim::reduced {
 
 /// The kernels that this processor can run, narrowest first.
 [[nodiscard]] std::vector<const ChainKernel*> supported_kernels();
-/// The widest kernel whose lanes the chains fill at least by half; for one chain the narrowest.
+/// The widest kernel of whose lanes the chains fill more than half; for one chain, or none, the narrowest.
 [[nodiscard]] const ChainKernel& choose_kernel(std::size_t chains);
 
 /// Chains of one form that make their steps together. What a chain does depends neither on the others nor on the

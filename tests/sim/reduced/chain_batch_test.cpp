@@ -138,6 +138,20 @@ class ChainBatchTest : public testing::Test {
   std::vector<Candidate> candidates_;
 };
 
+TEST(ChooseKernel, GivesTheWidestKernelWhoseLanesTheChainsFillByMoreThanHalf) {
+  const ChainKernel* const narrowest = supported_kernels().front();
+  EXPECT_EQ(&choose_kernel(0), narrowest);
+  EXPECT_EQ(&choose_kernel(1), narrowest);
+  for (const ChainKernel* kernel : supported_kernels()) {
+    const std::size_t half = static_cast<std::size_t>(kernel->width) / 2;
+    EXPECT_EQ(&choose_kernel(half + 1), kernel);
+    if (kernel != narrowest) {
+      EXPECT_NE(&choose_kernel(half), kernel);
+    }
+  }
+  EXPECT_EQ(&choose_kernel(1000), supported_kernels().back());
+}
+
 TEST_F(ChainBatchTest, AChainGivesTheSameBitsAloneInAnyLaneAndWithEveryKernel) {
   const std::vector<std::vector<std::uint64_t>> expected = run_alone();
   std::vector<std::size_t> order(candidates_.size());

@@ -9,8 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/reduced/chain_kernel.hpp"
-
 namespace proleg::sim::reduced {
 
 /// The memory of the chains of a batch: blocks of as many chains as a vector has lanes, and one more block in which the

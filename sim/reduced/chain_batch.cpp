@@ -148,7 +148,7 @@ class ChainBatch<Kind>::Implementation {
   ChainModel<Kind> form_of_;  ///< owns what form_ points to
   ChainForm<Kind> form_;
   LaneBlocks blocks_;
-  Memory memory_;  ///< of the first block
+  Memory memory_;  ///< the arrays of the first block
   bool places_are_current_ = false;
 };
 

@@ -32,8 +32,8 @@ struct ChainModel {
   /// Coulomb coefficients. Planar: by shape, then by solid; then by shape and shape. Spatial: by shape, with the floor.
   std::vector<double> friction;
   typename Kind::Point gravity;     ///< m/s^2
-  typename Kind::Point first_link;  ///< its centre of mass at the start
-  /// The first link's at the start. In a plane it is 0: the form is as the links lie then.
+  typename Kind::Point first_link;  ///< m: the centre of mass of the first link at the start
+  /// The orientation of the first link at the start. In a plane it is 0: the form is as the links lie then.
   std::array<double, Kind::orientation_numbers> orientation{Kind::unturned};
 
   /// Whether chains may share a batch.
@@ -58,8 +58,8 @@ class ChainBatch {
   using LinkMotion = typename Kind::LinkMotion;
   using Orientation = std::array<double, Kind::orientation_numbers>;
 
-  /// chains: ChainModels or what is derived from it, at least one; all have the form of the first. kernel: nothing: the
-  /// widest one that this processor has and the chains fill.
+  /// chains: ChainModels or what is derived from it, at least one; all have the form of the first. kernel: if
+  /// none, choose_kernel().
   template <std::ranges::input_range Chains>
   explicit ChainBatch(const Chains& chains, const ChainKernel* kernel = nullptr)
       : ChainBatch(pointers_to(chains), kernel) {}
@@ -76,14 +76,14 @@ class ChainBatch {
   void set_max_torque(std::size_t chain, std::size_t joint, double torque);       ///< Nm
   [[nodiscard]] double joint_angle(std::size_t chain, std::size_t joint) const;   ///< rad
   [[nodiscard]] double motor_torque(std::size_t chain, std::size_t joint) const;  ///< Nm, in the last step
-  // The same for all joints or links of a chain. signs: 1 or -1 by joint; speeds, angles and torques are multiplied by
+  // These act on all joints or links of a chain. signs: 1 or -1 by joint; speeds, angles and torques are multiplied by
   // it.
   void set_wanted_speeds(std::size_t chain, std::span<const double> signs, std::span<const double> speeds);
   void read_joints(std::size_t chain, std::span<const double> signs, std::span<double> angles,
                    std::span<double> torques) const;
   void add_contact_forces(std::size_t chain, std::span<double> sums) const;  ///< N, by link
 
-  [[nodiscard]] Point center(std::size_t chain) const;  ///< of mass
+  [[nodiscard]] Point center(std::size_t chain) const;  ///< centre of mass
   [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const;
   /// The places of the first links of a chain.
   void read_links(std::size_t chain, std::span<LinkPlace> places) const;
@@ -94,18 +94,18 @@ class ChainBatch {
   [[nodiscard]] ContactSliding sliding(std::size_t chain) const;
   /// Two links, not neighbours, that touched each other at the start of the last step, if links must not (Spatial).
   [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> touching_links(std::size_t chain) const;
-  /// 0, not_finite or too_many_contacts.
+  /// Why a chain is lost: not_finite or too_many_contacts; 0 if it is not.
   [[nodiscard]] double failure(std::size_t chain) const;
   [[nodiscard]] bool failed(std::size_t chain) const { return failure(chain) != 0.0; }
-  /// All numbers on which the next steps depend, but contacts.
+  /// The numbers on which the next steps depend, except those of contacts.
   [[nodiscard]] std::vector<double> state(std::size_t chain) const;
 
   /// Puts a chain that has made no step where another one is: its joints have the same angles and their motors the same
   /// wanted speeds and torques; its centre of mass is given.
   void place_like(std::size_t chain, const ChainBatch& other, std::size_t other_chain, const Point& center);
-  /// The first link's (Kind::orientation_numbers).
+  /// The orientation of the first link (Kind::orientation_numbers).
   [[nodiscard]] Orientation orientation(std::size_t chain) const;
-  /// Puts a chain at rest somewhere else, with the same angles. center: of mass.
+  /// Puts a chain at rest somewhere else, with the same angles. center: the centre of mass.
   void move(std::size_t chain, const Point& center, const Orientation& orientation);
 
  private:

@@ -37,18 +37,18 @@ struct OwnMemory<Spatial, Number> {
 template <typename Kind, typename Number>
 struct ChainMemory : OwnMemory<Kind, Number> {
   // Constants of each chain.
-  Number* mass;          ///< by link
-  Number* inertia;       ///< an inertia by link
-  Number* inverse_mass;  ///< of the chain, 1/kg
+  Number* mass;          ///< kg, by link
+  Number* inertia;       ///< an inertia by link, about its centre of mass, kg m^2
+  Number* inverse_mass;  ///< 1 / mass of the chain, 1/kg
   Number* gravity;       ///< a vector, m/s^2
-  Number* friction;      ///< by pair (ChainModel::friction)
+  Number* friction;      ///< Coulomb coefficients, by pair (ChainModel::friction)
   // What the servos want.
   Number* wanted_speed;  ///< rad/s, by joint
   Number* max_torque;    ///< Nm, by joint
   Number* is_free;       ///< 1 or 0, by joint: in the step that is made, its motor is too weak to keep the wanted speed
   // State.
   Number* center;        ///< a vector: centre of mass of the chain, m
-  Number* center_speed;  ///< a vector, m/s
+  Number* center_speed;  ///< a vector: velocity of `center`, m/s
   Number* orientation;   ///< Kind::orientation_numbers
   Number* joint_angle;   ///< rad
   Number* link_speed;    ///< a vector by link: velocity of its centre of mass, less that of the chain, m/s
@@ -61,9 +61,9 @@ struct ChainMemory : OwnMemory<Kind, Number> {
   Number* sliding;        ///< on the terrain: normal forces, N; forces times speed, N m/s; power of friction, W
   Number* failed;         ///< 0, or why the chain is lost: not_finite, too_many_contacts
   // Contacts of the last step, also part of the state.
-  Number* contact_count;
-  Number* contact_key;  ///< which corner touched what, by contact; those of a pair, or of a box, are neighbours
-  Number* impulse;      ///< a vector by contact: friction, and last the normal impulse, Ns
+  Number* contact_count;  ///< how many contacts the chain has
+  Number* contact_key;    ///< which corner touched what, by contact; those of a pair, or of a box, are neighbours
+  Number* impulse;        ///< a vector by contact: friction, and last the normal impulse, Ns
 
   /// Size of the block, in vectors.
   static std::size_t size(const ChainCounts& counts) {
@@ -118,15 +118,16 @@ template <typename Kind, typename Number>
 struct OwnScratch;
 template <typename Number>
 struct OwnScratch<Planar, Number> {
-  Number* sine;    ///< by link
-  Number* cosine;  ///< by link
-  // By contact.
-  Number* other_link;  ///< that `link` touches; -1: the terrain
-  Number* normal;      ///< a vector, into `link`
-  Number* direction;   ///< two vectors, of friction and normal: of the impulse on the centre; 0 between two links
-  // By free joint: each lane numbers its own in the order of the chain. It has no number i if it has at most i of them.
+  Number* sine;    ///< sine of the angle of each link
+  Number* cosine;  ///< cosine of the angle of each link
+  // Arrays by contact.
+  Number* other_link;  ///< the link that `link` touches; -1: the terrain
+  Number* normal;      ///< a vector: the direction into `link`
+  Number* direction;   ///< two vectors: directions in which friction and normal push the centre; 0 between two links
+  // Arrays by free joint. Each lane numbers its own in the order of the chain. It has no number i if it has at most i
+  // of them.
   Number* free_joint;     ///< its number among the joints; -1: none
-  Number* free_position;  ///< joint_position of this joint
+  Number* free_position;  ///< joint_position of this joint; so are the next ones
   Number* free_moment;    ///< moment_behind
   Number* free_mass;      ///< mass_behind
   Number* free_inertia;   ///< inertia_behind
@@ -153,15 +154,15 @@ struct OwnScratch<Planar, Number> {
 };
 template <typename Number>
 struct OwnScratch<Spatial, Number> {
-  Number* axis;             ///< a vector by joint
-  Number* turned_inertia;   ///< an inertia by link, about its centre of mass
+  Number* axis;             ///< a vector by joint: unit vector
+  Number* turned_inertia;   ///< an inertia by link, about its centre of mass, as the link is turned
   Number* new_momentum;     ///< a spin by link: spin_momentum after the step
   Number* contact_impulse;  ///< a vector by link, Ns: sum over its contacts
-  Number* contact_moment;   ///< a spin by link, Nms, about the centre
-  // By contact.
-  Number* lever;      ///< a vector, from the middle of the link
-  Number* link_spin;  ///< a spin, rad/s: that of the link
-  // By free joint: one that is free in any lane has a number. In the other lanes it gets no impulse.
+  Number* contact_moment;   ///< a spin by link, Nms: sum of the moments about the centre
+  // Arrays by contact.
+  Number* lever;      ///< a vector: the contact from the centre of mass of its link, m
+  Number* link_spin;  ///< a spin: ChainScratch::spin of the link, rad/s
+  // Arrays by free joint. One that is free in any lane has a number. In the other lanes it gets no impulse.
   Number* free_axis;  ///< a vector; 0 where it is not free
   Number* free_mean;  ///< a vector: velocity of the centre of mass when it turns and the first link does not move
 
@@ -187,7 +188,7 @@ struct ChainScratch : OwnScratch<Kind, Number> {
   Number* joint_position;  ///< a vector by joint, from the centre, m
   Number* speed;           ///< rad/s, by joint: what it has after the step
   Number* lowest_speed;    ///< rad/s, by joint: so that it stays within its stops
-  Number* highest_speed;
+  Number* highest_speed;   ///< rad/s
   Number* drift;           ///< a vector by link: velocity against the centre while the first link does not turn, m/s
   Number* spin;            ///< a spin by link, rad/s: rotation against the first link
   Number* torque_impulse;  ///< Nms, by joint
@@ -201,34 +202,34 @@ struct ChainScratch : OwnScratch<Kind, Number> {
   Number* momentum_behind;  ///< a vector, kg m/s
   Number* angular_behind;   ///< a spin: angular momentum about the centre, kg m^2/s
 
-  // By contact. Its vectors have friction first and the normal direction last: in a plane along the surface and out of
-  // it, in space along x, y and z.
-  Number* link;         ///< that touches
-  Number* key;          ///< ChainMemory::contact_key
-  Number* arm;          ///< a vector, from the centre
-  Number* depth_speed;  ///< m/s: at which the points must part
-  Number* friction;     ///< Coulomb coefficient
-  Number* old_impulse;  ///< a vector: impulses of the step before, Ns; 0 for a new contact
-  Number* value;        ///< a vector: the impulses so far, Ns
-  Number* most_friction;
+  // Arrays by contact. Vectors have friction first and the normal direction last: in a plane along the surface and out
+  // of it, in space along x, y and z.
+  Number* link;              ///< the link that touches
+  Number* key;               ///< ChainMemory::contact_key
+  Number* arm;               ///< a vector: the contact from the centre, m
+  Number* depth_speed;       ///< m/s: at which the points must part
+  Number* friction;          ///< Coulomb coefficient
+  Number* old_impulse;       ///< a vector: impulses of the step before, Ns; 0 for a new contact
+  Number* value;             ///< a vector: the impulses so far, Ns
+  Number* most_friction;     ///< Ns
   Number* normal_inverse;    ///< kg: impulse for a change of speed of 1 m/s
   Number* friction_inverse;  ///< kg
   Number* given;             ///< a vector: speeds that do not depend on the unknowns, m/s; at the end sliding speeds
-  // By contact and direction: a row.
-  Number* jacobian;  ///< by row, then by unknown: speed in the direction of the row for each
-  Number* response;  ///< by row, then by unknown: of the unknowns to an impulse of 1 Ns
+  // Arrays by row: each direction of each contact has one.
+  Number* jacobian;  ///< by row, then by unknown: the speed in the direction of the row that each gives
+  Number* response;  ///< by row, then by unknown: what an impulse of 1 Ns in the row changes
 
-  // By unknown.
+  // Arrays by unknown.
   Number* unknown;  ///< rad/s
   Number* matrix;   ///< inertia, then its factors
   Number* inverse_matrix;
 
-  // By free joint.
-  Number* free_max_impulse;  ///< Nms
+  // Arrays by free joint.
+  Number* free_max_impulse;  ///< Nms: the most that the motor gives
   Number* free_wanted;       ///< rad/s
   Number* free_lowest;       ///< rad/s
   Number* free_highest;      ///< rad/s
-  Number* motor_impulse;     ///< Nms: of motor and stop
+  Number* motor_impulse;     ///< Nms: what motor and stop give together
   Number* motor_inverse;     ///< kg m^2: impulse for a change of speed of 1 rad/s
 
   /// Size of the block, in vectors.

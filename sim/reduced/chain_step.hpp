@@ -82,7 +82,7 @@ class ChainStep {
     }
   }
 
-  /// Only computes where the links are.
+  /// Computes where the links are, without a step.
   void place_links() {
     auto turn = mechanics_.first_turn();
     Vector middle{};
@@ -294,9 +294,9 @@ class ChainStep {
   Mechanics<Kind, width> mechanics_;
   Contacts<Kind, width> contacts_;
   FreeJoints<Kind, width> free_;
-  Inertia inertia_;              ///< of the chain, about its centre of mass
-  Vector free_speed_;            ///< of the centre, without contacts
-  Motion<Kind, Number> motion_;  ///< after the step
+  Inertia inertia_;              ///< inertia of the chain about its centre of mass
+  Vector free_speed_;            ///< velocity of the centre without contacts
+  Motion<Kind, Number> motion_;  ///< the motion after the step
 };
 
 template <typename Kind, int width>

@@ -41,8 +41,8 @@ class ContactList {
 
   [[nodiscard]] bool is_full(int lane) const { return found_[lane] == form_.counts.contacts; }
 
-  /// Contacts come by ascending pair in each step. first_key: of the Kind::contact_keys that the pair has. Returns the
-  /// number of the contact.
+  /// Contacts come by ascending pair in each step. first_key: the first of the Kind::contact_keys that the pair has.
+  /// Returns the number of the contact.
   std::size_t add(int lane, std::size_t link, double first_key, double key, const Vector& arm, const Number& depth,
                   const Number& friction) {
     const std::size_t contact = found_[lane]++;
@@ -110,8 +110,8 @@ class ContactList {
   const ChainForm<Kind>& form_;
   const ChainMemory<Kind, Number>& m_;
   const ChainScratch<Kind, Number>& s_;
-  std::size_t stride_;  ///< of a row, in unknowns
-  Number counts_{};     ///< of contacts
+  std::size_t stride_;  ///< from row to row, in unknowns
+  Number counts_{};     ///< how many contacts each lane has
 
  private:
   void take_old_impulse(int lane, std::size_t contact, double first_key, double key) {

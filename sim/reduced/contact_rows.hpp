@@ -49,8 +49,8 @@ class ContactRows {
         free_count_(has_free_joints ? free.count() : 0),
         inverse_mass_(inverse_mass) {}
 
-  /// Computes the responses. The rows of the contacts and the Jacobians of free joints must be there. inverse: of the
-  /// inertia, if there are no free joints.
+  /// Computes the responses. The rows of the contacts and the Jacobians of free joints must be there. inverse: that of
+  /// the inertia, if there are no free joints.
   void prepare(const Inertia& inverse) const {
     for (std::size_t k = 0; k < most_contacts_; ++k) {
       Number mobility[Kind::axes];
@@ -132,7 +132,7 @@ class ContactRows {
     return s_.response + (Kind::axes * contact + axis) * stride_;
   }
 
-  /// m/s: speed in the direction of a row.
+  /// The speed in the direction of a row, m/s.
   template <std::size_t axis>
   [[nodiscard]] Number speed_along(std::size_t contact, const Unknowns& v) const {
     Number speed = contacts_.template speed_along<axis>(contact, v);
@@ -230,7 +230,7 @@ class ContactRows {
   const ChainScratch<Kind, Number>& s_;
   const Contacts<Kind, width>& contacts_;
   const FreeJoints<Kind, width>& free_;
-  std::size_t stride_;  ///< of a row, in unknowns
+  std::size_t stride_;  ///< from row to row, in unknowns
   std::size_t most_contacts_;
   std::size_t free_count_;
   Number inverse_mass_;

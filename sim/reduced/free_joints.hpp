@@ -75,7 +75,7 @@ class FreeJointList {
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  /// Free joints do not move until their speeds are known.
+  /// Stops the free joints: they do not move until their speeds are known.
   void stop() const {
     for (std::size_t j = 0; j < joints_; ++j) {
       s_.speed[j] = select(m_.is_free[j] > 0.0, Number{}, s_.speed[j]);
@@ -102,8 +102,8 @@ class FreeJointList {
         stride_(joints_ + Kind::spin_axes),
         step_s_(form.step_s) {}
 
-  /// The unknowns without contacts, from their momenta and the matrix, and the inverse of the matrix. The motors begin
-  /// with the torque of the step before. has(i): the lanes in which free joint i is free.
+  /// Computes the unknowns without contacts, from their momenta and the matrix, and the inverse of the matrix. The
+  /// motors begin with the torque of the step before. has(i): the lanes in which free joint i is free.
   template <typename Has>
   void solve(const Has& has) const {
     const std::size_t unknowns = Kind::spin_axes + count_;
@@ -124,7 +124,7 @@ class FreeJointList {
   const ChainMemory<Kind, Number>& m_;
   const ChainScratch<Kind, Number>& s_;
   std::size_t joints_;
-  std::size_t stride_;  ///< of a row, in unknowns
+  std::size_t stride_;  ///< from row to row, in unknowns
   double step_s_;
   std::size_t count_ = 0;
 };
@@ -133,7 +133,7 @@ template <typename Kind, int width>
 class FreeJoints;
 
 /// Number i of a lane is its i-th free joint: lanes differ in their free joints, but not in their places here. count()
-/// is that of the lane with most of them.
+/// is how many the lane with most of them has.
 template <int width>
 class FreeJoints<Planar, width> : public FreeJointList<Planar, width> {
   using Base = FreeJointList<Planar, width>;
@@ -176,7 +176,7 @@ class FreeJoints<Planar, width> : public FreeJointList<Planar, width> {
     counts_ = count;
   }
 
-  /// The unknowns become the speeds.
+  /// Makes the unknowns the speeds of the joints.
   void take_speeds() const {
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t j = 0; j < joints_; ++j) {
@@ -185,8 +185,8 @@ class FreeJoints<Planar, width> : public FreeJointList<Planar, width> {
     }
   }
 
-  /// The unknowns without contacts, and the inverse of their inertia. inertia and momentum: of the rotation. The sums
-  /// over the links behind the joints must be there.
+  /// Computes the unknowns without contacts, and the inverse of their inertia. inertia and momentum: those of the
+  /// rotation. The sums over the links behind the joints must be there.
   void start(Number inertia, Number momentum) const {
     gather();
     set_matrix(inertia);
@@ -285,10 +285,10 @@ class FreeJoints<Planar, width> : public FreeJointList<Planar, width> {
     }
   }
 
-  Number counts_{};  ///< of the free joints, by lane
+  Number counts_{};  ///< how many free joints each lane has
 };
 
-/// Number i is a joint that is free in any lane. count() is that of all lanes together.
+/// Number i is a joint that is free in any lane. count() is how many such joints there are.
 template <int width>
 class FreeJoints<Spatial, width> : public FreeJointList<Spatial, width> {
   using Base = FreeJointList<Spatial, width>;
@@ -317,15 +317,15 @@ class FreeJoints<Spatial, width> : public FreeJointList<Spatial, width> {
     }
   }
 
-  /// The unknowns become the speeds.
+  /// Makes the unknowns the speeds of the joints.
   void take_speeds() const {
     for (std::size_t i = 0; i < count_; ++i) {
       put_where(is_free(i), s_.speed[numbers_[i]], s_.unknown[3 + i]);
     }
   }
 
-  /// The unknowns without contacts, and the inverse of their inertia. inertia and momentum: of the rotation. The sums
-  /// over the links behind the joints must be there.
+  /// Computes the unknowns without contacts, and the inverse of their inertia. inertia and momentum: those of the
+  /// rotation. The sums over the links behind the joints must be there.
   void start(const Tensor<Number>& inertia, const Vector& momentum) const {
     gather();
     set_matrix(inertia, momentum);
@@ -363,7 +363,7 @@ class FreeJoints<Spatial, width> : public FreeJointList<Spatial, width> {
     }
   }
 
-  /// The lower half of the matrix of the unknowns, and for each unknown its momentum.
+  /// Computes the lower half of the matrix of the unknowns, and for each unknown its momentum.
   void set_matrix(const Tensor<Number>& inertia, const Vector& momentum) const {
     Number* matrix = s_.matrix;
     matrix[0] = inertia.xx;

@@ -27,7 +27,7 @@ struct Rectangle {
   Point center;
   Point along;               ///< unit vector along its sides of `length`
   double half_length = 0.0;  ///< m
-  double half_height = 0.0;  ///< m, of the other sides
+  double half_height = 0.0;  ///< m, along the other sides
   bool operator==(const Rectangle&) const = default;
 };
 
@@ -43,13 +43,13 @@ struct JointLimits {
 struct Planar {
   static constexpr std::size_t axes = 2;                 ///< numbers of a point or a velocity: x and z
   static constexpr std::size_t spin_axes = 1;            ///< numbers of an angular velocity
-  static constexpr std::size_t inertia_numbers = 1;      ///< moment of inertia about an axis across the plane
+  static constexpr std::size_t inertia_numbers = 1;      ///< the moment of inertia about an axis across the plane
   static constexpr std::size_t orientation_numbers = 1;  ///< angle of the first link, rad
   static constexpr double unturned = 0.0;  ///< the first number of the orientation that is no rotation; others are 0
   // Two convex outlines touch in at most two points. More than three such pairs for a shape are no crawling robot.
   static constexpr std::size_t contacts_of_shape = 6;
   static constexpr std::size_t more_contacts = 4;
-  static constexpr double contact_keys = 8.0;  ///< of a pair of shapes that touch
+  static constexpr double contact_keys = 8.0;  ///< keys that a pair of shapes that touch has
 
   using Point = reduced::Point;
   /// Points are from the link's centre of mass. The link lies in the plane as it does when all angles are 0.
@@ -73,12 +73,12 @@ struct Planar {
 
   /// Where a link is.
   struct LinkPlace {
-    Point position;    ///< of its centre of mass
-    double half_sine;  ///< of half the angle by which it has turned since all angles were 0
-    double half_cosine;
+    Point position;      ///< its centre of mass, m
+    double half_sine;    ///< sine of half the angle by which it has turned since all angles were 0
+    double half_cosine;  ///< cosine of the same angle
   };
   struct LinkMotion {
-    Point velocity;   ///< of its centre of mass, m/s
+    Point velocity;   ///< velocity of its centre of mass, m/s
     double rotation;  ///< rad/s
   };
 };
@@ -94,7 +94,7 @@ struct Spatial {
   static constexpr std::size_t corners_of_shape = 8;
   static constexpr std::size_t contacts_of_shape = corners_of_shape;
   static constexpr std::size_t more_contacts = 0;
-  static constexpr double contact_keys = 1.0;  ///< of a corner
+  static constexpr double contact_keys = 1.0;  ///< keys that a corner has
   static constexpr std::size_t max_joints = 64;
 
   using Point = Point3;
@@ -110,7 +110,7 @@ struct Spatial {
   };
   struct Corner {
     Point point;
-    int sensor = 0;  ///< that it presses: 1 rear, 2 front, 0 none
+    int sensor = 0;  ///< the sensor that it presses: 1 rear, 2 front, 0 none
     bool operator==(const Corner&) const = default;
   };
   /// A box that collides.
@@ -124,7 +124,7 @@ struct Spatial {
   };
   /// The level floor, of which there is at most one. It pushes up what is in its box and below its top.
   struct Solid {
-    Point center;  ///< of its top, in the world
+    Point center;  ///< centre of its top, in the world
     Point along;   ///< unit vector, horizontal
     double half_length = 0.0;
     double half_width = 0.0;
@@ -134,11 +134,11 @@ struct Spatial {
 
   /// Where a link is.
   struct LinkPlace {
-    Point position;  ///< of its centre of mass
+    Point position;  ///< its centre of mass, m
     Point axes[3];   ///< where the axes of the robot's frame, that it had at angles 0, point now
   };
   struct LinkMotion {
-    Point velocity;          ///< of its centre of mass, m/s
+    Point velocity;          ///< velocity of its centre of mass, m/s
     Point rotation;          ///< rad/s
     Point angular_momentum;  ///< about its centre of mass, kg m^2/s
   };
@@ -155,7 +155,7 @@ struct ChainCounts {
   std::size_t shapes = 0;
   std::size_t solids = 0;
   std::size_t pairs = 0;     ///< things that touch with a friction of their own (ChainModel::friction)
-  std::size_t contacts = 0;  ///< at most at once
+  std::size_t contacts = 0;  ///< the most at once
 };
 
 /// What all chains of a batch have in common.
@@ -164,7 +164,7 @@ struct ChainForm {
   ChainCounts counts;
   const typename Kind::Link* links;    ///< from head to tail
   const typename Kind::Joint* joints;  ///< joint j is between links j and j + 1
-  const typename Kind::Shape* shapes;  ///< by ascending link
+  const typename Kind::Shape* shapes;  ///< in the order of their links
   const typename Kind::Solid* solids;  ///< the terrain
   bool self_collision;  ///< links that are not neighbours collide (Planar), or must not touch each other (Spatial)
   double step_s;

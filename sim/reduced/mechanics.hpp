@@ -11,7 +11,7 @@
 namespace proleg::sim::reduced {
 namespace {  // each instruction set has its own: see chain_step.hpp
 
-/// How links turn and what it takes: all of a step that depends on the number of axes, but contacts.
+/// How links turn and what it takes. With Contacts and FreeJoints this is all of a step that depends on the kind.
 template <typename Kind, int width>
 class Mechanics;
 
@@ -37,7 +37,7 @@ class Mechanics<Planar, width> {
     }
   };
   [[nodiscard]] LinkTurn first_turn() const { return {m_.orientation[0], sine_cosine<width>(m_.orientation[0])}; }
-  /// turn: of the link before joint j; becomes that of the link behind.
+  /// turn: that of the link before joint j; becomes that of the link behind.
   void turn_joint(std::size_t j, LinkTurn& turn) const {
     turn.angle += m_.joint_angle[j];
     turn.of_angle = sine_cosine<width>(turn.angle);
@@ -64,7 +64,7 @@ class Mechanics<Planar, width> {
     return m_.inertia[link] * (s_.new_rotation[link] - m_.rotation[link]);
   }
 
-  /// A number of the result.
+  /// What the state keeps of a result.
   static Number kept(const Number& value) { return value; }
   static Vector kept(const Vector& value) { return value; }
   void keep_momentum(Mask /*done*/, std::size_t /*link*/) const {}
@@ -106,7 +106,8 @@ class Mechanics<Spatial, width> {
     turn.z = cross(turn.x, turn.y);
     return turn;
   }
-  /// turn: of the link before joint j; becomes that of the link behind. It turns about the axis (Rodrigues).
+  /// turn: that of the link before joint j; becomes that of the link behind. The joint turns it about its axis
+  /// (Rodrigues).
   void turn_joint(std::size_t j, LinkTurn& turn) const {
     const Vector axis = turn * form_.joints[j].axis;
     const SineCosine<Number> by = sine_cosine<width>(m_.joint_angle[j]);
@@ -145,13 +146,14 @@ class Mechanics<Spatial, width> {
     return at<Vector>(s_.new_momentum, link) - at<Vector>(m_.spin_momentum, link);
   }
 
-  /// A number of the result. The sum with 0 makes -0 to 0, which are different bits and may depend on the other lanes.
+  /// What the state keeps of a result. The sum with 0 makes -0 to 0, which are different bits and may depend on the
+  /// other lanes.
   static Number kept(const Number& value) { return value + 0.0; }
   static Vector kept(const Vector& value) { return value + Vector{}; }
   void keep_momentum(Mask done, std::size_t link) const {
     put_where(done, m_.spin_momentum, link, kept(at<Vector>(s_.new_momentum, link)));
   }
-  /// As ODE does: the rotation's first order, made a unit quaternion again.
+  /// Turns the first link as ODE does: by the first order of the rotation, made a unit quaternion again.
   void turn_first_link(Mask done, const Vector& rotation, double step_s) const {
     const Number w = m_.orientation[0];
     const Vector v = at<Vector>(m_.orientation + 1, 0);

@@ -31,7 +31,7 @@ struct Touch {
 template <int width>
 struct Side {
   using Number = typename Lanes<width>::Number;
-  Number distance;       ///< of the other outline's nearest corner from the side, m; negative: behind it
+  Number distance;       ///< distance of the other outline's nearest corner from the side, m; negative: behind it
   Plane<Number> normal;  ///< outward
   Plane<Number> middle;
   Number half;  ///< m: half its length

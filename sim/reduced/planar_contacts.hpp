@@ -28,7 +28,7 @@ class Contacts<Planar, width> : public ContactList<Planar, width> {
            const ChainScratch<Planar, Number>& scratch)
       : Base(form, memory, scratch) {}
 
-  /// The links must have been placed.
+  /// Finds the contacts. The links must have been placed.
   void find() {
     Base::start();
     for (std::size_t shape = 0; shape < form_.counts.shapes; ++shape) {
@@ -46,7 +46,7 @@ class Contacts<Planar, width> : public ContactList<Planar, width> {
     free_joints_between_links();
   }
 
-  /// Directions, given speeds and the Jacobian of the rotation of all rows. The drift must be known.
+  /// Computes directions, given speeds and the Jacobian of the rotation of all rows. The drift must be known.
   void set_rows() const {
     for (std::size_t k = 0; k < most(); ++k) {
       const Vector arm = at<Vector>(s_.arm, k);
@@ -65,7 +65,7 @@ class Contacts<Planar, width> : public ContactList<Planar, width> {
 
   // Row `axis` of contact k: 0 friction, 1 normal.
 
-  /// m/s: without the free joints.
+  /// The speed along the row but for what the free joints add, m/s.
   template <std::size_t axis>
   [[nodiscard]] Number speed_along(std::size_t k, const Motion<Planar, Number>& v) const {
     return (s_.given[2 * k + axis] + turning<axis>(k) * v.rotation) + dot(direction<axis>(k), v.center);
@@ -80,15 +80,15 @@ class Contacts<Planar, width> : public ContactList<Planar, width> {
   [[nodiscard]] Number center_mobility(std::size_t k) const {
     return dot(direction<axis>(k), direction<axis>(k)) * m_.inverse_mass[0];
   }
-  /// speed: of a free mass that gets the impulse.
+  /// speed: what a free mass would get from the impulse.
   template <std::size_t axis>
   void push_center(std::size_t k, const Number& speed, Motion<Planar, Number>& v) const {
     v.center = v.center + direction<axis>(k) * speed;
   }
 
   void sum_impulses() const {}
-  /// Adds the momenta that link i gains, less what its contacts give. own: angular, about its centre of mass; as_point:
-  /// angular, of its centre of mass.
+  /// Adds the momenta that link i gains, less what its contacts give. own: the angular momentum about its centre of
+  /// mass; as_point: that of its centre of mass.
   void add_link(std::size_t i, const Vector& gain, Number own, Number as_point, Vector& linear, Number& angular) const {
     linear = linear + gain;
     angular = with_link(angular, own, as_point);
@@ -109,7 +109,7 @@ class Contacts<Planar, width> : public ContactList<Planar, width> {
     }
   }
 
-  /// Sliding speeds must be in ChainScratch::given.
+  /// Keeps the results of the lanes that are done. Sliding speeds must be in ChainScratch::given.
   void keep(Mask done) const {
     Base::keep_contacts(done, [&](std::size_t k, const Vector& impulse, double steps_per_s) {
       const Number speed = magnitude(s_.given[2 * k]);

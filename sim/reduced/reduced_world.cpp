@@ -47,7 +47,7 @@ class ReducedWorld final : public World {
   static constexpr bool is_planar = std::is_same_v<Kind, Planar>;
 
  public:
-  /// batch: of which `chain` is number `lane`.
+  /// batch: the batch in which `chain` is number `lane`.
   ReducedWorld(const WorldInput& input, Chain chain, std::shared_ptr<Batch> batch, std::size_t lane)
       : robot_(*input.robot),
         environment_(*input.environment),
@@ -174,7 +174,7 @@ class ReducedWorld final : public World {
   }
 
   RobotModel robot_;
-  EnvironmentModel environment_;  ///< of a chain in a plane, with the robot's pose after the moves so far
+  EnvironmentModel environment_;  ///< in a plane it has the robot's pose after the moves so far
   double step_s_;
   std::string file_;
   Chain chain_;

@@ -18,8 +18,8 @@ namespace proleg::sim::reduced {
 /// Changes when the engine gives other bits for the same world.
 inline constexpr int engine_version = 1;
 
-/// A world in the reduced engine. file: that messages name. step_s: length of a step, above 0. Throws InputError if the
-/// engine does not have what robot or environment needs.
+/// A world in the reduced engine. file: the file that messages name. step_s: length of a step, above 0. Throws
+/// InputError if the engine does not have what robot or environment needs.
 [[nodiscard]] std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment,
                                                         double step_s, const std::string& file);
 
@@ -28,7 +28,7 @@ struct WorldInput {
   const RobotModel* robot;
   const EnvironmentModel* environment;
   double step_s;
-  std::string file;  ///< that messages name
+  std::string file;  ///< the file that messages name
 };
 
 /// The world of chain number `lane` of a batch. If the batch has others, World::step of each makes no step but throws

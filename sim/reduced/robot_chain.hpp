@@ -20,7 +20,7 @@ struct RobotChain : ChainModel<OfKind> {
   std::vector<double> joint_signs;  ///< 1, or -1 where the axis of a joint points the other way
   /// Orientations of the links at angles 0: in the world at the start (Planar), or in the frame of the robot (Spatial).
   std::vector<Eigen::Quaterniond> link_orientations;
-  std::vector<Eigen::Vector3d> mass_centers;  ///< in the frames of the links
+  std::vector<Eigen::Vector3d> mass_centers;  ///< those of the links, in their frames
   std::optional<double> lowest_ground;        ///< m: of the whole environment, also beside the robot's way
 };
 
@@ -44,8 +44,8 @@ using SpatialChain = RobotChain<Spatial>;
 /// Whether the joints have axes that make_planar_chain() cannot have: not all parallel, or not horizontal.
 [[nodiscard]] bool needs_space(const RobotModel& robot, const EnvironmentModel& environment);
 
-// Both throw InputError if the engine does not have what the robot or the environment needs. file: that the message
-// names.
+// Both throw InputError if the engine does not have what the robot or the environment needs. file: the file that
+// the message names.
 [[nodiscard]] PlanarChain make_planar_chain(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                             const std::string& file);
 [[nodiscard]] SpatialChain make_spatial_chain(const RobotModel& robot, const EnvironmentModel& environment,

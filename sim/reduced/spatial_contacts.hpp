@@ -27,7 +27,7 @@ class Contacts<Spatial, width> : public ContactList<Spatial, width> {
            const ChainScratch<Spatial, Number>& scratch)
       : Base(form, memory, scratch) {}
 
-  /// The links must have been placed.
+  /// Finds the contacts. The links must have been placed.
   void find() {
     Base::start();
     if (form_.counts.solids > 0) {
@@ -55,7 +55,7 @@ class Contacts<Spatial, width> : public ContactList<Spatial, width> {
 
   // Row `axis` of contact k: along x, y or z.
 
-  /// m/s: without the free joints.
+  /// The speed along the row but for what the free joints add, m/s.
   template <std::size_t axis>
   [[nodiscard]] Number speed_along(std::size_t k, const Motion<Spatial, Number>& v) const {
     const Vector arm = at<Vector>(s_.arm, k);
@@ -85,13 +85,13 @@ class Contacts<Spatial, width> : public ContactList<Spatial, width> {
   [[nodiscard]] Number center_mobility(std::size_t /*k*/) const {
     return m_.inverse_mass[0];
   }
-  /// speed: of a free mass that gets the impulse.
+  /// speed: what a free mass would get from the impulse.
   template <std::size_t axis>
   void push_center(std::size_t /*k*/, const Number& speed, Motion<Spatial, Number>& v) const {
     (axis == 0 ? v.center.x : (axis == 1 ? v.center.y : v.center.z)) += speed;
   }
 
-  /// Of the contacts of each link.
+  /// Sums the impulses of the contacts of each link.
   void sum_impulses() const {
     for (std::size_t i = 0; i < form_.counts.links; ++i) {
       put(s_.contact_impulse, i, Vector{});
@@ -113,15 +113,15 @@ class Contacts<Spatial, width> : public ContactList<Spatial, width> {
       }
     }
   }
-  /// Adds the momenta that link i gains, less what its contacts give. own: angular, about its centre of mass; as_point:
-  /// angular, of its centre of mass.
+  /// Adds the momenta that link i gains, less what its contacts give. own: the angular momentum about its centre of
+  /// mass; as_point: that of its centre of mass.
   void add_link(std::size_t i, const Vector& gain, const Vector& own, const Vector& as_point, Vector& linear,
                 Vector& angular) const {
     linear = linear + (gain - at<Vector>(s_.contact_impulse, i));
     angular = with_link(angular, own, as_point - at<Vector>(s_.contact_moment, i));
   }
 
-  /// Sliding speeds must be in ChainScratch::given.
+  /// Keeps the results of the lanes that are done. Sliding speeds must be in ChainScratch::given.
   void keep(Mask done) const {
     Base::keep_contacts(done, [&](std::size_t k, const Vector& impulse, double steps_per_s) {
       const Number x = s_.given[3 * k];
@@ -159,7 +159,7 @@ class Contacts<Spatial, width> : public ContactList<Spatial, width> {
     }
     const Vector position = position_of(box.link);
     const auto axes = at<Turn<Number>>(m_.link_turn, box.link);
-    // A link that lies on its flank presses no sensor: beyond 45 degrees.
+    // A link that lies on its flank, which begins at 45 degrees, presses no sensor.
     constexpr double max_sine = 0.707;
     const Mask can_press = magnitude(rise(form_.links[box.link].sideways)) < max_sine;
     for (std::size_t i = 0; i < Spatial::corners_of_shape; ++i) {
@@ -194,7 +194,7 @@ class Contacts<Spatial, width> : public ContactList<Spatial, width> {
            (magnitude(y * floor.along.x - x * floor.along.y) < floor.half_width);
   }
 
-  /// ChainMemory::overlap.
+  /// Returns OwnMemory::overlap.
   [[nodiscard]] Number find_overlap() const {
     Number result{};
     const std::size_t boxes = form_.counts.shapes;

@@ -79,10 +79,10 @@ struct Quantities<Spatial, Number> {
 template <typename Kind, typename Number>
 struct Motion {
   typename Quantities<Kind, Number>::Vector center;  ///< velocity of the centre of mass, m/s
-  typename Quantities<Kind, Number>::Spin rotation;  ///< of the first link, rad/s
+  typename Quantities<Kind, Number>::Spin rotation;  ///< rotation of the first link, rad/s
 };
 
-// Quantity number i of an array.
+// read() and at() take quantity number i of an array, put() sets it.
 
 template <typename Number>
 inline void read(const Number* array, std::size_t i, Number& value) {
@@ -146,7 +146,7 @@ inline void put(Number* array, std::size_t i, const Tensor<Number>& t) {
   place[5] = t.yz;
 }
 
-/// In the lanes of the mask.
+/// Sets the lanes of the mask.
 template <typename Mask, typename Number>
 inline void put_where(Mask mask, Number& place, const Number& value) {
   place = select(mask, value, place);
@@ -247,7 +247,7 @@ template <typename Number>
 inline Number inverse_of(const Number& inertia) {
   return 1.0 / inertia;
 }
-/// By Cramer's rule.
+/// Inverts by Cramer's rule.
 template <typename Number>
 inline Tensor<Number> inverse_of(const Tensor<Number>& t) {
   const Number xx = t.yy * t.zz - t.yz * t.yz;

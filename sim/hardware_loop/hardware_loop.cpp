@@ -87,23 +87,15 @@ class HardwareLoop::Implementation {
   }
 
   [[nodiscard]] TickSample sample() const {
-    return {tick_ - 1,
-            values_.latched_contacts(),
-            values_.setpoints(),
-            values_.internal_values(),
-            values_.pulses(),
-            plant_.servo_commands(),
-            plant_.link_poses(),
-            plant_.joint_angles(),
-            plant_.motor_torques(),
-            plant_.servo_currents(),
-            plant_.contact_forces(),
-            first_fault_tick_ ? std::span<const Loss>() : reference_.chain().lost(),
-            {},
-            plant_.object_poses(),
-            plant_.sensors().values(),
-            plant_.sensors().measured(),
-            reference_.readings()};
+    TickSample sample{.tick = tick_ - 1,
+                      .latched_contacts = values_.latched_contacts(),
+                      .setpoints = values_.setpoints(),
+                      .internal_values = values_.internal_values(),
+                      .servo_pulses = values_.pulses(),
+                      .lost = first_fault_tick_ ? std::span<const Loss>() : reference_.chain().lost(),
+                      .readings = reference_.readings()};
+    plant_.add_to(sample);
+    return sample;
   }
 
   [[nodiscard]] std::uint32_t tick() const { return tick_; }

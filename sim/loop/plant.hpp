@@ -13,6 +13,7 @@
 #include "sim/loop/module_readings.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/physics/world.hpp"
+#include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/sensor/attached_sensors.hpp"
 
@@ -77,6 +78,9 @@ class Plant {
   /// Touch sensors per link, as they are wired to the modules: bit 0 rear, bit 1 front; not debounced, and with the
   /// scenario's contact noise.
   [[nodiscard]] std::span<const std::uint8_t> link_contacts() const { return link_contacts_; }
+
+  /// Adds what a recorder takes of the servos and the world. Valid until the next step.
+  void add_to(TickSample& sample) const;
 
   /// What the module of a joint measures now: the current that its servo drew in the last step (an estimate,
   /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.

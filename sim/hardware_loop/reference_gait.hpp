@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sim/hardware_loop/hardware_report.hpp"
+#include "sim/loop/gait.hpp"
 #include "sim/loop/kernel_chain.hpp"
-#include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -31,7 +31,7 @@ class ReferenceGait {
   /// Before advance(), for each joint: stops it or lets it join, as its module did. Reports failures of the module.
   void follow(unsigned joint, const ModuleTick& module, HardwareReport& report);
   /// Position in the scenario of the change for the coming tick, if there is one.
-  [[nodiscard]] std::optional<std::size_t> due_change() const;
+  [[nodiscard]] std::optional<std::size_t> due_change() const { return gait_.due_change(); }
   /// Before advance(): the current that the module of a joint read for the tick, in mA.
   void set_current(unsigned joint, std::uint16_t current_ma);
   /// Computes the tick. link_contacts: as they were at its SYNC. is_change_made: the modules have the due change; if
@@ -45,24 +45,21 @@ class ReferenceGait {
   [[nodiscard]] bool has_failed(unsigned joint) const { return failed_[joint]; }
   /// The joint still runs in the reference, but its module failed after it had sent its state. The module cannot be
   /// asked for its values, so the reference's are used.
-  [[nodiscard]] bool stands_in_for(unsigned joint) const { return failed_[joint] && chain_.is_running(joint); }
+  [[nodiscard]] bool stands_in_for(unsigned joint) const { return failed_[joint] && chain().is_running(joint); }
   /// Debounced touch sensors of a joint, in the bits of the state frame's flags.
   [[nodiscard]] std::uint8_t contacts(unsigned joint) const { return touch_.contacts()[joint]; }
   /// By joint, what its algorithms got in the tick.
   [[nodiscard]] std::span<const JointReadings> readings() const { return readings_; }
-  [[nodiscard]] const KernelChain& chain() const { return chain_; }
+  [[nodiscard]] const KernelChain& chain() const { return gait_.chain(); }
 
  private:
   void fail(unsigned joint, HardwareReport& report);
   void stop(unsigned joint, HardwareReport& report);
 
-  const Scenario& scenario_;
-  KernelChain chain_;
+  Gait gait_;
   TouchInputs touch_;
   std::vector<bool> failed_;  ///< by joint
   std::vector<JointReadings> readings_;
-  std::size_t next_change_ = 0;
-  ServoPulses pulse_source_;
   std::vector<ServoPulse> expected_pulses_;
 };
 

@@ -4,7 +4,7 @@
 
 namespace proleg {
 
-/// The largest integer whose square is at most `value`. For constants that are derived once, not for every tick.
+/// The largest integer whose square is at most `value`. Use it for constants that are derived once, not in every tick.
 [[nodiscard]] constexpr std::uint32_t square_root(std::uint64_t value) {
   std::uint64_t rest = value;
   std::uint64_t root = 0;

@@ -4,8 +4,8 @@
 
 namespace proleg {
 
-/// Fault confinement of a CAN controller (ISO 11898-1). `error_warning` is error active with a counter above 95, as
-/// Linux counts it.
+/// Error state of a CAN controller (ISO 11898-1). `error_warning` is error active with a counter above 95, as Linux
+/// counts it.
 enum class CanState : std::uint8_t { error_active, error_warning, error_passive, bus_off };
 
 /// The error state of a controller and its counters.
@@ -20,10 +20,10 @@ struct CanStatus {
 /// Kinds of errors that a controller or its driver reports.
 enum class CanErrorKind : std::uint8_t {
   acknowledgement,   ///< no node acknowledged a frame
-  bit_dominant,      ///< a dominant bit was sent, a recessive one seen (Linux: bit 0)
-  bit_recessive,     ///< a recessive bit was sent, a dominant one seen (Linux: bit 1)
+  bit_dominant,      ///< a dominant bit was sent, a recessive one read back (Linux: bit 0)
+  bit_recessive,     ///< a recessive bit was sent, a dominant one read back (Linux: bit 1)
   crc,               ///< the checksum of a received frame is wrong
-  form,              ///< a bit with a fixed value has the other one
+  form,              ///< a bit with a fixed value has the opposite value
   receive_overrun,   ///< a received frame was lost because the receiver had no room
   transmit_overrun,  ///< a frame to be sent was lost because the transmitter had no room
   stuff,             ///< six equal bits in a row

@@ -8,7 +8,7 @@
 
 namespace proleg {
 
-/// Two touch sensors lie under each link.
+/// The two touch sensors under each link.
 enum class TouchSensor : std::uint8_t {
   rear,   ///< nearer to the tail
   front,  ///< nearer to the head
@@ -18,7 +18,7 @@ enum class TouchSensor : std::uint8_t {
 /// behind joint j. A link is not pressed until the first frame of its joint is received.
 class Contacts {
  public:
-  /// frames: the latest state frame of every joint, in kernel order; or none, then nothing is pressed.
+  /// frames: the latest state frame of every joint, in kernel order. If it is empty, nothing is pressed.
   explicit Contacts(std::span<const StateFrame> frames) : frames_(frames) {}
 
   [[nodiscard]] unsigned link_count() const { return static_cast<unsigned>(frames_.size()) + 1; }

@@ -8,7 +8,7 @@
 namespace proleg {
 namespace {
 
-/// u after a step. All products have Q56.
+/// The potential u of a neuron after a step. All products have Q56.
 std::int32_t potential(std::int32_t u, std::int32_t other_output, std::int32_t own_fatigue, std::int32_t fast_step,
                        std::int32_t fatigue, std::int32_t inhibition, std::int32_t input) {
   const std::int64_t inhibited = shift_right_rounding(multiply_wide(inhibition, other_output), 28);

@@ -4,7 +4,7 @@
 
 namespace proleg {
 
-/// An algorithm that reacts to touch (thesis, section 5.2.1 and listing A.3): in each tick it is given the contacts of
+/// An algorithm that reacts to touch (thesis, section 5.2.1 and listing A.3). In each tick it receives the contacts of
 /// all links, its own included, all of the same age.
 class SensingModule : public ActuationModule {
  public:

@@ -1,7 +1,7 @@
 #pragma once
 
 // An image is the program of a module as it is sent over the bus and written into flash: a header of 512 bytes, then
-// the body, which begins with the vector table. The header says for which boards the body is, and what it contains.
+// the body, which begins with the vector table. The header describes the body and the boards that it is for.
 //
 // Header, format 1 (little-endian; what is not listed is 0):
 //   0  u32  magic, the characters PIMG
@@ -44,7 +44,7 @@ struct Version {
   std::uint16_t patch = 0;
 
   friend constexpr bool operator==(const Version&, const Version&) = default;
-  /// Whether it is the older one.
+  /// Whether `one` is the older version.
   friend constexpr bool operator<(const Version& one, const Version& other) {
     return one.major != other.major   ? one.major < other.major
            : one.minor != other.minor ? one.minor < other.minor
@@ -52,12 +52,12 @@ struct Version {
   }
 };
 
-/// What decides whether an image runs. A bootloader has no room to read more.
+/// The part of a header that decides whether an image runs. A bootloader has no room to read more.
 struct Summary {
   std::uint16_t board_id = 0;
   std::uint8_t lowest_revision = 0;
   std::uint8_t highest_revision = 0;  ///< at least the lowest
-  std::uint32_t address = 0;          ///< of the body
+  std::uint32_t address = 0;          ///< address of the body
   std::uint32_t length = 0;           ///< bytes of the body: a multiple of 4, not 0
   std::uint32_t crc = 0;              ///< CRC-32 of the body
 
@@ -78,55 +78,55 @@ struct Header : Summary {
   friend bool operator==(const Header&, const Header&) = default;
 };
 
-/// Where and on which board an image would run.
+/// The board, and the place on it, at which an image would run.
 struct Place {
   std::uint16_t board_id = 0;
-  std::uint8_t revision = 0;  ///< of the board's hardware
-  std::uint32_t address = 0;  ///< where bodies begin
-  std::uint32_t room = 0;     ///< bytes for a body
+  std::uint8_t revision = 0;  ///< hardware revision of the board
+  std::uint32_t address = 0;  ///< address at which bodies begin
+  std::uint32_t room = 0;     ///< number of bytes that a body may have
 };
 
 enum class Error : std::uint8_t {
   none,
   too_short,         ///< fewer bytes than a header has
-  not_an_image,      ///< another magic
+  not_an_image,      ///< the magic is wrong
   unknown_format,    ///< a format or a header size of a later version
-  damaged_header,    ///< its CRC is wrong
+  damaged_header,    ///< the CRC of the header is wrong
   impossible_value,  ///< the CRC is right, but a value is out of its range
   other_board,
   other_revision,
-  other_address,  ///< it is linked for another place
+  other_address,  ///< it is linked for another address
   too_large,
   wrong_length,  ///< there are more or fewer bytes than the header says
-  damaged_body,  ///< its CRC or its SHA-256 is wrong
+  damaged_body,  ///< the CRC or the SHA-256 of the body is wrong
 };
 
-/// For a person, without a full stop.
+/// A phrase for people that describes the error, without a full stop.
 [[nodiscard]] std::string_view describe(Error error);
 
-/// The bytes of a header; its CRC is computed.
+/// Bytes of a header, with its CRC, which is computed.
 [[nodiscard]] HeaderBytes encode(const Header& header);
 
 struct HeaderResult {
-  Header header;  ///< of use if error is `none`
+  Header header;  ///< valid if error is `none`
   Error error = Error::none;
 };
 
-/// The header at the beginning of some bytes. The body is not looked at.
+/// Decodes the header at the beginning of some bytes. The body is not checked.
 [[nodiscard]] HeaderResult decode(std::span<const std::uint8_t> bytes);
-/// The same for the summary, which is of use if the error is `none`.
+/// Decodes the summary at the beginning of some bytes. It is valid if the error is `none`.
 [[nodiscard]] Error decode(std::span<const std::uint8_t> bytes, Summary& summary);
 
-/// Whether an image with this header can run there: `other_board` to `too_large`, or `none`.
+/// Whether an image with this header can run at this place: `other_board` to `too_large`, or `none`.
 [[nodiscard]] Error check_place(const Summary& header, const Place& place);
 
-/// All of this for a whole image: header, place and body.
+/// Checks a whole image: header, place and body.
 [[nodiscard]] Error check_image(std::span<const std::uint8_t> image, const Place& place);
 
 /// Whether a body is the one that the header describes: `wrong_length`, `damaged_body`, or `none`.
 [[nodiscard]] Error check_body(const Header& header, std::span<const std::uint8_t> body);
 
-/// Enters length, CRC and SHA-256 of a body.
+/// Sets the length, CRC and SHA-256 of the header from a body.
 void describe_body(Header& header, std::span<const std::uint8_t> body);
 
 /// Where the fields of a header are. For the image that is being linked, too, whose header the compiler writes.

@@ -40,8 +40,8 @@ inline constexpr unsigned max_blocks = 96;
 inline constexpr std::size_t block_size = block_symbols * symbol_size;
 inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in a report: the module waits for `begin`
 inline constexpr std::uint8_t no_block = 0xFF;
-inline constexpr std::uint8_t needs_symbols =
-    0x80;  ///< bit of the number of a block in a report: repair symbols cannot complete the block
+/// Bit of the number of a block in a report: repair symbols cannot complete the block.
+inline constexpr std::uint8_t needs_symbols = 0x80;
 
 enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave, header, enter, check };
 

@@ -25,8 +25,8 @@ enum class Service : std::uint8_t {
   select_vendor = 0x40,  ///< 0x40 to 0x43: a number of the address each
   select_serial = 0x43,
   selected = 0x44,  ///< answer to select_serial
-  identify_vendor =
-      0x46,  ///< 0x46 to 0x4B: vendor, product, the limits of the revision, the limits of the serial number
+  /// 0x46 to 0x4B: vendor, product, the limits of the revision, the limits of the serial number.
+  identify_vendor = 0x46,
   identify_serial_high = 0x4B,
   identify_non_configured = 0x4C,
   identified = 0x4F,                 ///< answer to identify_serial_high and fastscan

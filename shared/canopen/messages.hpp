@@ -115,11 +115,11 @@ enum class EmergencyCode : std::uint16_t {
   supply_low = 0x3220,  ///< under-voltage of the chip's supply
   over_temperature = 0x4210,
   sensors_failed = 0x5210,  ///< the measuring circuit (ADC) gives no new readings
-  clock_failure =
-      0x5220,  ///< the module was reset because a clock of its chip failed; detail: where the program was, 0: not known
+  /// The module was reset because a clock of its chip failed; detail: where the program was, 0: not known.
+  clock_failure = 0x5220,
   watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known
-  software_fault =
-      0x6100,  ///< the module was reset after a fault of its program; detail: where the program was, 0: not known
+  /// The module was reset after a fault of its program; detail: where the program was, 0: not known.
+  software_fault = 0x6100,
   not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's last refusal (0x2001:8), or 0
   frames_lost = 0x8110,  ///< frames were received, but there was no room for them; detail: their number since the start
   heartbeat_lost = 0x8130,
@@ -132,8 +132,8 @@ enum class EmergencyCode : std::uint16_t {
   foreign_configuration = 0xFF03,  ///< the CRC in TICK is not the module's own
   rejoined = 0xFF04,               ///< not a fault: the module has joined the moving robot again
   unknown_label = 0xFF05,          ///< state frames of a joint carry labels that fit no tick
-  early_sync =
-      0xFF06,  ///< a SYNC within half a period of the one before is no tick; detail: time by which it was early, in us
+  /// A SYNC within half a period of the one before is no tick; detail: time by which it was early, in us.
+  early_sync = 0xFF06,
 };
 /// An emergency message. The decoder also accepts codes that are not listed above.
 struct Emergency {

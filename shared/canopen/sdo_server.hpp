@@ -145,8 +145,8 @@ class SdoServer {
   bool has_size_ = false;      ///< whether the client has announced the size
   bool uses_crc_ = false;      ///< whether both sides use the checksum
   std::uint8_t silences_ = 0;  ///< number of silences since the last frame of the client
-  std::uint8_t held_ =
-      0;  ///< bytes of the last segment, which is held because its number of data bytes is not known before the end
+  /// Bytes of the last segment, which is held because its number of data bytes is not known before the end.
+  std::uint8_t held_ = 0;
   bool is_write_open_ = false;  ///< whether the device has a write of a long type open
   BlockCrc crc_;
   BlockReceiver receiver_;

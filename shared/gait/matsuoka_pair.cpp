@@ -35,8 +35,8 @@ MatsuokaConstants make_matsuoka_constants(std::int32_t frequency, std::int32_t t
   // step / tau = omega step (T / tau) / (omega T)
   constexpr std::int64_t half_pi = 843314857;  // Q29: 2 pi / steps_in_a_tick
   static_assert(MatsuokaConstants::steps_in_a_tick == 4);
-  const std::int64_t turns =
-      divide_nearest((std::int64_t{frequency} * tick_period_us) << 6U, 1'000'000);  // a tick, Q30
+  // Turns in a tick are in Q30.
+  const std::int64_t turns = divide_nearest((std::int64_t{frequency} * tick_period_us) << 6U, 1'000'000);
   const std::int64_t omega_step = shift_right_rounding(turns * half_pi, 29);
   const std::int64_t fast = divide_nearest(shift_right_rounding(omega_step * time_ratio, 4), std::int64_t{x});
   constexpr std::int64_t stable = 1 << 28;

@@ -4,13 +4,13 @@
 
 namespace proleg::firmware {
 
-/// Counts received frames that were lost, and decides which losses are worth a message: on a bus that is too busy,
-/// messages would add to the losses.
+/// Counts received frames that were lost, and decides which losses are reported: on a bus that is too busy, reports
+/// would cause more losses.
 class LossCounter {
  public:
   static constexpr Microseconds pause_us = 1'000'000;
 
-  /// count: since the start. Whether it is to be reported: once a second at most.
+  /// count: losses since the start. Returns whether to report it: once a second at most.
   [[nodiscard]] bool add(Microseconds now, std::uint32_t count) {
     count_ = count;
     if (now < next_report_) {

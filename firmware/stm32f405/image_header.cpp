@@ -1,5 +1,5 @@
-// The header of the image, in front of the vector table. What is known only after linking, its length, checksums and
-// hash, complete_image.py enters.
+// The header of the image, in front of the vector table. complete_image.py writes the fields that are known only after
+// linking: length, checksums and hash.
 
 #include "shared/image/image_header.hpp"
 #include "firmware/module/board_record.hpp"

@@ -11,7 +11,7 @@
 
 extern "C" {
 
-/// RAM that the program does not use, from the linker script.
+/// RAM that the program does not use; the linker script defines it.
 extern std::uint8_t image_buffer_start[];
 extern std::uint8_t image_buffer_end[];
 
@@ -26,13 +26,14 @@ using bootloader::Slots;
 constexpr std::uint32_t confirmed_word_address =
     flash_layout::image_sector_a.address + flash_layout::image_sector_a.size - Slots::words_size;
 
-/// `started` stays until the program has started well: it may stop before.
+/// Whether the bootloader has started the program. `started` stays until the program has started well: it may stop
+/// before.
 bool was_started_by_bootloader() {
   const HandoverAction action = read_handover().action;
   return action == HandoverAction::started || action == HandoverAction::runs;
 }
 
-/// A reset would shorten the servo's last pulse.
+/// Restarts the chip. A reset would shorten the servo's last pulse, so it waits for its end.
 [[noreturn]] void restart_with(const bootloader::Handover& handover, const Servo& servo) {
   servo.finish_last_pulse();
   leave_handover(handover);
@@ -58,7 +59,7 @@ bool ProgramPlace::is_confirmed() const {
 void ProgramPlace::confirm() {
   std::array<std::uint8_t, 4> bytes{};
   write_little_endian(bytes, 0, bytes.size(), Slots::confirmed_word);
-  static_cast<void>(program_words(confirmed_word_address, bytes));  // if it fails the trial goes on
+  static_cast<void>(program_words(confirmed_word_address, bytes));  // if it fails the trial continues
 }
 
 void ProgramPlace::note_good_start() {

@@ -2,7 +2,7 @@
 
 namespace proleg::stm32f405 {
 
-/// As after a reset by the pin, except that RCC_CSR says that software did it. RAM keeps its contents.
+/// Resets the chip as its reset pin does, except that RCC_CSR names software as the cause. RAM keeps its contents.
 [[noreturn]] void reset_chip();
 
 }  // namespace proleg::stm32f405

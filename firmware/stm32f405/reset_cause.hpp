@@ -5,8 +5,8 @@
 
 namespace proleg::stm32f405 {
 
-/// Why the chip started, from RCC_CSR. The chip pulls its own reset pin at every reset, so that the pin's flag counts
-/// only if it is the only one (RM0090, section 7.1.1).
+/// Cause of the chip's start, from RCC_CSR. The chip pulls its own reset pin at every reset, so that the pin's flag
+/// counts only if it is the only one (RM0090, section 7.1.1).
 [[nodiscard]] constexpr firmware::ResetCause reset_cause_of(std::uint32_t csr) {
   using firmware::ResetCause;
   if ((csr & (rcc::csr_porrstf | rcc::csr_borrstf)) != 0) {

@@ -7,7 +7,7 @@
 namespace proleg {
 
 /// A file that cannot be written or read although the request is right: a full disk, a read-only folder, a device
-/// error. what() is one line: the path and what happened.
+/// error. what() is one line: the path and the error.
 class FileError : public std::runtime_error {
  public:
   FileError(const std::filesystem::path& path, const std::string& what)

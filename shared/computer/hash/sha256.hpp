@@ -9,7 +9,7 @@ namespace proleg {
 /// SHA-256 of the bytes of a text, 64 lower-case hexadecimal digits.
 [[nodiscard]] std::string sha256_hex(std::string_view text);
 
-/// Two lower-case hexadecimal digits for each byte.
+/// Writes bytes as lower-case hexadecimal digits, two for each byte.
 [[nodiscard]] std::string hexadecimal_digits(std::span<const unsigned char> bytes);
 
 }  // namespace proleg

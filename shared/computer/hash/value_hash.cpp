@@ -27,7 +27,7 @@ void ValueHash::append(std::span<const std::int32_t> values) {
 }
 
 std::string ValueHash::hex() const {
-  // Finishing destroys the state, so this finishes a copy.
+  // Finishing destroys the state, so a copy is finished.
   crypto_hash_sha256_state state = state_;
   crypto_hash_sha256_update(&state, buffer_.data(), buffered_);
   std::array<unsigned char, crypto_hash_sha256_BYTES> digest;

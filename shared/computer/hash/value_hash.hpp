@@ -10,8 +10,8 @@
 
 namespace proleg {
 
-/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian. Two runs on any two machines have the
-/// same set-points, or the same servo commands, if their hashes are equal.
+/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian. Two runs on any computers have the same
+/// set-points, or the same servo commands, if their hashes are equal.
 class ValueHash {
  public:
   ValueHash();
@@ -25,7 +25,7 @@ class ValueHash {
  private:
   crypto_hash_sha256_state state_;
   std::array<unsigned char, 256> buffer_;  ///< collects values, which come one by one, into blocks
-  std::size_t buffered_ = 0;               ///< bytes in the buffer
+  std::size_t buffered_ = 0;               ///< number of bytes in the buffer
 };
 
 }  // namespace proleg

@@ -4,7 +4,7 @@
 
 namespace proleg::canopen {
 
-// What a host writes to the controlword of a drive (0x6040; CiA 402, table 27).
+// Values that a host writes to the controlword of a drive (0x6040; CiA 402, table 27).
 inline constexpr std::uint16_t shutdown_controlword = 0x0006;
 inline constexpr std::uint16_t switch_on_controlword = 0x0007;
 inline constexpr std::uint16_t enable_operation_controlword = 0x000F;

@@ -19,7 +19,7 @@ class TableLine {
     text_ += cell;
   }
   void add(const char* cell) { add(std::string_view(cell)); }
-  /// Leaves the cell empty if the number is not finite.
+  /// Appends a cell with a number; the cell is empty if the number is not finite.
   template <std::floating_point Number>
   void add(Number value) {
     add(std::string_view(exact_text(value)));
@@ -29,7 +29,7 @@ class TableLine {
     add(std::string_view(std::to_string(value)));
   }
 
-  /// The cells and a line end; then starts an empty line.
+  /// Returns the cells and a line end; then starts an empty line.
   [[nodiscard]] std::string finish() { return std::exchange(text_, {}) + '\n'; }
 
  private:

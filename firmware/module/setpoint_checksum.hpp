@@ -6,30 +6,30 @@
 
 namespace proleg::firmware {
 
-/// CRC-32 over all set-points of the joint, from tick 0 on: with it a host compares every bit of them, of which state
-/// frames carry a part only (object 0x200D).
+/// CRC-32 over all set-points of the joint, from tick 0 on. With it a host compares every bit of them; state frames
+/// contain only a part of the bits (object 0x200D).
 class SetpointChecksum {
  public:
   struct Value {
-    std::uint32_t ticks = 0;  ///< how many set-points were added; 0: none, or not all of them are known
-    std::uint32_t crc = 0;    ///< of them, int32, little-endian
+    std::uint32_t ticks = 0;  ///< number of set-points that were added; 0: none, or not all of them are known
+    std::uint32_t crc = 0;    ///< CRC of these set-points as int32, little-endian
   };
 
-  /// Tick 0 comes next.
+  /// Starts again: the next set-point is that of tick 0.
   void restart() { *this = {}; }
-  /// The set-points of earlier ticks are not known: nothing counts until restart().
+  /// Notes that set-points of earlier ticks are not known: nothing is added until restart().
   void lose() {
     restart();
     is_complete_ = false;
   }
-  /// The set-point of the next tick, 90 degrees = 2^30.
+  /// Adds the set-point of the next tick, 90 degrees = 2^30.
   void add(std::int32_t setpoint) {
     if (is_complete_) {
       crc_.add_little_endian(static_cast<std::uint32_t>(setpoint), 4);
       ++ticks_;
     }
   }
-  /// Keeps the present value until the next take() or restart(): both of its parts belong to one tick.
+  /// Keeps the present value until the next take() or restart(), so that its two parts belong to the same tick.
   void take() { taken_ = {ticks_, crc_.value()}; }
   [[nodiscard]] const Value& taken() const { return taken_; }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "firmware/module/module_settings.hpp"
-#include "firmware/module/setpoint_checksum.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
 

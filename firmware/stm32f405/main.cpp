@@ -7,7 +7,7 @@
 #include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/module_task.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
-#include "firmware/stm32f405/reset_cause.hpp"
+#include "firmware/stm32f405/reset.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
 #include "shared/kernel/fingerprint.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <linux/can.h>
 
-#include "shared/can/can_status.hpp"
+#include "shared/can/can_port.hpp"
 
 namespace proleg::host {
 

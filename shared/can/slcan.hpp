@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "shared/can/can_frame.hpp"
-#include "shared/can/can_status.hpp"
+#include "shared/can/can_port.hpp"
 
 namespace proleg {
 

@@ -4,7 +4,6 @@
 
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/sdo_frame.hpp"
-#include "shared/canopen/sdo_profile.hpp"
 
 namespace proleg::canopen {
 

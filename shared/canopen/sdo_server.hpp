@@ -10,9 +10,16 @@
 #include "shared/can/can_port.hpp"
 #include "shared/canopen/block_transfer.hpp"
 #include "shared/canopen/objects.hpp"
-#include "shared/canopen/sdo_profile.hpp"
 
 namespace proleg::canopen {
+
+/// Whether a client can read values of more than four bytes, by segments or as a block. A bootloader has neither such
+/// values nor room for the services: it is built with PROLEG_SDO_WITHOUT_LONG_UPLOADS, and refuses these commands.
+#ifdef PROLEG_SDO_WITHOUT_LONG_UPLOADS
+inline constexpr bool sdo_has_long_uploads = false;
+#else
+inline constexpr bool sdo_has_long_uploads = true;
+#endif
 
 /// The state of the device behind the SDO server. The server calls it only for entries that exist, that the declaration
 /// allows to be read or written, and that have no fixed_value().

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "shared/fixed/arithmetic.hpp"
-#include "shared/fixed/square_root.hpp"
 
 namespace proleg {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "shared/fixed/arithmetic.hpp"
 #include "shared/gait/algorithms.hpp"
-#include "shared/gait/limited_step.hpp"
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {

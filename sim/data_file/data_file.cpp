@@ -11,10 +11,8 @@
 #include <utility>
 
 #include "shared/computer/errors/file_error.hpp"
-#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output_check.hpp"
-#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {

@@ -21,7 +21,7 @@
 #include <stdexcept>
 
 #include "shared/computer/durations/durations.hpp"
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/hardware_loop/hardware_options.hpp"
 #include "sim/hardware_loop/hardware_report.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shared/kernel/kernel.hpp"
 #include "sim/loop/difference.hpp"
 #include "sim/loop/world_hash.hpp"

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/computer/hash/value_hash.hpp"
-#include "sim/loop/gait.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/pulse_player.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/loop/gait.hpp"

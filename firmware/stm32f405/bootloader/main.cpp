@@ -15,7 +15,6 @@
 #include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/reset.hpp"
-#include "firmware/stm32f405/reset_cause.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
 
 namespace proleg::stm32f405 {

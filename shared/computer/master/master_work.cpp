@@ -1,6 +1,5 @@
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
-#include "shared/computer/master/controlwords.hpp"
 #include "shared/computer/master/master.hpp"
 
 // The SDO transfers of each phase, and how the master handles their results.

@@ -3,12 +3,14 @@
 // Functions that read and write text.
 
 #include <charconv>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace proleg {
@@ -72,5 +74,32 @@ template <typename Integer>
 
 /// A hexadecimal number such as "0x1F", with at least `min_digits` digits.
 [[nodiscard]] std::string hexadecimal(std::uint32_t value, unsigned min_digits = 1);
+
+/// A line of a tab-separated table. Its first cell is not empty.
+class TableLine {
+ public:
+  void add(std::string_view cell) {
+    if (!text_.empty()) {
+      text_ += '\t';
+    }
+    text_ += cell;
+  }
+  void add(const char* cell) { add(std::string_view(cell)); }
+  /// Appends a cell with a number; the cell is empty if the number is not finite.
+  template <std::floating_point Number>
+  void add(Number value) {
+    add(std::string_view(exact_text(value)));
+  }
+  template <std::unsigned_integral Number>
+  void add(Number value) {
+    add(std::string_view(std::to_string(value)));
+  }
+
+  /// Returns the cells and a line end; then starts an empty line.
+  [[nodiscard]] std::string finish() { return std::exchange(text_, {}) + '\n'; }
+
+ private:
+  std::string text_;
+};
 
 }  // namespace proleg

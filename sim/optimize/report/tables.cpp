@@ -3,7 +3,6 @@
 #include <numeric>
 #include <set>
 
-#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/environment/physics_engine.hpp"
 #include "sim/optimize/evaluation/rating.hpp"

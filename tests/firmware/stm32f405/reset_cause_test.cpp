@@ -1,4 +1,4 @@
-#include "firmware/stm32f405/reset_cause.hpp"
+#include "firmware/stm32f405/reset.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shipped.hpp"
 #include "sim/scenario/reader.hpp"
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "shared/canopen/declared_objects.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/master/controlwords.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/bus_document.hpp"

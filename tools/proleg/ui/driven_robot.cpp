@@ -7,7 +7,7 @@
 
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
-#include "shared/computer/master/controlwords.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/servo_command.hpp"
 

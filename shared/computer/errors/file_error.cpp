@@ -1,4 +1,4 @@
-#include "shared/computer/errors/file_kind.hpp"
+#include "shared/computer/errors/file_error.hpp"
 
 #include <system_error>
 

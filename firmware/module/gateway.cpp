@@ -20,7 +20,7 @@ constexpr std::string_view damaged = "?";
 }  // namespace
 
 Gateway::Gateway(const ModuleIdentity& identity, const Ports& ports)
-    : can_(ports.can), line_(ports.line), adapter_(buffer_, entrance_, settings_of(identity)) {}
+    : can_(ports.can), line_(ports.line), adapter_(buffer_, host_port_, settings_of(identity)) {}
 
 void Gateway::power_on() {
   is_active_ = false;

@@ -71,9 +71,9 @@ class Gateway {
   static constexpr std::size_t max_read = 64;
 
   /// The bus as the adapter sees it: it takes the frames of the host.
-  class Entrance final : public CanPort {
+  class HostPort final : public CanPort {
    public:
-    explicit Entrance(Gateway& gateway) : gateway_(gateway) {}
+    explicit HostPort(Gateway& gateway) : gateway_(gateway) {}
     [[nodiscard]] bool send(const CanFrame& frame) override { return gateway_.enqueue(frame); }
 
    private:
@@ -91,7 +91,7 @@ class Gateway {
   CanPort& can_;
   LinePort* line_;
   std::array<char, buffer_size> buffer_{};
-  Entrance entrance_{*this};
+  HostPort host_port_{*this};
   SlcanAdapter adapter_;
   std::array<CanFrame, queue_size> queue_{};
   std::size_t first_ = 0;  ///< position of the oldest frame

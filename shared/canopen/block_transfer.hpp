@@ -61,15 +61,15 @@ class BlockReceiver {
   /// Whether the transfer should end, because too many acknowledgements in a row have brought no segment. The received
   /// segments are then not those of this transfer: another client has begun one, and both ends would acknowledge for
   /// ever.
-  [[nodiscard]] bool is_stuck() const { return fruitless_ >= max_fruitless; }
+  [[nodiscard]] bool is_stuck() const { return unanswered_ >= max_unanswered; }
 
   explicit constexpr BlockReceiver(std::uint8_t size = max_block_size) : size_(size) {}
 
  private:
-  static constexpr std::uint8_t max_fruitless = 20;
+  static constexpr std::uint8_t max_unanswered = 20;
 
   std::uint8_t size_;
-  std::uint8_t fruitless_ = 0;     ///< acknowledgements since a segment was taken
+  std::uint8_t unanswered_ = 0;    ///< acknowledgements since a segment was taken
   std::uint8_t taken_ = 0;         ///< segments of the present sub-block that were taken
   std::uint8_t acknowledged_ = 0;  ///< segments of the last sub-block that were acknowledged
   bool has_come_ = false;          ///< whether a segment has come since the last acknowledgement

@@ -16,7 +16,7 @@ std::optional<CanFrame> SdoServer::receive(Microseconds now, const CanFrame& fra
     reset();
     return std::nullopt;
   }
-  heard_at_ = now;
+  last_frame_at_ = now;
   silences_ = 0;
   if (state_ == State::block_download) {
     return download_block_segment(frame);
@@ -275,7 +275,7 @@ std::optional<CanFrame> SdoServer::start_block_upload(const CanFrame& frame) {
 }
 
 CanFrame SdoServer::next_segment(Microseconds now) {
-  heard_at_ = now;
+  last_frame_at_ = now;
   const std::uint32_t offset = offset_ + std::uint32_t{segment_bytes} * sender_.sent();
   const std::uint8_t bytes = bytes_at(offset);
   CanFrame segment = make(0);
@@ -337,7 +337,7 @@ std::optional<CanFrame> SdoServer::poll(Microseconds now) {
   if (!is_receiving_block() || ++silences_ >= max_silences) {
     return abort(AbortCode::timeout);
   }
-  heard_at_ = now;
+  last_frame_at_ = now;
   return acknowledge_block();
 }
 
@@ -345,7 +345,7 @@ Microseconds SdoServer::next_deadline() const {
   if (!is_active()) {
     return never;
   }
-  return heard_at_ + (is_receiving_block() ? silence_us : timeout_us);
+  return last_frame_at_ + (is_receiving_block() ? silence_us : timeout_us);
 }
 
 void SdoServer::reset() {

@@ -165,7 +165,7 @@ class SdoServer {
   std::uint32_t offset_ = 0;             ///< number of bytes that were received, or were acknowledged
   std::uint32_t summed_ = 0;             ///< number of bytes of an upload that are in the CRC
   AbortCode failure_ = AbortCode::none;  ///< failure of a block download, kept until the sub-block ends
-  Microseconds heard_at_ = 0;            ///< time of the last frame of the client, or of an upload's last segment
+  Microseconds last_frame_at_ = 0;       ///< time of the last frame of the client, or of an upload's last segment
   ObjectAccess& device_;
 };
 

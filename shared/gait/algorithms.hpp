@@ -21,7 +21,7 @@ namespace proleg {
 
 /// Amplitude-controlled phase oscillators, coupled to both neighbours (A. J. Ijspeert et al., Science 315, 2007;
 /// A. Crespi and A. J. Ijspeert, CLAWAR 2006; without the neighbours' amplitude in the coupling, so that a joint at
-/// rest still hands the wave on):
+/// rest still passes the wave on):
 ///   theta_i' = 2 pi f + sum_j w sin(theta_j - theta_i - (j - i) phase_difference),   out_i = X_i + r_i cos(theta_i)
 /// with r_i and X_i filtered as in the extended sine. The phases start from noise.
 [[nodiscard]] const ActuationModule& pattern_generator_coupled_oscillator();

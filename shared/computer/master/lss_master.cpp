@@ -61,13 +61,13 @@ void LssMaster::exchange(Microseconds now) {
       exchange_.begin(now, request(), LssExchange::of(Service::identified), options_.first_answer_timeout_us);
       break;
     case Step::configure:
-      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), patience_us_);
+      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), answer_time_us_);
       break;
     case Step::store:
       exchange_.begin(now, request(), LssExchange::of(Service::store_configuration), options_.store_timeout_us);
       break;
     default:
-      exchange_.begin(now, request(), LssExchange::of(Service::identified), patience_us_);
+      exchange_.begin(now, request(), LssExchange::of(Service::identified), answer_time_us_);
       break;
   }
 }
@@ -127,7 +127,7 @@ void LssMaster::conclude(Microseconds now) {
       return;
     case Step::begin:
       if (exchange_.is_answered()) {
-        patience_us_ = std::max(3 * exchange_.answer_delay(), options_.answer_timeout_us);
+        answer_time_us_ = std::max(3 * exchange_.answer_delay(), options_.answer_timeout_us);
         sub_ = 0;
         scan_number(now);
       } else {

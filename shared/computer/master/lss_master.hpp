@@ -121,9 +121,9 @@ class LssMaster {
   LssProblem problem_ = LssProblem::none;
   std::uint8_t problem_detail_ = 0;
   Step step_ = Step::release_all;
-  Microseconds patience_us_ = 0;  ///< time for answers on this connection
-  unsigned tries_ = 0;            ///< number of times that the present request was sent
-  std::uint8_t sub_ = 0;          ///< position of the number that is scanned
+  Microseconds answer_time_us_ = 0;  ///< time for answers on this connection
+  unsigned tries_ = 0;               ///< number of times that the present request was sent
+  std::uint8_t sub_ = 0;             ///< position of the number that is scanned
   std::uint8_t bit_ = 0;
   std::uint32_t number_ = 0;
   unsigned scans_ = 0;

@@ -16,7 +16,8 @@ TEST(Text, Utf8IsThatOfRfc3629) {
                            "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
     EXPECT_FALSE(find_invalid_utf8(good).has_value()) << testing::PrintToString(good);
   }
-  // Continuation alone, cut short, longer than needed, surrogates, beyond U+10FFFF, bytes that never occur.
+  // Bytes that are no UTF-8: a continuation alone, cut short, longer than needed, surrogates, beyond U+10FFFF, bytes
+  // that never occur.
   for (const char* bad :
        {"\x80", "\xC2", "\xC2\x41", "\xC0\x80", "\xC1\xBF", "\xE0\x80\x80", "\xE0\x9F\xBF", "\xE2\x82", "\xED\xA0\x80",
         "\xED\xBF\xBF", "\xF0\x80\x80\x80", "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "\xFE", "\xFF"}) {

@@ -55,7 +55,7 @@ NoProgram program;
 
 }  // namespace
 
-/// Its size is read from the symbol table.
+/// The test reads the size of this object from the symbol table.
 Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash, &line, &program});
 
 extern "C" {

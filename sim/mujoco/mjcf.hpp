@@ -9,11 +9,11 @@
 namespace proleg::sim::mujoco {
 
 enum class Integrator : std::uint8_t {
-  implicit,  ///< in the velocity; what MuJoCo advises for articulated bodies that turn fast
+  implicit,  ///< implicit in the velocity; MuJoCo advises it for articulated bodies that turn fast
   euler,     ///< semi-implicit, as in ODE
 };
 
-/// A robot and its environment as MJCF, MuJoCo's XML, with what MuJoCo has that comes closest to sim/ode:
+/// Writes a robot and its environment as MJCF, MuJoCo's XML, with the settings of MuJoCo that come closest to sim/ode:
 /// - a pair of geometries for everything that may touch, with the friction of friction_of(); neighbouring links have
 ///   none;
 /// - contacts and joint limits that are hard, and give back a fifth of their depth in a step;

@@ -27,7 +27,7 @@ bool is_number(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// The seed, and the count if there is one; nothing for the name of a file.
+/// Parses the seed, and the count if it is present; nothing for the name of a file.
 std::optional<FaultPlan> parse_seeds(const std::string& word) {
   constexpr std::uint32_t max_runs = 1'000'000;
   const std::size_t colon = word.find(':');
@@ -49,20 +49,20 @@ std::optional<FaultPlan> parse_seeds(const std::string& word) {
   return plan;
 }
 
-/// The same faults follow from a seed and the length of the run.
+/// The schedule of a seed, which depends only on the seed and the length of the run.
 sim::FaultSchedule random_schedule(const ScenarioRun& run, std::uint64_t seed, bool has_chips) {
   return sim::random_faults({seed, run_us(run), has_chips}, run.scenario);
 }
 
-/// What a campaign has found.
+/// The results of a campaign.
 struct Campaign {
   sim::FaultStatistics statistics;
   std::uint32_t compared = 0;   ///< schedules that native modules and the image have played
-  std::uint32_t identical = 0;  ///< of them, with the same set-points and servo commands
-  std::uint32_t different = 0;  ///< of them, with different ones although all faults act at ticks
+  std::uint32_t identical = 0;  ///< compared schedules with the same set-points and servo commands
+  std::uint32_t different = 0;  ///< compared schedules with different ones although all faults act at ticks
 };
 
-/// Runs one schedule; prints what it has broken.
+/// Runs one schedule; prints the faults that it has found.
 void run_one(const ScenarioRun& run, HilModules& modules, std::uint64_t seed, Campaign& campaign) {
   const sim::FaultSchedule schedule = random_schedule(run, seed, modules.any_virtual());
   const sim::FaultRunResult result = sim::run_with_faults(

@@ -23,7 +23,8 @@ struct HilOptions : ScenarioOptions, ModuleOptions {
 
 void add_hil_options(CommandLine& command_line, HilOptions& options);
 
-/// Losses, restarts, injected frames and bit errors of a run, which must outlive the result. Throws InputError.
+/// Options with the losses, restarts, injected frames and bit errors of a run, which must outlive the result. Throws
+/// InputError.
 [[nodiscard]] sim::HardwareOptions hardware_options(const HilOptions& options, const ScenarioRun& run);
 
 }  // namespace proleg::tools

@@ -11,7 +11,7 @@ namespace proleg::tools {
 
 namespace {
 
-/// What happened in one run: the schedule, what each module did and when, how it ended.
+/// Prints the course of one run: the schedule, the events of each module with their times, and the end of each module.
 void print_fault_report(const ScenarioRun& run, const HilResult& result) {
   for (const sim::Fault& fault : result.faults) {
     std::printf("fault             %s\n", describe(fault, run.scenario.robot).c_str());

@@ -1,6 +1,6 @@
 // What a subcommand leaves on the bus when a wait fails: it may go on with that bus.
 
-#include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/robot/bus_access.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "shared/canopen/declared_objects.hpp"
-#include "tools/proleg/flash_modules.hpp"
+#include "tools/proleg/flash/flash_modules.hpp"
 
 namespace proleg::test {
 namespace {

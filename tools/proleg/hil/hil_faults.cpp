@@ -13,8 +13,8 @@
 #include "sim/loop/fault_run.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/hil/hil_report.hpp"
 #include "tools/proleg/common/run_progress.hpp"
+#include "tools/proleg/hil/hil_report.hpp"
 
 namespace proleg::tools {
 namespace {

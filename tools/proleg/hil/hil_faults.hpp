@@ -7,9 +7,9 @@
 #include <string>
 
 #include "sim/fault/fault.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
 #include "tools/proleg/hil/hil_options.hpp"
-#include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg::tools {
 

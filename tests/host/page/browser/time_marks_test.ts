@@ -1,9 +1,9 @@
 // Markers and loop in the time view, from the keyboard.
 import assert from 'node:assert/strict';
 import { before, describe, it } from 'node:test';
-import { waitUntil } from './support/waiting.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
+import { waitUntil } from './support/waiting.js';
 
 describe('markers and loop', () => {
   const ui = useUi(() => UiProgram.start(), { takesControl: true });

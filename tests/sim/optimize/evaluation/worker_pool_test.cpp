@@ -68,6 +68,12 @@ RunTasks noting_batches(const std::filesystem::path& file) {
   };
 }
 
+/// A file to which processes append one character for each event.
+void note_event(const std::filesystem::path& file) { std::ofstream(file, std::ios::app) << '.'; }
+std::size_t events(const std::filesystem::path& file) {
+  return std::filesystem::exists(file) ? std::filesystem::file_size(file) : 0;
+}
+
 std::vector<std::size_t> noted_batches(const std::filesystem::path& file) {
   std::vector<std::size_t> sizes;
   std::ifstream stream(file);
@@ -95,12 +101,26 @@ TEST(WorkerPool, GivesEachSearchTheResultsThatRunTrialGives) {
 TEST(WorkerPool, FillsBatchesWithTheTasksOfAllSearches) {
   const TemporaryFolder folder;
   const Experiment experiment = reduced_experiment();
-  WorkerPool pool(experiment, 1, 8, noting_batches(folder / "batches"));
+  // The worker is busy with a batch until each search has given its next task, or has ended.
+  const RunTasks run = [&](const Experiment& its, std::span<const Task> tasks) {
+    const std::vector<std::size_t> batches = noted_batches(folder / "batches");
+    const std::size_t before = std::accumulate(batches.begin(), batches.end(), std::size_t{0});
+    while (events(folder / "given") + events(folder / "ended") < before + 8) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    std::ofstream(folder / "batches", std::ios::app) << tasks.size() << '\n';
+    return one_by_one(made_up_trial)(its, tasks);
+  };
+  WorkerPool pool(experiment, 1, 8, run);
   const std::vector<int> statuses =
       statuses_of(pool, 8, [&](std::uint32_t search, const std::unique_ptr<Workers>& workers) {
         for (std::uint32_t i = 0; i < 20; ++i) {
-          static_cast<void>(result_of(*workers, {search, i, 0, {i % 5, 0, 0}, {}}));
+          start(*workers, i, {search, i, 0, {i % 5, 0, 0}, {}});
+          note_event(folder / "given");
+          while (!workers->wait(milliseconds(1000))) {
+          }
         }
+        note_event(folder / "ended");
         return 0;
       });
   EXPECT_EQ(statuses, std::vector<int>(8, 0));

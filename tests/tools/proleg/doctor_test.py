@@ -19,7 +19,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, proleg, start_drive, wait_for_drives, wait_until
+from robot_on_the_table_test import Bus, LONGEST, RealTimeTest, proleg, start_drive, wait_for_drives, wait_until
 
 
 def examine(bus, **options):
@@ -93,7 +93,7 @@ class Adapter:
         os.close(self.end)
 
 
-class Doctor(unittest.TestCase):
+class Doctor(RealTimeTest):
     def test_a_healthy_robot_that_waits_and_that_moves_has_no_fault(self):
         with Bus() as bus:
             for address in (bus.pty, bus.tcp):

@@ -19,7 +19,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, Listener, proleg, start_drive, wait_until
+from robot_on_the_table_test import Bus, LONGEST, Listener, RealTimeTest, proleg, start_drive, wait_until
 
 SLOT = 0x08020200
 ALL = [1, 2, 3, 4, 5]
@@ -31,7 +31,7 @@ def program(seed, size=14_000):
     return struct.pack(f"<{len(words)}I", *words)
 
 
-class Flash(unittest.TestCase):
+class Flash(RealTimeTest):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -203,9 +203,9 @@ class Flash(unittest.TestCase):
     def test_two_hosts_at_once(self):
         with Bus() as bus:
             first = self.start_until(bus, 1500, self.make_image("0.4.0", content=program(4, 80_000)))
-            refused = self.flash(bus.pty, "0.3.0", status=1)
-            # A module that its bootloader already flashes has no time for a second host on a busy computer.
-            self.assertRegex(self.errors + json.dumps(refused), "another host|answers no request")
+            self.flash(bus.pty, "0.3.0", status=1)
+            # On a busy computer it may not have heard the first host, and then no module obeys it.
+            self.assertRegex(self.errors, "another host|5 of 5 modules do not run the image")
             out, errors = first.communicate(timeout=LONGEST)
             self.assertEqual(first.returncode, 0, errors)
             self.assert_all_run(json.loads(out), "0.4.0")

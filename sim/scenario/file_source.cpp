@@ -5,7 +5,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "shared/computer/errors/file_kind.hpp"
+#include "shared/computer/errors/file_error.hpp"
 
 namespace proleg::sim {
 

@@ -10,7 +10,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/fault/fault_reader.hpp"
 #include "sim/fault/random_faults.hpp"
-#include "sim/loop/fault_run.hpp"
+#include "sim/hardware_loop/fault_run.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/run_progress.hpp"

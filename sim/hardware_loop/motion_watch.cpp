@@ -30,8 +30,8 @@ const char* describe(canopen::NmtState state) {
 constexpr double deg_per_count = 90.0 / servo_quarter_turn;
 /// Pulses of virtual chips are measured between edges: 500 ppm of a crystal, and the rounding.
 constexpr std::int32_t width_tolerance = 14;
-constexpr BusTime second = 1'000'000'000;
-constexpr BusTime max_motion_without_command = 3 * second / 2;
+constexpr BusTime half_a_second = 500'000'000;
+constexpr BusTime max_motion_without_command = 3 * half_a_second;
 
 }  // namespace
 
@@ -205,7 +205,7 @@ void MotionWatch::finish(BusTime now) {
         end = now - servo.last_heard < max_motion_without_command ? JointEnd::limp : JointEnd::silent;
         break;
       case JointState::operation:
-        if (now - servo.last_tick <= second / 2) {
+        if (now - servo.last_tick <= half_a_second) {
           end = JointEnd::operation;
         } else {
           violate(joint, now, "its servo is enabled without a tick for half a second");

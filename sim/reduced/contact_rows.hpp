@@ -111,7 +111,7 @@ class ContactRows {
   /// The number of a row among those of a contact, known when the program is compiled.
   template <std::size_t number>
   struct Axis {
-    constexpr operator std::size_t() const { return number; }  // NOLINT(google-explicit-constructor)
+    constexpr operator std::size_t() const { return number; }
   };
   /// act(axis): for each row of friction.
   template <typename Act>
@@ -188,6 +188,7 @@ class ContactRows {
     }
   }
 
+  // The compilers do not choose it by themselves, and then the motion is in memory instead of registers.
   [[gnu::always_inline]] void push(std::size_t contact, Unknowns& v) const {
     const Number before = value(contact, normal);
     const Number missing = s_.depth_speed[contact] - speed_along<normal>(contact, v);

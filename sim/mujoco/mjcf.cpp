@@ -57,7 +57,7 @@ class Writer {
   [[nodiscard]] std::string text() const { return text_.str(); }
 
  private:
-  static constexpr std::ptrdiff_t environment_owner = -2;   ///< no neighbour of any link
+  static constexpr std::ptrdiff_t environment_owner = -2;   ///< the environment is no neighbour of a link
   static constexpr std::ptrdiff_t first_object_owner = -3;  ///< the objects that move have this number and smaller ones
 
   /// A geometry that was written; its name is its place in the list.

@@ -43,7 +43,7 @@ class ContactFriction {
                    Between between);
   /// Sets the surface of a contact point, without its geometry. a, b: the shapes that touch.
   void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between);
-  /// joint: the joint of the contact of the last set_surface(), attached to its bodies.
+  /// Notes the joint of the contact of the last set_surface(), which must be attached to its bodies.
   void observe(dJointID joint);
   /// Must be called after the step, before its contact joints are destroyed.
   void end_step();

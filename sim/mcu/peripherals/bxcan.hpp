@@ -7,8 +7,7 @@
 #include <string>
 
 #include "sim/bus/bus.hpp"
-#include "sim/mcu/peripherals/bxcan_fifo.hpp"
-#include "sim/mcu/peripherals/bxcan_filters.hpp"
+#include "sim/mcu/peripherals/bxcan_receiver.hpp"
 #include "sim/mcu/peripherals/bxcan_requests.hpp"
 #include "sim/mcu/peripherals/bxcan_transmitter.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
@@ -63,7 +62,7 @@ class BxCan final : public RegisterBlock, private BusListener {
   void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
-  /// True time of the first pending request; never_on_bus if there is none.
+  /// True time of the first pending request; never_on_bus if none is pending.
   [[nodiscard]] BusTime next_request() const { return requests_.next_time(); }
   /// Carries out the requests of times up to now, which must be Bus::now().
   void submit(BusTime now);

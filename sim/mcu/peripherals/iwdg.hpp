@@ -49,8 +49,8 @@ class Iwdg final : public RegisterBlock {
   bool lsi_on_ = false;
   bool unlocked_ = false;
   bool expired_ = false;
-  std::uint32_t prescaler_ = 0;   ///< PR
-  std::uint32_t reload_ = 0xFFF;  ///< RLR
+  std::uint32_t prescaler_ = 0;   ///< register PR
+  std::uint32_t reload_ = 0xFFF;  ///< register RLR
   Update prescaler_update_;
   Update reload_update_;
   LocalTime since_ = 0;      ///< when `count_` began

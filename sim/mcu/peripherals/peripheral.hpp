@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/mcu/cpu/local_time.hpp"
 
 namespace proleg::sim {
@@ -20,7 +21,7 @@ class UnmodelledAccess : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Why a chip starts, as RCC_CSR shows it (RM0090, 7.3.21).
+/// Causes of a chip's start, which RCC_CSR shows (RM0090, 7.3.21).
 enum class ResetCause : std::uint8_t { power_on, brown_out, pin, software, independent_watchdog };
 
 /// Services of a chip for its peripherals.
@@ -58,7 +59,9 @@ class Peripheral {
   virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
 
   /// Name of a register: "USART2_BRR"; for an offset without a register "USART2 at offset 0x4C".
-  [[nodiscard]] virtual std::string register_name(std::uint32_t offset) const;
+  [[nodiscard]] virtual std::string register_name(std::uint32_t offset) const {
+    return std::string(name()) + " at offset " + hexadecimal(offset);
+  }
 
   /// Sets the registers as after a reset of the chip. Does not change pins and flash contents.
   virtual void reset() = 0;

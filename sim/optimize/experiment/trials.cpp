@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "shared/fixed/random.hpp"
-#include "sim/optimize/experiment/scatter.hpp"
 #include "sim/optimize/experiment/search_space.hpp"
+#include "sim/optimize/experiment/seeds.hpp"
 #include "sim/scenario/random_streams.hpp"
 #include "sim/scenario/settings.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/optimize/experiment/scatter.hpp"
+#include "sim/optimize/experiment/seeds.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -16,7 +16,7 @@
 #include <ga/GASimpleGA.h>
 #include <ga/garandom.h>
 
-#include "sim/optimize/method/method_seed.hpp"
+#include "sim/optimize/experiment/seeds.hpp"
 
 namespace proleg::optimize {
 

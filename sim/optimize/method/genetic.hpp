@@ -8,8 +8,8 @@
 
 namespace proleg::optimize {
 
-/// search() for an experiment whose method is GeneticSettings, with one objective: the genetic algorithm of GAlib 2.4.7
-/// (M. Wall, MIT, 1995-2005), which the thesis used.
+/// Implements search() for an experiment whose method is GeneticSettings, with one objective: the genetic algorithm of
+/// GAlib 2.4.7 (M. Wall, MIT, 1995-2005), which the thesis used.
 ///
 /// - Genome: one gene for each dimension, the index of its value (GA1DArrayAlleleGenome<int>). The thesis used
 ///   GARealGenome with ranges and increments. That is the same class with another number type. Its Gaussian mutator

@@ -8,11 +8,25 @@
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 #include <stdexcept>
+#include <vector>
 
+#include "sim/optimize/experiment/seeds.hpp"
 #include "sim/optimize/method/deluge_chain.hpp"
 #include "sim/optimize/method/gait_problem.hpp"
 
 namespace proleg::optimize {
+namespace {
+
+Candidate draw_start(const SearchSpace& space, std::uint64_t seed, std::uint32_t chain) {
+  Pcg32 noise(scatter(seed ^ 0x7374617274U), chain);
+  Candidate start;
+  for (const Dimension& dimension : space.dimensions) {
+    start.push_back(noise.below(static_cast<std::uint32_t>(dimension.values.size())));
+  }
+  return start;
+}
+
+}  // namespace
 
 /// The search of one call of evolve().
 class GreatDeluge::DelugeSearch {
@@ -62,7 +76,7 @@ class GreatDeluge::DelugeSearch {
   [[nodiscard]] double best_level(std::size_t chain) const { return best_levels_[chain]; }
 
  private:
-  /// Moves turn to the next chain, in a circle, that has not ended; false if there is none.
+  /// Moves turn to the next chain, in a circle, that has not ended; false if all have ended.
   static bool next_turn(const std::vector<DelugeChain>& chains, std::size_t& turn) {
     for (std::size_t i = 0; i < chains.size(); ++i, ++turn) {
       turn %= chains.size();
@@ -206,6 +220,38 @@ std::string GreatDeluge::get_extra_info() const {
   return "\twater level: " + std::to_string(settings_.water_level) + "\n\train: " + std::to_string(settings_.rain) +
          "\n\tcredits: " + std::to_string(settings_.credits) + "\n\tretries: " + std::to_string(settings_.retries) +
          "\n\tconfidence: " + std::to_string(settings_.confidence) + "\n\tseed: " + std::to_string(seed_);
+}
+
+std::string search_great_deluge(const Experiment& experiment, std::uint32_t run, FitnessSource& source) {
+  auto settings = std::get<GreatDelugeSettings>(experiment.method);
+  const std::uint64_t seed = method_seed(experiment.seed, run);
+  const std::uint32_t chains = std::max(settings.chains, 1U);
+
+  std::vector<Candidate> starts;
+  for (std::uint32_t chain = 0; chain < chains; ++chain) {
+    starts.push_back(settings.start == Start::scenario ? experiment.space.nearest(experiment.scenario)
+                                                       : draw_start(experiment.space, seed, chain));
+  }
+  source.set_needed_score(settings.first_must_pass ? std::optional(settings.water_level) : std::nullopt);
+  source.expect(starts);
+
+  // The algorithm maximises. To minimise an objective, it maximises the negative.
+  if (experiment.objectives.front().goal == Goal::minimise) {
+    settings.water_level = -settings.water_level;
+    if (settings.target) {
+      settings.target = -*settings.target;
+    }
+  }
+  GaitProblemHub hub(experiment.space, experiment.objectives, source);
+  pagmo::population population{pagmo::problem{GaitProblem{hub}}, 0U, static_cast<unsigned>(seed)};
+  for (const Candidate& start : starts) {
+    population.push_back(hub.numbers(start));
+  }
+  GreatDeluge deluge(settings, seed);
+  deluge.set_scores_depend_on_level(experiment.racing.on());
+  const pagmo::algorithm algorithm{deluge};
+  population = algorithm.evolve(population);
+  return algorithm.extract<GreatDeluge>()->ending();
 }
 
 }  // namespace proleg::optimize

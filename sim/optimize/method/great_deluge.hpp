@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/optimize/evaluation/fitness_source.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
 #include "sim/optimize/experiment/method_settings.hpp"
 
 namespace pagmo {
@@ -83,5 +85,9 @@ class GreatDeluge {
   mutable std::vector<LogLine> log_;
   mutable std::string ending_;
 };
+
+/// Implements search() for an experiment whose method is GreatDelugeSettings, with one objective and more than one
+/// candidate. It returns "no credit left" or "target reached".
+[[nodiscard]] std::string search_great_deluge(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
 }  // namespace proleg::optimize

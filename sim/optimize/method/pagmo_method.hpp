@@ -8,8 +8,8 @@
 
 namespace proleg::optimize {
 
-/// search() for an experiment whose method is PagmoSettings that check_method() accepts, and that has more than one
-/// candidate.
+/// Implements search() for an experiment whose method is PagmoSettings that check_method() accepts, and that has more
+/// than one candidate.
 ///
 /// It returns "generations used up", or earlier "converged": when the algorithm has no further requests. An algorithm
 /// that stagnates also converges when the whole population is one candidate, or when all requests of a generation lie

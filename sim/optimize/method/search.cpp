@@ -5,7 +5,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/method/genetic.hpp"
-#include "sim/optimize/method/great_deluge_method.hpp"
+#include "sim/optimize/method/great_deluge.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/method/pagmo_method.hpp"
 

@@ -14,7 +14,7 @@ namespace proleg::optimize {
 
 /// All repetitions of the experiment with one method.
 struct MethodRuns {
-  std::string method;                         ///< method_name()
+  std::string method;                         ///< result of method_name()
   SearchSpace space;                          ///< search space of the candidates
   std::vector<std::vector<Evaluation>> runs;  ///< the evaluations of each repetition, in order
   /// The best of each repetition of judged searches, with the score that the judging engine gave it. Otherwise empty.

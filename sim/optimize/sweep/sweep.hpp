@@ -24,7 +24,7 @@ struct SweptQuantity {
   std::string name;  ///< name of a parameter as in `--set`; or of another kind: "x" of the start position
   std::vector<std::string> values;  ///< decimal numbers, ascending, at least one
   std::string unit;                 ///< "" if dimensionless
-  std::string word;                 ///< the argument as the user wrote it
+  std::string argument;             ///< text of `--over`
 };
 
 struct Sweep {
@@ -39,11 +39,11 @@ struct Sweep {
   [[nodiscard]] sim::Scenario scenario_of(const Candidate& combination) const;
 };
 
-/// words: arguments "NAME=FIRST:LAST:STEP", "NAME=FIRST:LAST" with a step of 1, or "NAME=VALUE". LAST is included if a
+/// arguments: "NAME=FIRST:LAST:STEP", "NAME=FIRST:LAST" with a step of 1, or "NAME=VALUE". LAST is included if a
 /// step ends there. Checks each value on the scenario. settings: the arguments of `--set`, which the scenario has
 /// already. Throws InputError, also if a swept quantity replaces a setting, an override of the scenario or another
 /// quantity entirely.
-[[nodiscard]] Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words,
+[[nodiscard]] Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> arguments,
                                std::vector<std::string> settings = {});
 
 /// The options that hold for all runs: "--set frequency=1.5 --seconds 30 --friction 0.2".

@@ -23,8 +23,8 @@ struct Decimal {
 
 constexpr std::size_t max_digits = 15;
 
-std::optional<Decimal> parse_decimal_word(std::string_view word) {
-  std::string digits(word);
+std::optional<Decimal> parse_decimal_text(std::string_view argument) {
+  std::string digits(argument);
   Decimal decimal;
   if (const std::size_t point = digits.find('.'); point != std::string::npos) {
     decimal.decimals = static_cast<int>(digits.size() - point - 1);
@@ -65,18 +65,18 @@ std::string decimal_text(std::int64_t digits, int decimals) {
   return digits < 0 ? "-" + text : text;
 }
 
-[[noreturn]] void refuse(const std::string& word, const std::string& found, const std::string& expected) {
-  throw InputError("--over " + shortened(word), 0, found, expected);
+[[noreturn]] void refuse(const std::string& argument, const std::string& found, const std::string& expected) {
+  throw InputError("--over " + shortened(argument), 0, found, expected);
 }
 
 /// The numbers of FIRST:LAST:STEP.
-std::array<Decimal, 3> parse_range(const std::string& word, std::string_view range) {
+std::array<Decimal, 3> parse_range(const std::string& argument, std::string_view range) {
   std::vector<Decimal> numbers;
   for (std::string_view rest = range;;) {
     const std::size_t colon = rest.find(':');
-    const std::optional<Decimal> number = parse_decimal_word(rest.substr(0, colon));
+    const std::optional<Decimal> number = parse_decimal_text(rest.substr(0, colon));
     if (!number || numbers.size() == 3) {
-      refuse(word, in_quotes(range), "VALUE, FIRST:LAST or FIRST:LAST:STEP with numbers of at most 15 digits");
+      refuse(argument, in_quotes(range), "VALUE, FIRST:LAST or FIRST:LAST:STEP with numbers of at most 15 digits");
     }
     numbers.push_back(*number);
     if (colon == std::string_view::npos) {
@@ -87,23 +87,23 @@ std::array<Decimal, 3> parse_range(const std::string& word, std::string_view ran
   return {numbers[0], numbers.size() > 1 ? numbers[1] : numbers[0], numbers.size() > 2 ? numbers[2] : Decimal{1, 0}};
 }
 
-std::vector<std::string> values_of(const std::string& word, std::string_view range) {
-  std::array<Decimal, 3> numbers = parse_range(word, range);
+std::vector<std::string> values_of(const std::string& argument, std::string_view range) {
+  std::array<Decimal, 3> numbers = parse_range(argument, range);
   const int decimals = std::ranges::max(numbers, {}, &Decimal::decimals).decimals;
   for (Decimal& number : numbers) {
     const std::int64_t factor = power_of_ten(decimals - number.decimals);
     if (std::abs(number.digits) > power_of_ten(static_cast<int>(max_digits) + 2) / factor) {
-      refuse(word, in_quotes(range), "numbers of similar size");
+      refuse(argument, in_quotes(range), "numbers of similar size");
     }
     number.digits *= factor;
   }
   const auto [first, last, step] = std::array{numbers[0].digits, numbers[1].digits, numbers[2].digits};
   if (step <= 0 || last < first) {
-    refuse(word, step <= 0 ? "a step that is not above 0" : "a last value below the first", "an ascending range");
+    refuse(argument, step <= 0 ? "a step that is not above 0" : "a last value below the first", "an ascending range");
   }
   const auto count = static_cast<std::uint64_t>((last - first) / step) + 1;
   if (count > max_sweep_runs) {
-    refuse(word, std::to_string(count) + " values", "at most " + std::to_string(max_sweep_runs) + " runs");
+    refuse(argument, std::to_string(count) + " values", "at most " + std::to_string(max_sweep_runs) + " runs");
   }
   std::vector<std::string> values;
   for (std::int64_t value = first; value <= last; value += step) {
@@ -124,21 +124,21 @@ constexpr NamedKind named_kinds[] = {{"seed", SweptQuantity::Kind::seed, ""},
                                      {"y", SweptQuantity::Kind::y, "m"},
                                      {"heading", SweptQuantity::Kind::heading, "deg"}};
 
-SweptQuantity read_quantity(const std::string& word) {
-  const std::size_t equals = word.find('=');
+SweptQuantity read_quantity(const std::string& argument) {
+  const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals == 0) {
-    refuse(word, equals == 0 ? "no name" : "no '='", "NAME=FIRST:LAST:STEP");
+    refuse(argument, equals == 0 ? "no name" : "no '='", "NAME=FIRST:LAST:STEP");
   }
   SweptQuantity quantity;
-  quantity.word = word;
-  quantity.name = word.substr(0, equals);
+  quantity.argument = argument;
+  quantity.name = argument.substr(0, equals);
   for (const NamedKind& named : named_kinds) {
     if (named.name == quantity.name) {
       quantity.kind = named.kind;
       quantity.unit = named.unit;
     }
   }
-  quantity.values = values_of(word, std::string_view(word).substr(equals + 1));
+  quantity.values = values_of(argument, std::string_view(argument).substr(equals + 1));
   return quantity;
 }
 
@@ -162,7 +162,7 @@ bool excludes(const sim::SettingTarget& swept, const sim::SettingTarget& setting
 /// Refuses a quantity whose value the user states elsewhere too.
 void refuse_second_value(const Sweep& sweep, const SweptQuantity& quantity) {
   const auto refuse_option = [&](const std::string& option) {
-    refuse(quantity.word, option + " as well", "one of the two");
+    refuse(quantity.argument, option + " as well", "one of the two");
   };
   const sim::Overrides& overrides = sweep.scenario.overrides;
   if (quantity.kind == SweptQuantity::Kind::seed && overrides.seed) {
@@ -188,7 +188,7 @@ void refuse_second_value(const Sweep& sweep, const SweptQuantity& quantity) {
   }
   for (const SweptQuantity& other : sweep.quantities) {
     if (other.kind == SweptQuantity::Kind::parameter && excludes(target, target_of(sweep.scenario, other.name))) {
-      refuse_option("--over " + shortened(other.word));
+      refuse_option("--over " + shortened(other.argument));
     }
   }
 }
@@ -270,15 +270,15 @@ sim::Scenario Sweep::scenario_of(const Candidate& combination) const {
   return result;
 }
 
-Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words, std::vector<std::string> settings) {
+Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> arguments, std::vector<std::string> settings) {
   Sweep sweep{std::move(scenario), {}, std::move(settings)};
-  if (words.empty()) {
+  if (arguments.empty()) {
     throw InputError("--over", 0, "no quantity", "NAME=FIRST:LAST:STEP, at least once");
   }
-  for (const std::string& word : words) {
-    SweptQuantity quantity = read_quantity(word);
+  for (const std::string& argument : arguments) {
+    SweptQuantity quantity = read_quantity(argument);
     if (std::ranges::find(sweep.quantities, quantity.name, &SweptQuantity::name) != sweep.quantities.end()) {
-      refuse(word, in_quotes(quantity.name) + " twice", "each quantity once");
+      refuse(argument, in_quotes(quantity.name) + " twice", "each quantity once");
     }
     sim::Scenario trial = sweep.scenario;
     for (const std::string& value : quantity.values) {
@@ -289,7 +289,7 @@ Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words, std
       quantity.unit = unit_text(target_of(sweep.scenario, quantity.name).unit);
     }
     if (sweep.size() * quantity.values.size() > max_sweep_runs) {
-      refuse(word, std::to_string(sweep.size() * quantity.values.size()) + " combinations or more",
+      refuse(argument, std::to_string(sweep.size() * quantity.values.size()) + " combinations or more",
              "at most " + std::to_string(max_sweep_runs) + " runs");
     }
     sweep.quantities.push_back(std::move(quantity));

@@ -8,7 +8,7 @@
 
 #include "sim/mesh/convex_hull.hpp"
 #include "sim/mesh/height_mesh.hpp"
-#include "sim/ode/contact_choice.hpp"
+#include "sim/ode/contacts.hpp"
 #include "sim/ode/ode_world.hpp"
 #include "tests/sim/mesh/mesh_shapes.hpp"
 #include "tests/sim/physics/small_world.hpp"

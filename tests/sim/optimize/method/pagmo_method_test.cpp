@@ -10,7 +10,7 @@
 #include <set>
 
 #include "fake_source.hpp"
-#include "sim/optimize/method/method_seed.hpp"
+#include "sim/optimize/experiment/seeds.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/method/search.hpp"
 

@@ -1,6 +1,6 @@
 // Filter banks against RM0090, 32.7.4: the layouts of the four modes, filter numbers and the priority rules.
 
-#include "sim/mcu/peripherals/bxcan_filters.hpp"
+#include "sim/mcu/peripherals/bxcan_receiver.hpp"
 
 #include <gtest/gtest.h>
 

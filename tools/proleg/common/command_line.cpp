@@ -26,11 +26,11 @@ struct ParseFailure {
 ParseFailure describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::string usage = "the options and arguments that '" + app.get_name() + " --help' lists";
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    std::string words;
-    for (const std::string& word : app.remaining()) {
-      words += (words.empty() ? "" : " ") + in_quotes(word);
+    std::string arguments;
+    for (const std::string& argument : app.remaining()) {
+      arguments += (arguments.empty() ? "" : " ") + in_quotes(argument);
     }
-    return {"unknown " + words, usage};
+    return {"unknown " + arguments, usage};
   }
   // The errors of CLI11 have the name of the option only as a part of their text.
   const std::string text = error.what();
@@ -67,11 +67,11 @@ std::string hint(const CLI::App& app, const CLI::ParseError& error) {
       known.push_back(name);
     }
   }
-  for (const std::string& word : app.remaining()) {
-    if (!word.starts_with("--")) {
+  for (const std::string& argument : app.remaining()) {
+    if (!argument.starts_with("--")) {
       continue;
     }
-    if (const auto name = most_similar(std::string_view(word).substr(2, word.find('=') - 2), known)) {
+    if (const auto name = most_similar(std::string_view(argument).substr(2, argument.find('=') - 2), known)) {
       return "; did you mean --" + *name + "?";
     }
   }

@@ -8,13 +8,13 @@
 
 namespace proleg::tools {
 
-std::uint32_t parse_workers(const std::optional<std::string>& word) {
-  if (!word) {
+std::uint32_t parse_workers(const std::optional<std::string>& argument) {
+  if (!argument) {
     return std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
   }
-  const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*word);
+  const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*argument);
   if (!count || *count == 0 || *count > max_workers) {
-    throw InputError("--workers", 0, in_quotes(*word), "1 to " + std::to_string(max_workers));
+    throw InputError("--workers", 0, in_quotes(*argument), "1 to " + std::to_string(max_workers));
   }
   return *count;
 }

@@ -178,8 +178,8 @@ DbcMessage heartbeat_message(std::uint8_t node, const std::string& name) {
 
 namespace {
 
-// Services, whose frames have other contents for each value of their first bits. Each value has a signal at least,
-// because readers refuse a frame with a value that has none.
+// Services. Their frames have other contents for each value of the first bits. Each value has at least one signal,
+// because readers refuse a frame with a value without a signal.
 
 /// A signal that is in the frame with a value of the selecting signal.
 DbcSignal selected(unsigned value, DbcSignal signal) {

@@ -10,10 +10,10 @@
 
 namespace proleg::tools {
 
-BrokenModules::BrokenModules(const std::vector<std::string>& words, const sim::Scenario& scenario)
+BrokenModules::BrokenModules(const std::vector<std::string>& arguments, const sim::Scenario& scenario)
     : scenario_(scenario), faults_(scenario.modules.size()) {
-  for (const std::string& word : words) {
-    parse(word);
+  for (const std::string& argument : arguments) {
+    parse(argument);
   }
 }
 
@@ -22,9 +22,9 @@ std::string BrokenModules::syntax() {
          "duplicate:OTHER (has the node id OTHER)";
 }
 
-void BrokenModules::parse(const std::string& word) {
+void BrokenModules::parse(const std::string& argument) {
   const auto joint_of = [&](std::string_view node) {
-    return joint_of_node(scenario_, parse_whole<std::uint32_t>(node), "--broken", in_quotes(word));
+    return joint_of_node(scenario_, parse_whole<std::uint32_t>(node), "--broken", in_quotes(argument));
   };
   struct Name {
     std::string_view name;
@@ -33,8 +33,8 @@ void BrokenModules::parse(const std::string& word) {
   static constexpr std::array names{Name{"hangs", Kind::hangs}, Name{"faults", Kind::faults},
                                     Name{"no-program", Kind::no_program}, Name{"newer-settings", Kind::newer_settings}};
   constexpr std::string_view duplicate = "duplicate:";
-  const std::size_t equal = word.find('=');
-  const std::string_view kind = equal == std::string::npos ? "" : std::string_view(word).substr(equal + 1);
+  const std::size_t equal = argument.find('=');
+  const std::string_view kind = equal == std::string::npos ? "" : std::string_view(argument).substr(equal + 1);
   Fault fault;
   for (const Name& one : names) {
     fault.kind = one.name == kind ? one.kind : fault.kind;
@@ -43,14 +43,14 @@ void BrokenModules::parse(const std::string& word) {
     fault = {Kind::duplicate, joint_of(kind.substr(duplicate.size()))};
   }
   if (fault.kind == Kind::none) {
-    throw InputError("--broken", 0, in_quotes(word), syntax());
+    throw InputError("--broken", 0, in_quotes(argument), syntax());
   }
-  const unsigned joint = joint_of(std::string_view(word).substr(0, equal));
+  const unsigned joint = joint_of(std::string_view(argument).substr(0, equal));
   if (faults_[joint].kind != Kind::none) {
-    throw InputError("--broken", 0, "node " + word.substr(0, equal) + " twice", "each node at most once");
+    throw InputError("--broken", 0, "node " + argument.substr(0, equal) + " twice", "each node at most once");
   }
   if (fault.kind == Kind::duplicate && fault.other == joint) {
-    throw InputError("--broken", 0, in_quotes(word), "the node id of another module");
+    throw InputError("--broken", 0, in_quotes(argument), "the node id of another module");
   }
   faults_[joint] = fault;
 }

@@ -14,9 +14,9 @@ namespace proleg::tools {
 
 class BrokenModules {
  public:
-  /// words: arguments NODE=KIND of --broken, with the node ids of the robot's file. Throws InputError. scenario must
+  /// arguments: each NODE=KIND of --broken, with the node ids of the robot's file. Throws InputError. scenario must
   /// outlive this object.
-  BrokenModules(const std::vector<std::string>& words, const sim::Scenario& scenario);
+  BrokenModules(const std::vector<std::string>& arguments, const sim::Scenario& scenario);
 
   /// The form NODE=KIND of --broken with its kinds, as --help shows it.
   [[nodiscard]] static std::string syntax();
@@ -36,7 +36,7 @@ class BrokenModules {
     Kind kind = Kind::none;
     unsigned other = 0;  ///< joint of the other module with the same node id
   };
-  void parse(const std::string& word);
+  void parse(const std::string& argument);
 
   const sim::Scenario& scenario_;
   std::vector<Fault> faults_;  ///< faults by joint

@@ -9,13 +9,13 @@
 
 namespace proleg::tools {
 
-GatewayPlace parse_gateway(const sim::Scenario& scenario, const std::string& word) {
-  const std::size_t equal = word.find('=');
-  const std::string node = word.substr(0, equal);
+GatewayPlace parse_gateway(const sim::Scenario& scenario, const std::string& argument) {
+  const std::size_t equal = argument.find('=');
+  const std::string node = argument.substr(0, equal);
   GatewayPlace place;
   place.joint = joint_of_node(scenario, parse_whole<std::uint32_t>(node), "--gateway", in_quotes(node));
-  if (equal != std::string::npos && word.substr(equal + 1) != "pty") {
-    place.tcp = parse_served_port("--gateway", word.substr(equal + 1));
+  if (equal != std::string::npos && argument.substr(equal + 1) != "pty") {
+    place.tcp = parse_served_port("--gateway", argument.substr(equal + 1));
   }
   return place;
 }
@@ -32,7 +32,7 @@ std::string GatewayLine::open(const GatewayPlace& place) {
   }
   ServedPort served = *place.tcp;
   served.port = server_.listen(served.address, served.port);
-  return bus_word(served);
+  return bus_argument(served);
 }
 
 void GatewayLine::received(sim::BusTime /*time*/, std::uint8_t byte) {

@@ -20,7 +20,7 @@ struct GatewayPlace {
 };
 
 /// Parses the value of --gateway: NODE, NODE=pty or NODE=[ADDRESS:]PORT. Throws InputError.
-[[nodiscard]] GatewayPlace parse_gateway(const sim::Scenario& scenario, const std::string& word);
+[[nodiscard]] GatewayPlace parse_gateway(const sim::Scenario& scenario, const std::string& argument);
 
 /// The program on the serial line of a simulated module. The line has 1 Mbaud, so each byte takes 10 us of the robot's
 /// time in either direction. A program that sends faster has to wait.

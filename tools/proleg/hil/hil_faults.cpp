@@ -13,8 +13,7 @@
 #include "sim/hardware_loop/fault_run.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/run_progress.hpp"
-#include "tools/proleg/hil/hil_report.hpp"
+#include "tools/proleg/common/terminal_line.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -28,11 +27,11 @@ bool is_number(std::string_view text) {
 }
 
 /// Parses the seed, and the count if it is present; nothing for the name of a file.
-std::optional<FaultPlan> parse_seeds(const std::string& word) {
+std::optional<FaultPlan> parse_seeds(const std::string& argument) {
   constexpr std::uint32_t max_runs = 1'000'000;
-  const std::size_t colon = word.find(':');
-  const std::string_view first = std::string_view(word).substr(0, colon);
-  const std::string_view second = colon == std::string::npos ? "1" : std::string_view(word).substr(colon + 1);
+  const std::size_t colon = argument.find(':');
+  const std::string_view first = std::string_view(argument).substr(0, colon);
+  const std::string_view second = colon == std::string::npos ? "1" : std::string_view(argument).substr(colon + 1);
   if (!is_number(first) || !is_number(second)) {
     return std::nullopt;
   }
@@ -40,7 +39,7 @@ std::optional<FaultPlan> parse_seeds(const std::string& word) {
   const auto seed = parse_whole<std::uint64_t>(first);
   const auto runs = parse_whole<std::uint32_t>(second);
   if (!seed || !runs || *runs == 0 || *runs > max_runs) {
-    throw InputError("--faults", 0, in_quotes(word), "FILE, SEED or SEED:COUNT, COUNT 1 to 1000000");
+    throw InputError("--faults", 0, in_quotes(argument), "FILE, SEED or SEED:COUNT, COUNT 1 to 1000000");
   }
   plan.seed = *seed;
   if (colon != std::string::npos) {

@@ -93,8 +93,8 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
       traces_(scenario.modules.size()),
       modules_(scenario.modules.size()) {
   parse_modules(options.modules);
-  for (const std::string& word : options.consoles) {
-    consoles_[virtual_joint_of("--uart", word)] = true;
+  for (const std::string& argument : options.consoles) {
+    consoles_[virtual_joint_of("--uart", argument)] = true;
   }
   if (std::ranges::find(virtual_joints_, true) != virtual_joints_.end()) {
     image_.emplace(read_image(options.image));
@@ -121,19 +121,20 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
 
 HilModules::~HilModules() = default;
 
-void HilModules::parse_modules(const std::string& word) {
+void HilModules::parse_modules(const std::string& argument) {
   constexpr std::string_view suffix = "=mcu";
-  if (word == "native") {
+  if (argument == "native") {
     return;
   }
-  if (word == "mcu") {
+  if (argument == "mcu") {
     virtual_joints_.assign(virtual_joints_.size(), true);
     return;
   }
-  if (!word.ends_with(suffix)) {
-    throw InputError("--modules", 0, in_quotes(word), "native, mcu, or a list of nodes with =mcu, for example 1,3=mcu");
+  if (!argument.ends_with(suffix)) {
+    throw InputError("--modules", 0, in_quotes(argument),
+                     "native, mcu, or a list of nodes with =mcu, for example 1,3=mcu");
   }
-  std::string_view rest = std::string_view(word).substr(0, word.size() - suffix.size());
+  std::string_view rest = std::string_view(argument).substr(0, argument.size() - suffix.size());
   for (bool more = true; more;) {
     const std::size_t comma = rest.find(',');
     virtual_joints_[joint_of("--modules", std::string(rest.substr(0, comma)))] = true;
@@ -142,31 +143,31 @@ void HilModules::parse_modules(const std::string& word) {
   }
 }
 
-unsigned HilModules::joint_of(const std::string& option, const std::string& word) const {
-  return joint_of_node(scenario_, parse_whole<std::uint32_t>(word), option, in_quotes(word));
+unsigned HilModules::joint_of(const std::string& option, const std::string& argument) const {
+  return joint_of_node(scenario_, parse_whole<std::uint32_t>(argument), option, in_quotes(argument));
 }
 
-unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& word) const {
-  const unsigned joint = joint_of(option, word);
+unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& argument) const {
+  const unsigned joint = joint_of(option, argument);
   if (!is_virtual(joint)) {
-    throw InputError(option, 0, "node " + word + ", which is native", "a virtual module (--modules mcu)");
+    throw InputError(option, 0, "node " + argument + ", which is native", "a virtual module (--modules mcu)");
   }
   return joint;
 }
 
-void HilModules::parse_traces(const std::vector<std::string>& words) {
-  for (const std::string& word : words) {
-    const std::size_t equal = word.find('=');
-    const unsigned joint = virtual_joint_of("--trace", word.substr(0, equal));
+void HilModules::parse_traces(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    const std::size_t equal = argument.find('=');
+    const unsigned joint = virtual_joint_of("--trace", argument.substr(0, equal));
     if (traces_[joint]) {
-      throw InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node at most once");
+      throw InputError("--trace", 0, "node " + argument.substr(0, equal) + " twice", "each node at most once");
     }
     traces_[joint] = std::make_unique<InstructionTrace>();
     traces_[joint]->node = scenario_.modules[joint].node;
     if (equal != std::string::npos) {
-      traces_[joint]->file = word.substr(equal + 1);
+      traces_[joint]->file = argument.substr(equal + 1);
       if (traces_[joint]->file.empty()) {
-        throw InputError("--trace", 0, in_quotes(word), "NODE or NODE=FILE");
+        throw InputError("--trace", 0, in_quotes(argument), "NODE or NODE=FILE");
       }
     }
   }

@@ -65,10 +65,10 @@ class HilModules {
  private:
   struct InstructionTrace;
 
-  [[nodiscard]] unsigned joint_of(const std::string& option, const std::string& word) const;
-  [[nodiscard]] unsigned virtual_joint_of(const std::string& option, const std::string& word) const;
-  void parse_modules(const std::string& word);
-  void parse_traces(const std::vector<std::string>& words);
+  [[nodiscard]] unsigned joint_of(const std::string& option, const std::string& argument) const;
+  [[nodiscard]] unsigned virtual_joint_of(const std::string& option, const std::string& argument) const;
+  void parse_modules(const std::string& argument);
+  void parse_traces(const std::vector<std::string>& arguments);
 
   const sim::Scenario& scenario_;
   std::vector<bool> virtual_joints_;  ///< whether each joint's module is virtual

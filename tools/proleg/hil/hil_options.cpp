@@ -11,31 +11,31 @@ namespace proleg::tools {
 namespace {
 
 /// The joint with a node id or a name.
-unsigned parse_node_or_joint(const std::string& word, const sim::Scenario& scenario) {
-  if (const auto node = parse_whole<std::uint32_t>(word)) {
-    return joint_of_node(scenario, node, "--reset", word);
+unsigned parse_node_or_joint(const std::string& argument, const sim::Scenario& scenario) {
+  if (const auto node = parse_whole<std::uint32_t>(argument)) {
+    return joint_of_node(scenario, node, "--reset", argument);
   }
-  const int joint = sim::find_joint(scenario.robot, word);
+  const int joint = sim::find_joint(scenario.robot, argument);
   if (joint < 0) {
-    throw InputError("--reset", 0, "unknown joint " + in_quotes(word),
+    throw InputError("--reset", 0, "unknown joint " + in_quotes(argument),
                      "a node id, or one of " + listed(sim::joint_names(scenario.robot)));
   }
   return static_cast<unsigned>(joint);
 }
 
 /// Parses JOINT@TICK or NODE@TICK.
-sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
-  const std::size_t at = word.rfind('@');
+sim::Restart parse_reset(const std::string& argument, const ScenarioRun& run) {
+  const std::size_t at = argument.rfind('@');
   const auto tick =
-      at == std::string::npos ? std::nullopt : parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
+      at == std::string::npos ? std::nullopt : parse_whole<std::uint32_t>(std::string_view(argument).substr(at + 1));
   if (!tick || at == 0) {
-    throw InputError("--reset", 0, in_quotes(word), "JOINT@TICK or NODE@TICK");
+    throw InputError("--reset", 0, in_quotes(argument), "JOINT@TICK or NODE@TICK");
   }
   if (*tick == 0 || *tick >= run.ticks) {
     throw InputError("--reset", 0, "tick " + std::to_string(*tick),
                      "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
   }
-  const unsigned joint = parse_node_or_joint(word.substr(0, at), run.scenario);
+  const unsigned joint = parse_node_or_joint(argument.substr(0, at), run.scenario);
   if (joint == sim::HardwareLoop::sync_producer) {
     throw InputError("--reset", 0,
                      "node " + std::to_string(run.scenario.modules[joint].node) + " (" +
@@ -47,27 +47,27 @@ sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
 
 std::vector<sim::Restart> parse_resets(const HilOptions& options, const ScenarioRun& run) {
   std::vector<sim::Restart> restarts;
-  for (const std::string& word : options.resets) {
-    restarts.push_back(parse_reset(word, run));
+  for (const std::string& argument : options.resets) {
+    restarts.push_back(parse_reset(argument, run));
   }
   std::ranges::stable_sort(restarts, {}, &sim::Restart::tick);
   return restarts;
 }
 
 /// Parses ID#DATA@TICK, where ID#DATA is a frame in the form of cansend of can-utils.
-sim::InjectedFrame parse_injected(const std::string& word, const ScenarioRun& run) {
-  const auto refuse = [&word] {
+sim::InjectedFrame parse_injected(const std::string& argument, const ScenarioRun& run) {
+  const auto refuse = [&argument] {
     throw InputError(
-        "--send", 0, in_quotes(word),
+        "--send", 0, in_quotes(argument),
         "ID#DATA@TICK: three hexadecimal digits up to 7FF, up to 8 bytes in hexadecimal, a tick; for example "
         "603#4018100100000000@100");
   };
-  const std::size_t at = word.find('@');
+  const std::size_t at = argument.find('@');
   if (at == std::string::npos) {
     refuse();
   }
-  const auto tick = parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
-  const auto frame = sim::parse_frame(std::string_view(word).substr(0, at));
+  const auto tick = parse_whole<std::uint32_t>(std::string_view(argument).substr(at + 1));
+  const auto frame = sim::parse_frame(std::string_view(argument).substr(0, at));
   if (!tick || !frame) {
     refuse();
   }
@@ -81,20 +81,21 @@ sim::InjectedFrame parse_injected(const std::string& word, const ScenarioRun& ru
 
 std::vector<sim::InjectedFrame> parse_frames(const HilOptions& options, const ScenarioRun& run) {
   std::vector<sim::InjectedFrame> frames;
-  for (const std::string& word : options.frames) {
-    frames.push_back(parse_injected(word, run));
+  for (const std::string& argument : options.frames) {
+    frames.push_back(parse_injected(argument, run));
   }
   std::ranges::stable_sort(frames, {}, &sim::InjectedFrame::tick);
   return frames;
 }
 
 /// Parses SEED:RATE.
-sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& word) {
-  const std::size_t colon = word.find(':');
-  const auto seed = parse_whole<std::uint64_t>(std::string_view(word).substr(0, colon));
-  const auto rate = colon == std::string::npos ? std::nullopt : parse_rate(std::string_view(word).substr(colon + 1));
+sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& argument) {
+  const std::size_t colon = argument.find(':');
+  const auto seed = parse_whole<std::uint64_t>(std::string_view(argument).substr(0, colon));
+  const auto rate =
+      colon == std::string::npos ? std::nullopt : parse_rate(std::string_view(argument).substr(colon + 1));
   if (!seed || !rate) {
-    throw InputError("--bit-errors", 0, in_quotes(word), "SEED:RATE, for example 7:1%");
+    throw InputError("--bit-errors", 0, in_quotes(argument), "SEED:RATE, for example 7:1%");
   }
   return {*seed, *rate};
 }

@@ -8,9 +8,9 @@
 
 namespace proleg::tools {
 
-ServedPort parse_served_port(const std::string& option, const std::string& word) {
+ServedPort parse_served_port(const std::string& option, const std::string& argument) {
   ServedPort served;
-  std::string_view port = word;
+  std::string_view port = argument;
   if (const std::size_t colon = port.rfind(':'); colon != std::string_view::npos) {
     std::string_view address = port.substr(0, colon);
     port.remove_prefix(colon + 1);
@@ -23,13 +23,13 @@ ServedPort parse_served_port(const std::string& option, const std::string& word)
   }
   const auto number = parse_whole<std::uint16_t>(port);
   if (!number) {
-    throw InputError(option, 0, in_quotes(word), "PORT, ADDRESS:PORT or [IPV6_ADDRESS]:PORT; port 0: any free one");
+    throw InputError(option, 0, in_quotes(argument), "PORT, ADDRESS:PORT or [IPV6_ADDRESS]:PORT; port 0: any free one");
   }
   served.port = *number;
   return served;
 }
 
-std::string bus_word(const ServedPort& served) {
+std::string bus_argument(const ServedPort& served) {
   return host::bus_address_text({host::BusAddress::Kind::tcp, served.address, served.port, {}});
 }
 

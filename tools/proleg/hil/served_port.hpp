@@ -12,9 +12,9 @@ struct ServedPort {
 };
 
 /// Parses an argument. Throws InputError, which names the option.
-[[nodiscard]] ServedPort parse_served_port(const std::string& option, const std::string& word);
+[[nodiscard]] ServedPort parse_served_port(const std::string& option, const std::string& argument);
 
 /// The value of --bus that reaches the port: "tcp:127.0.0.1:20000", "tcp:[::1]:20000".
-[[nodiscard]] std::string bus_word(const ServedPort& served);
+[[nodiscard]] std::string bus_argument(const ServedPort& served);
 
 }  // namespace proleg::tools

@@ -12,10 +12,9 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/shell_words.hpp"
-#include "tools/proleg/new/new_algorithm.hpp"
+#include "tools/proleg/common/shell_argument.hpp"
+#include "tools/proleg/new/new_commands.hpp"
 #include "tools/proleg/new/new_files.hpp"
-#include "tools/proleg/new/new_obstacle.hpp"
 #include "tools/proleg/new/robot_files.hpp"
 
 namespace {
@@ -81,7 +80,7 @@ int write_robot(const NewOptions& options) {
   const std::vector<NewFile> files = robot_files(kind, axes_of_joints(axes, joints));
   const std::filesystem::path folder = options.out;
   write_new_files(folder, files);
-  std::cout << "run it:  proleg simulate " << shell_word((folder / files.front().name).string()) << '\n';
+  std::cout << "run it:  proleg simulate " << shell_argument((folder / files.front().name).string()) << '\n';
   return exit_success;
 }
 

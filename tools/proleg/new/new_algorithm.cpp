@@ -1,4 +1,4 @@
-#include "tools/proleg/new/new_algorithm.hpp"
+#include "tools/proleg/new/new_commands.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,9 +19,9 @@
 #include "shared/fixed/crc32.hpp"
 #include "shared/gait/registry.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/shell_words.hpp"
-#include "tools/proleg/common/source_tree.hpp"
-#include "tools/proleg/new/algorithm_texts.hpp"
+#include "tools/proleg/common/program_places.hpp"
+#include "tools/proleg/common/shell_argument.hpp"
+#include "tools/proleg/new/embedded_texts.hpp"
 #include "tools/proleg/new/new_files.hpp"
 #include "tools/proleg/new/robot_files.hpp"
 
@@ -250,8 +250,8 @@ int write_algorithm(const AlgorithmOptions& options) {
                      "a folder without blanks and ; \" \\ $, which CMake treats specially");
   }
   write_new_files(folder, algorithm_files({options.name, choose_id(options), folder.string(), tree.string()}));
-  const auto inside = [&folder](const std::string& path) { return shell_word((folder / path).string()); };
-  std::cout << "build it:  cmake -S " << shell_word(folder.string()) << " -B " << inside("build")
+  const auto inside = [&folder](const std::string& path) { return shell_argument((folder / path).string()); };
+  std::cout << "build it:  cmake -S " << shell_argument(folder.string()) << " -B " << inside("build")
             << " -G Ninja && cmake --build " << inside("build") << '\n'
             << "then run:  proleg simulate " << inside("robot/robot.simulation.xml") << " --algorithms "
             << inside("build/" + options.name + ".so") << '\n';

@@ -1,4 +1,4 @@
-#include "tools/proleg/new/new_obstacle.hpp"
+#include "tools/proleg/new/new_commands.hpp"
 
 #include <array>
 #include <cmath>

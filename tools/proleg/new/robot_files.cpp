@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/proleg/new/shipped_texts.hpp"
+#include "tools/proleg/new/embedded_texts.hpp"
 
 namespace proleg::tools {
 namespace {

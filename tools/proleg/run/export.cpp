@@ -20,10 +20,10 @@
 #include "sim/record/recording.hpp"
 #include "sim/record/tsv.hpp"
 #include "tools/proleg/common/beside_recording.hpp"
-#include "tools/proleg/common/built_page.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
-#include "tools/proleg/common/run_progress.hpp"
+#include "tools/proleg/common/program_places.hpp"
+#include "tools/proleg/common/terminal_line.hpp"
 #include "tools/proleg/document/recording_document.hpp"
 #include "tools/proleg/run/html_file.hpp"
 

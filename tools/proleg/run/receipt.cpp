@@ -21,8 +21,8 @@
 #include "sim/scenario/overrides.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
-#include "tools/proleg/common/run_progress.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/terminal_line.hpp"
 
 namespace {
 

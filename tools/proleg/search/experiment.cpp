@@ -139,10 +139,10 @@ int say_interrupted(const fs::path& folder) {
   return exit_failed;
 }
 
-std::uint32_t parse_repetitions(const std::string& word) {
-  const std::optional<std::uint32_t> repetitions = parse_whole<std::uint32_t>(word);
+std::uint32_t parse_repetitions(const std::string& argument) {
+  const std::optional<std::uint32_t> repetitions = parse_whole<std::uint32_t>(argument);
   if (!repetitions || *repetitions == 0 || *repetitions > max_repetitions) {
-    throw InputError("--repetitions", 0, in_quotes(word), "1 to " + std::to_string(max_repetitions));
+    throw InputError("--repetitions", 0, in_quotes(argument), "1 to " + std::to_string(max_repetitions));
   }
   return *repetitions;
 }

@@ -36,7 +36,7 @@ inline constexpr std::uint32_t checked_worlds = 20;
 /// that goes farther has a reflex that makes it larger, also without an obstacle.
 inline constexpr double level_tolerance = 0.15;
 
-/// The user has interrupted a check (tools/proleg/common/interrupt.hpp).
+/// Thrown if the user has interrupted a check (tools/proleg/common/interrupt.hpp).
 class CheckInterrupted {};
 
 /// Distance of a scenario's robot in m, in the scenario's engine; NaN if the physics failed. distance: the objective of

@@ -12,8 +12,8 @@
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/result_folder.hpp"
-#include "tools/proleg/common/run_progress.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/terminal_line.hpp"
 #include "tools/proleg/search/search_display.hpp"
 
 namespace proleg::tools {

@@ -20,7 +20,7 @@
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/shell_words.hpp"
+#include "tools/proleg/common/shell_argument.hpp"
 #include "tools/proleg/search/search_result.hpp"
 
 namespace proleg::tools {
@@ -88,10 +88,10 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
 
 /// The command that continues this search, with all options that its store depends on.
 std::string command_to_continue(const OptimiseOptions& options, const std::filesystem::path& folder) {
-  std::string command = "proleg optimise" + (options.file ? " " + shell_word(*options.file) : "");
+  std::string command = "proleg optimise" + (options.file ? " " + shell_argument(*options.file) : "");
   const auto add = [&](const char* option, const std::optional<std::string>& value) {
     if (value) {
-      command += std::string(" ") + option + " " + shell_word(*value);
+      command += std::string(" ") + option + " " + shell_argument(*value);
     }
   };
   add("--simulation", options.simulation);

@@ -24,8 +24,8 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/result_folder.hpp"
-#include "tools/proleg/common/run_progress.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/terminal_line.hpp"
 #include "tools/proleg/common/worker_count.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/proleg/common/source_tree.hpp"
+#include "tools/proleg/common/program_places.hpp"
 
 #include <system_error>
 
@@ -33,6 +33,16 @@ std::filesystem::path source_tree(const std::string& given) {
     folder = folder.parent_path();
   }
   return folder;
+}
+
+std::filesystem::path built_page(const std::string& folder, const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path path = (self.parent_path() / "../.." / folder).lexically_normal();
+  if (!std::filesystem::exists(path / file, error)) {
+    throw BadInput("found no " + folder + " in " + path.string() + ", expected one that tools/page has built");
+  }
+  return path;
 }
 
 }  // namespace proleg::tools

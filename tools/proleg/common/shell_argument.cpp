@@ -1,16 +1,16 @@
-#include "tools/proleg/common/shell_words.hpp"
+#include "tools/proleg/common/shell_argument.hpp"
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 
 namespace proleg::tools {
 
-std::string shell_word(const std::string& word) {
+std::string shell_argument(const std::string& argument) {
   constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,@%+";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
-    return word;
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) {
+    return argument;
   }
   std::string quoted = "'";
-  for (const char character : word) {
+  for (const char character : argument) {
     quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
   }
   return quoted + "'";
@@ -19,7 +19,7 @@ std::string shell_word(const std::string& word) {
 std::string algorithm_options() {
   std::string options;
   for (const std::string& library : loaded_libraries()) {
-    options += " --algorithms " + shell_word(library);
+    options += " --algorithms " + shell_argument(library);
   }
   return options;
 }

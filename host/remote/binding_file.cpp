@@ -24,7 +24,7 @@ std::string found_text(const json& value) {
   return value.is_array() ? "a list" : shortened(value.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
-/// An object whose fields are taken one by one; an unknown one is an error.
+/// A JSON object whose fields are read one by one; an unknown field is an error.
 class Fields {
  public:
   Fields(const json& object, std::string where, std::initializer_list<const char*> known)

@@ -16,11 +16,12 @@ namespace proleg::host {
 inline constexpr std::size_t max_bindings = 64;
 inline constexpr std::size_t max_binding_file_bytes = 1U << 20U;
 
-/// Throws InputError with the name `where`: a missing or unknown field, a value of another type or outside its limits.
+/// Reads a binding. Throws InputError with the name `where` for a missing or unknown field, and for a value of another
+/// type or outside its limits.
 [[nodiscard]] Binding read_binding(const nlohmann::json& value, const std::string& where);
 [[nodiscard]] nlohmann::json binding_json(const Binding& binding);
 
-/// The text of a file. Throws InputError with the name `file`, and the line where the text is not JSON.
+/// Reads the text of a file. Throws InputError with the name `file`, and with the line where the text is not JSON.
 [[nodiscard]] std::vector<Binding> read_bindings(std::string_view text, const std::string& file);
 [[nodiscard]] std::string bindings_text(const std::vector<Binding>& bindings);
 

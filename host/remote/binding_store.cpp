@@ -12,7 +12,7 @@
 namespace proleg::host {
 namespace {
 
-/// Nothing: there is no such file.
+/// The text of a file; nothing if there is no such file.
 std::optional<std::string> file_text(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);

@@ -12,25 +12,27 @@ namespace proleg::host {
 /// The file of bindings beside a scenario.
 class BindingStore {
  public:
-  /// A robot without a scenario file: nothing can be saved.
+  /// Makes the store of a robot without a scenario file, in which nothing can be saved.
   BindingStore() = default;
-  /// Throws InputError for a file that is no such file, FileError if it cannot be read. It need not exist.
+  /// Reads the file, which need not exist. Throws InputError if it is not a file of bindings, FileError if it cannot
+  /// be read.
   explicit BindingStore(const std::filesystem::path& path);
 
-  /// Empty: there is none.
+  /// The path of the file; empty for a robot without a scenario file.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// As the file had them when it was read.
+  /// The bindings that the file had when it was read.
   [[nodiscard]] const std::vector<Binding>& read_bindings() const { return bindings_; }
   /// Whether the file has these bindings.
   [[nodiscard]] bool has(const std::vector<Binding>& bindings) const;
-  /// Writes the whole file at once. Throws std::runtime_error with one line: no scenario, a file that somebody else has
-  /// changed meanwhile, a disk error. Then the file is as before.
+  /// Writes the whole file at once. Throws std::runtime_error with one line if there is no scenario, if another
+  /// program has changed the file meanwhile, and after a disk error. The file is as before then.
   void save(const std::vector<Binding>& bindings);
 
  private:
   std::filesystem::path path_;
   std::vector<Binding> bindings_;
-  std::optional<std::string> text_;  ///< of the file, as known; nothing: it does not exist
+  std::optional<std::string>
+      text_;  ///< text of the file when it was last read or written; nothing: the file does not exist
 };
 
 }  // namespace proleg::host

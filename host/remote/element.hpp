@@ -7,24 +7,24 @@ namespace proleg::host {
 
 enum class ElementKind : std::uint8_t { axis, button };
 
-/// What a hand moves on an input device: a stick, a trigger, a button. The name is the kernel's: ABS_X, BTN_SOUTH.
+/// An element of an input device: a stick, a trigger, a button. The name is the kernel's: ABS_X, BTN_SOUTH.
 struct Element {
   std::string name;
   ElementKind kind = ElementKind::button;
 };
 
-/// What the kernel says of an absolute axis (EVIOCGABS).
+/// The range of an absolute axis that the kernel reports (EVIOCGABS).
 struct AxisRange {
   std::int32_t minimum = 0;
   std::int32_t maximum = 0;
-  std::int32_t flat = 0;  ///< values this near the middle are the middle
+  std::int32_t flat = 0;  ///< values at most this far from the middle count as the middle
 };
 
 /// The position of an axis, -1 to 1; 0 in the middle of its range.
 [[nodiscard]] double normalised(const AxisRange& range, std::int32_t value);
 
 /// Whether an element counts as pressed. The position of a button is 0 or 1; an axis is pressed beyond a half.
-/// was_pressed: as last found; a hand that trembles at the limit presses once.
+/// was_pressed: the last result. The limit has a hysteresis, so that a trembling hand presses once.
 [[nodiscard]] bool is_pressed(double position, bool was_pressed);
 
 }  // namespace proleg::host

@@ -2,18 +2,49 @@
 
 // The gamepads, joysticks and Wiimotes of this computer, through the kernel's event devices.
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/remote/device_listener.hpp"
-#include "host/remote/device_source.hpp"
-#include "host/remote/event_device.hpp"
+#include "host/remote/element.hpp"
 #include "host/transport/descriptor.hpp"
 
+struct libevdev;
+
 namespace proleg::host {
+
+/// One event device of the kernel, /dev/input/eventN.
+class EventDevice {
+ public:
+  /// Opens the device. Throws std::system_error if it cannot be opened.
+  explicit EventDevice(const std::filesystem::path& path);
+
+  [[nodiscard]] int descriptor() const { return descriptor_.number(); }
+  [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
+  [[nodiscard]] std::vector<double> positions() const;
+
+  /// Calls the function for each movement that was received, and does not wait. If the kernel has dropped events, the
+  /// positions are read again. Returns false if the device has gone.
+  [[nodiscard]] bool read(const std::function<void(std::size_t element, double position)>& moved);
+
+ private:
+  using Code = std::pair<unsigned, unsigned>;  ///< type and code of an event
+
+  void add_elements(unsigned type, unsigned codes, ElementKind kind);
+  [[nodiscard]] double position(const Code& code, int value) const;
+
+  Descriptor descriptor_;
+  std::unique_ptr<libevdev, void (*)(libevdev*)> device_;
+  std::vector<Element> elements_;
+  std::vector<Code> codes_;  ///< event codes, by element
+  std::map<Code, std::size_t> places_;
+};
 
 class EventDevices final : public DeviceSource {
  public:
@@ -26,7 +57,7 @@ class EventDevices final : public DeviceSource {
   EventDevices(DeviceListener& listener, Folders folders);
 
   void add_descriptors(std::vector<pollfd>& descriptors) const override;
-  /// False: the folder of devices does not exist yet.
+  /// Whether inotify watches the folder of devices; false if the folder does not exist yet.
   [[nodiscard]] bool is_watching() const override { return watch_ >= 0; }
   void read() override;
 
@@ -37,12 +68,12 @@ class EventDevices final : public DeviceSource {
   };
 
   void watch();
-  /// Whether the folder has changed.
+  /// Reads the events of inotify. Returns whether the folder has changed.
   [[nodiscard]] bool take_changes();
-  /// Whether a device has gone.
+  /// Reads all devices. Returns whether one has gone.
   [[nodiscard]] bool read_devices();
   void find_devices();
-  /// A line that says why the device cannot be used; empty: it can, or is no remote control.
+  /// Opens the device if it is a remote control. Returns a line that says why it cannot be used, or an empty one.
   [[nodiscard]] std::string try_device(const std::filesystem::path& path);
 
   DeviceListener& listener_;
@@ -50,7 +81,7 @@ class EventDevices final : public DeviceSource {
   Descriptor inotify_;
   int watch_ = -1;
   DeviceId last_id_ = 0;
-  std::map<std::string, Plugged> devices_;  ///< by file name: event7
+  std::map<std::string, Plugged> devices_;  ///< devices by file name, such as event7
   std::vector<std::string> problems_;
 };
 

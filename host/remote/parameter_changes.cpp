@@ -8,11 +8,11 @@
 namespace proleg::host {
 namespace {
 
-/// Gestures of pages have smaller numbers.
+/// Number of the first gesture of a remote control; gestures of pages have smaller numbers.
 constexpr std::uint64_t first_gesture = std::uint64_t{1} << 40U;
 
-/// --set takes decimal text without an exponent.
-std::string set_word(const std::string& parameter, double value) {
+/// The setting in the form of --set, which takes decimal text without an exponent.
+std::string set_argument(const std::string& parameter, double value) {
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(), "%.9f", value);
   std::string number = text.data();
@@ -49,7 +49,7 @@ void ParameterChanges::advance(RemoteTime now) {
   std::vector<std::string> words;
   words.reserve(pending_.size());
   for (const auto& [parameter, value] : pending_) {
-    words.push_back(set_word(parameter, value));
+    words.push_back(set_argument(parameter, value));
   }
   pending_.clear();
   sent_at_ = sent_unanswered_ = now;

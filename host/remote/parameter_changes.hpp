@@ -10,12 +10,12 @@
 
 namespace proleg::host {
 
-/// Changes of parameters on their way to the robot: at most 50 a second, one at a time, each with the newest values.
-/// So a robot that is slow to answer has no queue of old ones.
+/// Sends changes of parameters to the robot: at most 50 a second, one at a time, each with the newest values, so that
+/// no old changes queue up for a robot that answers slowly.
 class ParameterChanges {
  public:
   static constexpr RemoteTime shortest_period{20};
-  /// A pause of this length ends a gesture: what moves later is another entry for undo.
+  /// A pause of this length ends a gesture; a later movement is another entry for undo.
   static constexpr RemoteTime gesture_pause{500};
   /// After this time an answer is no longer expected.
   static constexpr RemoteTime answer_timeout{1000};
@@ -23,11 +23,11 @@ class ParameterChanges {
   explicit ParameterChanges(RemoteTarget& target) : target_(target) {}
 
   void want(RemoteTime now, const ParameterMotion::Value& value);
-  /// Forgets what has not been sent.
+  /// Forgets changes that have not been sent.
   void clear() { pending_.clear(); }
   void answered() { sent_unanswered_.reset(); }
   void advance(RemoteTime now);
-  /// When advance() has something to do; nothing: not before the next call.
+  /// Time at which advance() has something to do; nothing if it has nothing to do before the next change.
   [[nodiscard]] std::optional<RemoteTime> due() const;
 
  private:

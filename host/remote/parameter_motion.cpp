@@ -18,7 +18,7 @@ double stepped_value(const ParameterBinding& binding, double value) {
   const double steps = std::round((value - binding.lower) / binding.step);
   const auto [low, high] = std::minmax(binding.lower, binding.upper);
   const double stepped = std::clamp(binding.lower + steps * binding.step, low, high);
-  // The last step may be a part of one: the upper limit can be reached.
+  // The last step may be shorter than the others, so that the upper limit can be reached.
   return std::abs(value - binding.upper) < std::abs(value - stepped) ? binding.upper : stepped;
 }
 
@@ -29,7 +29,7 @@ bool ParameterMotion::step_to(double position) {
     value_ = stepped;
     return false;
   }
-  // A hand that trembles between two steps changes nothing.
+  // Share of a step that a movement must exceed, so that a hand that trembles between two steps changes nothing.
   constexpr double enough_of_a_step = 0.6;
   const bool is_limit = stepped == binding_.lower || stepped == binding_.upper;
   if (stepped == *value_ || (!is_limit && std::abs(value - *value_) < enough_of_a_step * binding_.step)) {

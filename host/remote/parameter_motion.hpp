@@ -12,10 +12,10 @@ namespace proleg::host {
 
 /// The value for a position of an element, before it is rounded to steps.
 [[nodiscard]] double linear_value(const ParameterBinding& binding, ElementKind kind, double position);
-/// Rounded to whole steps from `lower`, at most `upper`.
+/// The value rounded to whole steps from `lower`, at most `upper`.
 [[nodiscard]] double stepped_value(const ParameterBinding& binding, double value);
 
-/// An element that moves parameters.
+/// The binding of an element to the parameters that it changes.
 class ParameterMotion {
  public:
   struct Value {
@@ -25,12 +25,13 @@ class ParameterMotion {
 
   ParameterMotion(ParameterBinding binding, ElementKind kind) : binding_(std::move(binding)), kind_(kind) {}
 
-  /// The element is here, without having been moved: it has no effect.
+  /// Notes the position of an element that has not been moved; it has no effect.
   void place(double position);
-  /// The element has been moved. Returns what it now wants: nothing unless the stepped value is another one. begins: it
-  /// rested before; a parameter that has another value than the element gave it does not follow the element any more.
+  /// Notes that the element has been moved. Returns the values that it requests: nothing unless the stepped value has
+  /// changed. begins: the element rested before; a parameter whose value differs from the one that the element gave it
+  /// no longer follows the element.
   [[nodiscard]] std::vector<Value> move(double position, bool begins, const RemoteTarget& target);
-  /// The element has to take all parameters up again.
+  /// Detaches the element from all parameters until it has passed their values again.
   void let_go();
 
   [[nodiscard]] std::optional<double> value() const { return value_; }
@@ -43,7 +44,7 @@ class ParameterMotion {
     double sent = 0;
   };
 
-  /// True: the stepped value is another one.
+  /// Sets the stepped value for a position. Returns whether it has changed.
   bool step_to(double position);
 
   ParameterBinding binding_;

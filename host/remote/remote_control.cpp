@@ -1,9 +1,15 @@
 #include "host/remote/remote_control.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace proleg::host {
+
+bool ElementLearning::is_moved(const ElementPlace& element, double position) {
+  const auto [start, is_new] = starts_.try_emplace(element, position);
+  return !is_new && std::abs(position - start->second) >= clear_movement;
+}
 
 bool RemoteControl::is_of(const Binding& binding, const InputDevice& device, const Element& element) {
   return binding.element == element.name && binding.device == device.name;
@@ -40,7 +46,7 @@ void RemoteControl::plugged(const InputDevice& device) {
   ++revision_;
 }
 
-/// Where an element is when its device is plugged in, or when it is bound, has no effect.
+/// The position of an element when its device is plugged in, or when it is bound, has no effect.
 void RemoteControl::place_motions(const InputDevice& device) {
   for (std::size_t i = 0; i < device.elements.size(); ++i) {
     if (learning_) {
@@ -190,7 +196,7 @@ void RemoteControl::finish_learning(const std::optional<Learned>& learned) {
   }
   learning_.reset();
   ++revision_;
-  // The function may begin another learning.
+  // The function may start learning again.
   std::exchange(learned_, nullptr)(learned);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Input devices, and what their elements are bound to. One thread; the time comes as an argument.
+// Input devices, and the bindings of their elements. All calls come from one thread; the time is an argument.
 
 #include <functional>
 #include <map>
@@ -11,7 +11,6 @@
 
 #include "host/remote/binding.hpp"
 #include "host/remote/device_listener.hpp"
-#include "host/remote/element_learning.hpp"
 #include "host/remote/parameter_changes.hpp"
 #include "host/remote/parameter_motion.hpp"
 #include "host/remote/remote_buttons.hpp"
@@ -19,27 +18,47 @@
 
 namespace proleg::host {
 
+/// Finds, once, the element that a person moves clearly after the request to do so.
+class ElementLearning {
+ public:
+  static constexpr RemoteTime time_limit{10'000};
+  /// Movement that counts as clear: half of the way from the middle to an end. A stick that trembles moves less.
+  static constexpr double clear_movement = 0.5;
+
+  explicit ElementLearning(RemoteTime now) : ends_(now + time_limit) {}
+
+  /// Stores the position of an element when it is first seen after the request.
+  void place(const ElementPlace& element, double position) { starts_.try_emplace(element, position); }
+  /// Whether this element has moved clearly, and so is the one that was looked for.
+  [[nodiscard]] bool is_moved(const ElementPlace& element, double position);
+  [[nodiscard]] RemoteTime ends() const { return ends_; }
+
+ private:
+  RemoteTime ends_;
+  std::map<ElementPlace, double> starts_;
+};
+
 class RemoteControl final : public DeviceListener {
  public:
   struct Learned {
     std::string device;
     Element element;
   };
-  /// Nothing: no element has moved clearly in time, or learning was ended.
+  /// Receives the element that has moved clearly; nothing if none has moved in time, or learning was ended.
   using LearnedFunction = std::function<void(const std::optional<Learned>&)>;
 
   struct Bound {
     Binding binding;
-    std::optional<ParameterMotion> motion;  ///< of a binding to parameters, once its element has been seen
+    std::optional<ParameterMotion> motion;  ///< exists for a binding to parameters whose element has been seen
     std::optional<RemoteTime> moved_at;
   };
 
   /// target: must outlive this.
   explicit RemoteControl(RemoteTarget& target) : target_(target), buttons_(target), changes_(target) {}
 
-  /// What happens from now on happens at this time. Sends what is due.
+  /// Sets the time of all later events. Sends changes that are due.
   void advance(RemoteTime now);
-  /// When advance() has something to do at the latest.
+  /// The latest time at which advance() must be called.
   [[nodiscard]] std::optional<RemoteTime> due() const;
 
   // DeviceListener
@@ -48,19 +67,19 @@ class RemoteControl final : public DeviceListener {
   void unplugged(DeviceId device) override;
   void problems_changed(const std::vector<std::string>& problems) override;
 
-  /// Somebody drives, and is not away. Else only `stop` has an effect.
+  /// is_allowed: a viewer drives and is not away; otherwise only `stop` has an effect.
   void set_allowed(bool is_allowed);
-  /// The robot is a real one: only hold-to-run may run it.
+  /// is_required: the robot is real, and only hold-to-run may run it.
   void require_hold(bool is_required) { buttons_.require_hold(is_required); }
-  /// Somebody, perhaps this remote control, has stopped the robot.
+  /// Notes that the robot was stopped, perhaps by this remote control.
   void robot_stopped() { buttons_.robot_stopped(); }
-  /// refusal: empty if the set had its effect.
+  /// Receives the answer to RemoteTarget::set(). refusal: empty if the values were set.
   void set_answered(const std::string& refusal);
   void command_answered(RobotCommand command, bool is_ok) { buttons_.command_answered(command, is_ok); }
 
   void set_bindings(std::vector<Binding> bindings);
-  /// The element that moves next is told once, and has no other effect until then; `stop` works. An earlier learning
-  /// ends.
+  /// Calls the function once with the element that moves next. Elements have no other effect until then, except
+  /// `stop`. An earlier learning ends.
   void learn(LearnedFunction function);
   void end_learning() { finish_learning(std::nullopt); }
 
@@ -69,17 +88,17 @@ class RemoteControl final : public DeviceListener {
   [[nodiscard]] std::vector<std::string> problems() const;
   [[nodiscard]] bool is_learning() const { return learning_.has_value(); }
   [[nodiscard]] bool is_allowed() const { return is_allowed_; }
-  /// Counts what changes devices() but for positions, bindings() but for motions, problems(), is_learning() or
+  /// Counts changes of devices() (without positions), bindings() (without motions), problems(), is_learning() and
   /// is_allowed().
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
-  /// Counts movements.
+  /// Counts movements of elements.
   [[nodiscard]] std::uint64_t movements() const { return movements_; }
 
  private:
   static bool is_of(const Binding& binding, const InputDevice& device, const Element& element);
   void place_motions(const InputDevice& device);
   void move(Bound& bound, ElementKind kind, double position);
-  /// The element is pressed or released.
+  /// Performs the action of an element that is pressed or released.
   void act(RemoteAction action, const InputDevice& device, const ElementPlace& place, bool is_press);
   void finish_learning(const std::optional<Learned>& learned);
 

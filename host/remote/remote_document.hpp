@@ -6,11 +6,11 @@
 
 namespace proleg::host {
 
-/// Members `devices`, `bindings`, `problems`, `learning` and `active` of the document `remote`
+/// The members `devices`, `bindings`, `problems`, `learning` and `active` of the document `remote`
 /// (docs/page-interface.md).
 [[nodiscard]] nlohmann::json remote_document(const RemoteControl& remote);
 
-/// The document `remote_values`: positions of elements, and what bindings make of them.
+/// The document `remote_values`: positions of elements, and the values that bindings make of them.
 [[nodiscard]] nlohmann::json remote_values_document(const RemoteControl& remote);
 
 }  // namespace proleg::host

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "host/remote/binding_store.hpp"
-#include "host/remote/device_source.hpp"
+#include "host/remote/device_listener.hpp"
 #include "host/remote/remote_control.hpp"
 #include "host/server/session_output.hpp"
 #include "tools/proleg/ui/parameter_words.hpp"

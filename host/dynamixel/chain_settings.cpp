@@ -16,7 +16,7 @@ namespace proleg::host {
 namespace {
 
 constexpr std::uint32_t usual_return_delay_us = 500;
-/// From the last byte of a request to the driver and back, of an adapter with low latency.
+/// Time that an adapter with low latency adds to a request: from its last byte to the driver, and back.
 constexpr std::uint32_t turnaround_us = 1000;
 constexpr double step_deg = 360.0 / steps_per_turn;
 
@@ -124,7 +124,7 @@ const std::map<std::string_view, ServoReader>& servo_readers() {
   return readers;
 }
 
-/// Values for all joints first, so that those of single joints replace them in any order of the file.
+/// Reads the values for all joints first, so that those of single joints replace them in any order of the file.
 void read_servo_parameters(ChainSettings& settings, const proleg_setup& setup, bool of_single_joints) {
   for (const proleg_parameter& parameter : std::span(setup.parameters, setup.parameter_count)) {
     const auto reader = servo_readers().find(parameter.name);
@@ -205,8 +205,8 @@ void check_rate(const ChainSettings& settings) {
 }  // namespace
 
 std::int32_t ServoSettings::position_of(double joint_deg) const {
-  // Without an offset the result is exact: degrees * 1024 is, and the quotient is rounded only if it is no multiple of
-  // 2^-20 steps, which set-points are.
+  // Without an offset the result is exact: degrees * 1024 is exact, and the quotient is rounded only if it is not a
+  // multiple of 2^-20 steps, as set-points are.
   const double servo_deg = (is_reversed ? -joint_deg : joint_deg) + offset_deg;
   return middle_position + static_cast<std::int32_t>(std::floor(servo_deg * 1024.0 / 90.0 + 0.5));
 }

@@ -14,7 +14,7 @@ class SettingError : public std::runtime_error {
  public:
   SettingError(std::uint32_t line, const std::string& found, const std::string& expected)
       : std::runtime_error("found " + found + ", expected " + expected), line_(line) {}
-  /// In the robot's file; 0: none.
+  /// Line of the robot's file; 0: the error belongs to no line.
   [[nodiscard]] std::uint32_t line() const { return line_; }
 
  private:
@@ -23,17 +23,17 @@ class SettingError : public std::runtime_error {
 
 /// The servo of a joint. Joint angle a (degrees) is position 2048 + (direction * a + offset) * 4096 / 360.
 struct ServoSettings {
-  std::string joint;  ///< its name
+  std::string joint;  ///< name of the joint
   std::uint8_t id = 1;
-  bool is_reversed = false;  ///< direction is -1
-  double offset_deg = 0.0;   ///< of the servo when the joint is at 0 degrees
+  bool is_reversed = false;  ///< whether the direction is -1
+  double offset_deg = 0.0;   ///< angle of the servo when the joint is at 0 degrees
   double lower_limit_deg = -90.0;
   double upper_limit_deg = 90.0;
   double max_speed_deg_s = 360.0;
 
-  /// The position for a joint angle: nearest, ties up. Angles up to +-1000 degrees.
+  /// The nearest position for a joint angle; ties are rounded up. Angles may be up to +-1000 degrees.
   [[nodiscard]] std::int32_t position_of(double joint_deg) const;
-  /// The reverse.
+  /// The joint angle of a position, in degrees.
   [[nodiscard]] double angle_of(std::int32_t position) const;
 };
 
@@ -49,14 +49,14 @@ struct ChainSettings {
 /// servos and an answer of one in each tick. Throws SettingError.
 [[nodiscard]] ChainSettings read_chain_settings(const proleg_setup& setup);
 
-/// Time on the line, in us, of this number of bytes: 8 data bits, start and stop bit.
+/// Time in us that this number of bytes takes on the line: 8 data bits, start and stop bit.
 [[nodiscard]] std::uint32_t line_time_us(std::size_t bytes, unsigned rate);
 
 /// Bytes of the packet with goal positions of all servos.
 [[nodiscard]] std::size_t goal_packet_size(std::size_t servos);
 
-/// How many servos can be read in each tick after their goal positions were sent; at most `servos`.
-/// return_delay_us: the greatest of the servos.
+/// Number of servos that can be read in each tick after their goal positions were sent; at most `servos`.
+/// return_delay_us: the greatest return delay of the servos.
 [[nodiscard]] std::size_t readable_servos(std::size_t servos, unsigned rate, std::uint32_t tick_us,
                                           std::uint32_t return_delay_us);
 

@@ -13,14 +13,14 @@ struct TableItem {
   std::uint16_t size;
 };
 
-// EEPROM: written only while Torque Enable is 0.
+// The items below are in the EEPROM, which can be written only while Torque Enable is 0.
 inline constexpr TableItem return_delay_time{9, 1};  ///< 2 us; 0 to 254
 inline constexpr TableItem drive_mode{10, 1};        ///< 0: normal direction, profile in velocities
 inline constexpr TableItem operating_mode{11, 1};
 inline constexpr TableItem max_position_limit{48, 4};  ///< steps
 inline constexpr TableItem min_position_limit{52, 4};  ///< steps
 
-// RAM.
+// The items below are in the RAM.
 inline constexpr TableItem torque_enable{64, 1};
 inline constexpr TableItem status_return_level{68, 1};  ///< 2: all instructions are answered
 inline constexpr TableItem hardware_error_status{70, 1};
@@ -30,7 +30,7 @@ inline constexpr TableItem profile_velocity{112, 4};      ///< 0.229 rev/min; 0:
 inline constexpr TableItem goal_position{116, 4};         ///< steps, within the position limits
 inline constexpr TableItem present_position{132, 4};      ///< steps, signed
 
-/// Present Current(126), Velocity(128), Position(132) to Present Temperature(146), read at once.
+/// The items from Present Current(126) to Present Temperature(146), which are read at once.
 inline constexpr TableItem present_block{126, 21};
 inline constexpr unsigned current_in_block = 0;       ///< i16; mA, or 2.69 mA, or 0.1 % of the load: see the e-manual
 inline constexpr unsigned position_in_block = 6;      ///< i32, steps

@@ -1,4 +1,4 @@
-// The only symbol that the shared library exports.
+// This file defines the only symbol that the shared library exports.
 
 #include "host/dynamixel/plugin.hpp"
 

@@ -18,7 +18,7 @@ class Line {
  public:
   virtual ~Line() = default;
 
-  /// Microseconds; never decreases.
+  /// The time in microseconds; never decreases.
   [[nodiscard]] virtual std::uint64_t now_us() = 0;
   /// Sends bytes. May return before they are on the line. Throws LineError.
   virtual void write(std::span<const std::uint8_t> bytes) = 0;

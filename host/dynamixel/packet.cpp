@@ -20,7 +20,7 @@ bool ends_with_header(std::span<const std::uint8_t> bytes) {
   return size >= 3 && bytes[size - 3] == 0xFF && bytes[size - 2] == 0xFF && bytes[size - 1] == 0xFD;
 }
 
-/// Without the inserted bytes; nothing if one is missing.
+/// The bytes without those that byte stuffing has inserted; nothing if an inserted byte is missing.
 std::optional<std::vector<std::uint8_t>> without_stuffing(std::span<const std::uint8_t> stuffed) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(stuffed.size());
@@ -107,7 +107,7 @@ void StatusParser::add(std::span<const std::uint8_t> bytes) {
   buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
 }
 
-/// Removes what is in front of the next header. False if the buffer does not begin with a whole header.
+/// Removes bytes before the next header. Returns whether the buffer begins with a whole header.
 bool StatusParser::find_header() {
   const auto found = std::search(buffer_.begin(), buffer_.end(), header.begin(), header.end());
   if (found != buffer_.end()) {
@@ -123,7 +123,7 @@ bool StatusParser::find_header() {
   return false;
 }
 
-/// A packet that was cut short is followed by others: only its header is skipped.
+/// Skips only the header of a damaged packet, because the packet may have been cut short and contain others.
 void StatusParser::skip_damaged() {
   ++damaged_;
   buffer_.erase(buffer_.begin(), buffer_.begin() + header.size());

@@ -26,27 +26,27 @@ enum class Instruction : std::uint8_t {
   sync_write = 0x83,
 };
 
-/// All servos.
+/// The id that addresses all servos.
 inline constexpr std::uint8_t broadcast_id = 0xFE;
 inline constexpr std::uint8_t max_servo_id = 252;
 
-/// Bytes of a packet beside its parameters: header, id, length, instruction, CRC.
+/// Number of bytes of a packet beside its parameters: header, id, length, instruction, CRC.
 inline constexpr std::size_t packet_overhead = 10;
-/// The same of a status packet, which has an error byte.
+/// Number of bytes of a status packet beside its parameters: it also has an error byte.
 inline constexpr std::size_t status_overhead = packet_overhead + 1;
 
 /// CRC-16 with the polynomial 0x8005, from 0, most significant bit first (e-manual, "CRC Calculation").
 [[nodiscard]] std::uint16_t packet_crc(std::span<const std::uint8_t> bytes);
 
-/// A whole packet, with byte stuffing and CRC. parameters: at most 1000 bytes.
+/// Makes a whole packet, with byte stuffing and CRC. parameters: at most 1000 bytes.
 [[nodiscard]] std::vector<std::uint8_t> instruction_packet(std::uint8_t id, Instruction instruction,
                                                            std::span<const std::uint8_t> parameters);
 
-/// What a servo answers.
+/// The answer of a servo.
 struct StatusPacket {
-  static constexpr unsigned alert = 0x80;         ///< of `error`: Hardware Error Status(70) is not 0
+  static constexpr unsigned alert = 0x80;         ///< bit of `error`: Hardware Error Status(70) is not 0
   static constexpr unsigned crc_error = 3;        ///< error number: the servo received a damaged instruction
-  static constexpr unsigned error_number = 0x7F;  ///< of `error`: why the instruction failed; 0: it did not
+  static constexpr unsigned error_number = 0x7F;  ///< bits of `error`: why the instruction failed; 0: it succeeded
 
   std::uint8_t id = 0;
   std::uint8_t error = 0;
@@ -55,7 +55,7 @@ struct StatusPacket {
   friend bool operator==(const StatusPacket&, const StatusPacket&) = default;
 };
 
-/// "Data Range Error" and so on, for the error number of a status packet.
+/// The name of a status packet's error number, such as "Data Range Error".
 [[nodiscard]] const char* describe_error_number(std::uint8_t error);
 
 /// Finds status packets in received bytes. Skips everything else: noise, damaged packets, and the echo of instructions,
@@ -66,12 +66,12 @@ class StatusParser {
   static constexpr std::size_t max_length = 256;
 
   void add(std::span<const std::uint8_t> bytes);
-  /// The next complete packet.
+  /// Takes the next complete packet; nothing if there is none.
   [[nodiscard]] std::optional<StatusPacket> next();
   /// Forgets an incomplete packet.
   void reset() { buffer_.clear(); }
 
-  /// Packets so far with a wrong CRC, an impossible length or wrong byte stuffing.
+  /// Number of packets so far with a wrong CRC, an impossible length or wrong byte stuffing.
   [[nodiscard]] std::uint32_t damaged() const { return damaged_; }
   /// Whether a packet has begun and is not complete.
   [[nodiscard]] bool is_incomplete() const { return buffer_.size() >= 4; }

@@ -42,7 +42,7 @@ void set_error(proleg_error* error, const char* text, std::uint32_t line = 0) {
   error->text[sizeof error->text - 1] = '\0';
 }
 
-/// No exception leaves the plug-in.
+/// Runs an action so that no exception leaves the plug-in.
 template <typename Action>
 int guarded(proleg_error* error, const Action& action) {
   try {
@@ -57,7 +57,7 @@ int guarded(proleg_error* error, const Action& action) {
   return PROLEG_FAILED;
 }
 
-/// An action that requires a connected robot, with its deadline.
+/// Runs an action that requires a connected robot, with its deadline.
 template <typename Action>
 int guarded_on(proleg_robot* robot, std::uint32_t timeout_us, proleg_error* error, const Action& action) {
   return guarded(error, [&] {
@@ -96,7 +96,7 @@ int describe(proleg_robot* robot, proleg_description* description, proleg_error*
 int connect_robot(proleg_robot* robot, std::uint32_t timeout_us, proleg_error* error) {
   return guarded(error, [&] {
     robot->chain.reset();
-    robot->line.reset();  // before it is opened again
+    robot->line.reset();  // the port is closed before it is opened again
     robot->line = line_maker()(robot->settings.device, robot->settings.rate);
     robot->chain = std::make_unique<ServoChain>(
         *robot->line, robot->settings, [robot](const std::string& text) { robot->show(robot->context, text.c_str()); });
@@ -148,7 +148,7 @@ int send_command_by_value(proleg_robot* /*robot*/, const char* /*command*/, doub
   return PROLEG_UNSUPPORTED;
 }
 
-/// A line of text for each joint: name, id, degrees, current, degrees Celsius.
+/// Writes a line of text for each joint: name, id, degrees, current, degrees Celsius.
 int request_all_information(proleg_robot* robot, std::uint8_t* bytes, std::uint32_t capacity, std::uint32_t* count,
                             std::uint32_t timeout_us, proleg_error* error) {
   return guarded_on(robot, timeout_us, error, [&](ServoChain& chain, std::uint64_t /*deadline_us*/) {

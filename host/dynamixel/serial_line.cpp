@@ -63,7 +63,7 @@ void SerialLine::configure(unsigned rate) {
   if (isatty(descriptor_) == 0) {
     throw LineError(device_ + " is no serial port; correct the parameter 'device' (ls /dev/serial/by-id)");
   }
-  // The lock keeps a second host away, the exclusive mode other programs.
+  // The lock excludes a second host, the exclusive mode other programs.
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     fail("cannot lock", errno);
   }
@@ -109,7 +109,7 @@ std::uint64_t SerialLine::now_us() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
 }
 
-/// False at the deadline.
+/// Waits for events. Returns false at the deadline.
 bool SerialLine::wait_for(short events, std::uint64_t deadline_us) {
   for (;;) {
     const std::uint64_t now = now_us();
@@ -155,7 +155,7 @@ std::size_t SerialLine::read(std::span<std::uint8_t> into, std::uint64_t deadlin
       return static_cast<std::size_t>(count);
     }
     if (count == 0) {
-      fail("lost", EIO);  // readable without bytes: the other end is gone
+      fail("lost", EIO);  // a line that is readable and has no bytes has lost its other end
     }
     if (errno != EAGAIN && errno != EINTR) {
       fail("cannot read from", errno);

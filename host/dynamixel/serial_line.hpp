@@ -13,7 +13,7 @@ namespace proleg::host {
 /// A serial port of the operating system: 8 data bits, no parity, 1 stop bit, no flow control, for this process alone.
 class SerialLine final : public Line {
  public:
-  /// rate: one of serial_rates(). Throws LineError.
+  /// Opens the port. rate: one of serial_rates(). Throws LineError.
   SerialLine(const std::string& device, unsigned rate);
   ~SerialLine() override;
   SerialLine(const SerialLine&) = delete;

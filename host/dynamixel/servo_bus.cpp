@@ -40,7 +40,7 @@ void ServoBus::discard_input() {
 }
 
 void ServoBus::send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters) {
-  discard_input();  // late answers to an earlier request
+  discard_input();  // forget late answers to an earlier request
   line_.write(instruction_packet(id, instruction, parameters));
 }
 
@@ -61,7 +61,7 @@ std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
   }
 }
 
-/// The answer to an earlier attempt may still come, and must not count as that to the next request.
+/// Waits for a late answer to an earlier attempt, which must not count as the answer to the next request.
 void ServoBus::drain() {
   const std::uint64_t end_us = now_us() + answer_timeout_us;
   while (receive(end_us)) {

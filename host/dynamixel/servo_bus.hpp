@@ -19,7 +19,8 @@ class ServoError : public std::runtime_error {
   explicit ServoError(const std::string& text) : std::runtime_error(text) {}
   ServoError(std::uint8_t id, const std::string& what_it_does)
       : std::runtime_error("servo " + std::to_string(id) + " " + what_it_does), what_it_does_(what_it_does) {}
-  /// "does not answer", without the servo; empty if the error is not that of one request.
+  /// The fault without the name of the servo, such as "does not answer"; empty if the error is not that of one
+  /// request.
   [[nodiscard]] const std::string& what_it_does() const { return what_it_does_; }
 
  private:
@@ -29,19 +30,19 @@ class ServoError : public std::runtime_error {
 /// Requests to servos and their answers: one request at a time, each with a timeout.
 class ServoBus {
  public:
-  /// line: must outlive the bus. rate: baud; for the time that a request takes.
+  /// line: must outlive the bus. rate: the baud rate, from which the duration of a request is computed.
   ServoBus(Line& line, unsigned rate) : line_(line), rate_(rate) {}
 
-  /// From the start: no request of this bus takes longer. A request fails with ServoError at this time.
+  /// Sets the time at which a request of this bus fails with ServoError if it has not ended.
   void set_deadline(std::uint64_t deadline_us) { deadline_us_ = deadline_us; }
   [[nodiscard]] std::uint64_t now_us() { return line_.now_us(); }
 
   // Requests to one servo. They are repeated twice if there is no intact answer. They throw ServoError.
-  /// Returns the model number.
+  /// Sends a ping. Returns the model number.
   unsigned ping(std::uint8_t id);
-  /// The bytes of an item.
+  /// Reads the bytes of an item.
   std::vector<std::uint8_t> read(std::uint8_t id, TableItem item);
-  /// An item of 1, 2 or 4 bytes.
+  /// Reads an item of 1, 2 or 4 bytes.
   std::uint32_t read_number(std::uint8_t id, TableItem item);
   /// Writes an item, and requires that the servo accepts it.
   void write(std::uint8_t id, TableItem item, std::uint32_t value);
@@ -58,7 +59,7 @@ class ServoBus {
   /// The ids of all servos that answer a broadcast ping within the time.
   std::vector<std::uint8_t> find_servos(std::uint32_t time_us);
 
-  /// Forgets what was received and not read.
+  /// Forgets bytes that were received and not read.
   void discard_input();
 
   /// Whether a servo reported a hardware error (alert bit) since the last call, and which.
@@ -68,7 +69,7 @@ class ServoBus {
   void send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters);
   std::optional<StatusPacket> receive(std::uint64_t deadline_us);
   void drain();
-  /// One request with repetitions. parameters: how many the answer must have.
+  /// Sends a request, with repetitions. parameters: the number of parameters that the answer must have.
   StatusPacket request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
                        std::size_t answer_size);
 
@@ -79,7 +80,7 @@ class ServoBus {
   std::optional<std::uint8_t> alert_;
 };
 
-/// Little-endian, 1 to 4 bytes.
+/// The number in 1 to 4 little-endian bytes.
 [[nodiscard]] std::uint32_t number_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace proleg::host

@@ -9,9 +9,9 @@
 namespace proleg::host {
 namespace {
 
-/// Two damaged answers in a row are noise; a servo that misses three is gone.
+/// Number of missed answers in a row after which a servo counts as lost: two damaged answers in a row can be noise.
 constexpr unsigned max_missed = 3;
-/// Every so many ticks the watchdog of one servo is read, and no angles.
+/// Period in ticks at which the watchdog of one servo is read instead of angles.
 constexpr std::uint32_t watchdog_ticks = 16;
 constexpr unsigned return_delay_unit_us = 2;
 constexpr std::uint32_t search_time_us = 300'000;
@@ -21,7 +21,7 @@ struct HardwareError {
   const char* what;
 };
 
-/// Hardware Error Status(70), e-manual.
+/// The bits of Hardware Error Status(70) (e-manual).
 constexpr std::array<HardwareError, 5> hardware_errors{{{0x01, "input voltage"},
                                                         {0x04, "overheating"},
                                                         {0x08, "motor encoder"},
@@ -105,7 +105,7 @@ void ServoChain::find_all() {
 
 void ServoChain::prepare(std::size_t joint) {
   const std::uint8_t id = ids_[joint];
-  // At a lower level a servo does not answer what follows.
+  // At a lower status return level a servo does not answer the following requests.
   bus_.write_unconfirmed(id, status_return_level, 2);
   bus_.write(id, torque_enable, 0);
   require_healthy(joint);
@@ -119,7 +119,7 @@ void ServoChain::prepare(std::size_t joint) {
 }
 
 void ServoChain::prepare_modes(std::size_t joint) {
-  // They are in the EEPROM, which wears out: they are written only if they are wrong.
+  // These items are in the EEPROM, which wears out: they are written only if they are wrong.
   const std::uint8_t id = ids_[joint];
   const std::array<std::pair<TableItem, std::uint8_t>, 2> wanted{
       {{operating_mode, position_control_mode}, {drive_mode, 0}}};
@@ -187,7 +187,7 @@ void ServoChain::switch_on(std::uint64_t deadline_us) {
 
 void ServoChain::switch_off(std::uint64_t deadline_us) {
   bus_.set_deadline(deadline_us);
-  // First without answers, because a servo that does not answer must not delay the others.
+  // The first attempt requests no answers, because a servo that does not answer must not delay the others.
   const std::vector<std::uint32_t> zeros(ids_.size());
   bus_.sync_write(torque_enable, ids_, zeros);
   std::string failed;
@@ -249,7 +249,8 @@ void ServoChain::read_some(std::uint64_t deadline_us) {
       missed_[joints[i]] = 0;
       store(joints[i], answers[i]->parameters);
     } else if (std::exchange(is_first_missing, false)) {
-      // The servos behind it may have waited for its answer, so only this one has failed. It is first the next time.
+      // The servos behind it may have waited for its answer, so only this one has failed. The next read begins with
+      // it.
       ++missed_[joints[i]];
       next_read_ = joints[i];
     }

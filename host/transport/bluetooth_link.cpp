@@ -13,7 +13,7 @@ constexpr int rfcomm_protocol = 3;    // BTPROTO_RFCOMM
 
 struct RfcommAddress {
   sa_family_t family;
-  std::uint8_t device[6];  // the least significant byte first
+  std::uint8_t device[6];  // address, the least significant byte first
   std::uint8_t channel;
 };
 static_assert(sizeof(RfcommAddress) == 10);
@@ -73,7 +73,7 @@ class BluetoothLink final : public Link {
   }
   [[nodiscard]] Microseconds connect_timeout() const override { return 15'000'000; }
   [[nodiscard]] SlcanClient::Settings client_settings() const override {
-    // The radio can be silent for a second and goes on; more frames under way make up for its latency.
+    // The radio can be silent for a second and then continue; more unconfirmed frames compensate its latency.
     SlcanClient::Settings settings;
     settings.answer_timeout = 1'000'000;
     settings.start_timeout = 6'000'000;

@@ -10,16 +10,16 @@ namespace proleg::host {
 /// Where a CAN bus is, as the user writes it:
 ///   can0                                   a CAN interface of Linux (SocketCAN), also vcan0, slcan0, ...
 ///   serial:/dev/ttyUSB0[@BAUD]             an slcan adapter, or a module that serves as one, on a serial line
-///   bluetooth:AA:BB:CC:DD:EE:FF[/CHANNEL]  the same over RFCOMM
-///   tcp:HOST:PORT                          the same over TCP; an IPv6 address stands in brackets
-///   fd:N                                   the same over a socket that this process has inherited
+///   bluetooth:AA:BB:CC:DD:EE:FF[/CHANNEL]  such an adapter over RFCOMM
+///   tcp:HOST:PORT                          such an adapter over TCP; an IPv6 address stands in brackets
+///   fd:N                                   such an adapter over a socket that this process has inherited
 ///   sim:FILE.simulation.xml                simulated modules, by the program proleg-bus
 ///   auto                                   the only adapter that has modules behind it
 struct BusAddress {
   enum class Kind : std::uint8_t { can, serial, bluetooth, tcp, descriptor, simulation, automatic };
 
   static constexpr unsigned default_baud = 1'000'000;  ///< 20 modules at 10 ms a tick fit
-  static constexpr unsigned default_channel = 1;       ///< of RFCOMM
+  static constexpr unsigned default_channel = 1;       ///< RFCOMM channel
 
   Kind kind = Kind::automatic;
   std::string name;     ///< interface, device, host or file
@@ -29,10 +29,10 @@ struct BusAddress {
   friend bool operator==(const BusAddress&, const BusAddress&) = default;
 };
 
-/// Throws InputError for a word that is no address. Whether the bus exists is not looked at.
-[[nodiscard]] BusAddress parse_bus_address(std::string_view word);
+/// Reads an address. Throws InputError for an argument that is not an address. Does not check whether the bus exists.
+[[nodiscard]] BusAddress parse_bus_address(std::string_view argument);
 
-/// The word in full: parse_bus_address() gives the same address.
+/// The complete text of an address, from which parse_bus_address() makes the same address.
 [[nodiscard]] std::string bus_address_text(const BusAddress& address);
 
 /// The kinds of addresses, for help texts and errors.

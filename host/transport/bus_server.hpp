@@ -13,19 +13,20 @@
 
 namespace proleg::host {
 
-/// A client of a BusServer: an slcan client, or a CAN interface. Numbers are not used twice.
+/// Number of a client of a BusServer, which is an slcan client or a CAN interface. No number is used twice.
 using BusClient = std::uint32_t;
 inline constexpr BusClient no_client = 0;
 
 /// The bus behind a BusServer.
 class BusServerListener {
  public:
-  /// A frame of a client. False: the bus has no room now; an slcan client receives BEL. The bus gives the frame to the
-  /// other clients with broadcast(time, frame, client), at once or when it has been on the bus.
+  /// Receives a frame of a client. Returns false if the bus has no room now; an slcan client then receives BEL. The
+  /// bus gives the frame to the other clients with broadcast(time, frame, client), at once or when it has been on the
+  /// bus.
   [[nodiscard]] virtual bool frame_from_client(BusClient client, const CanFrame& frame) = 0;
-  /// One line for a log: a client came or went, an interface failed.
+  /// Receives one line for a log: a client came or went, or an interface failed.
   virtual void client_event(const std::string& /*line*/) {}
-  /// The other end of add_descriptor() has closed it.
+  /// The other end of the descriptor of add_descriptor() has closed it.
   virtual void descriptor_closed() {}
 
  protected:
@@ -39,24 +40,24 @@ class BusServer {
   struct Totals {
     std::uint64_t frames_from_clients = 0;
     std::uint64_t frames_refused = 0;  ///< frames of clients that were answered with BEL
-    std::uint64_t frames_dropped = 0;  ///< for clients that do not read fast enough
+    std::uint64_t frames_dropped = 0;  ///< frames for clients that do not read fast enough
   };
 
   BusServer(boost::asio::io_context& context, BusServerListener& listener, const SlcanAdapter::Settings& settings = {});
 
-  /// A pseudo terminal for one slcan client after the other. Returns its name. All add functions throw TransportError
-  /// with one line.
+  /// Adds a pseudo terminal for one slcan client after the other. Returns its name. All add functions throw
+  /// TransportError with one line.
   std::string add_pseudo_terminal();
-  /// A TCP port for slcan clients, up to 32 at once. host: 127.0.0.1 lets in programs of this computer only. port 0:
-  /// any free one. Returns the port.
+  /// Adds a TCP port for slcan clients, up to 32 at once. host: 127.0.0.1 lets in programs of this computer only. port
+  /// 0: any free port. Returns the port.
   std::uint16_t add_tcp(const std::string& host, std::uint16_t port);
-  /// One slcan client at the other end of a socket or pipe that this process has inherited and now owns.
+  /// Adds an slcan client at the other end of a socket or pipe that this process has inherited and now owns.
   void add_descriptor(int descriptor);
   void add_can(const std::string& interface);
 
-  /// A frame that was on the bus, for all clients whose channel is open, but for one.
+  /// Sends a frame that was on the bus to all clients with an open channel, except one.
   void broadcast(Microseconds time, const CanFrame& frame, BusClient except = no_client);
-  /// The error state of the bus, for slcan clients that are there or come later.
+  /// Reports the error state of the bus to present and later slcan clients.
   void status_changed(const CanStatus& status);
   void errors_occurred(CanErrors errors);
 
@@ -82,7 +83,7 @@ class BusServer {
   std::vector<std::unique_ptr<PseudoTerminal>> terminals_;
   std::vector<std::unique_ptr<TcpListener>> tcp_listeners_;
   CanStatus status_;
-  Totals past_;  ///< of clients that have gone
+  Totals past_;  ///< totals of clients that have gone
   BusClient last_client_ = no_client;
 };
 

@@ -166,7 +166,7 @@ class ByteStream::Events : public std::enable_shared_from_this<ByteStream::Event
   const bool is_socket_;
   stream_descriptor descriptor_;
   ByteStreamOwner* owner_;
-  std::string rest_;  ///< taken from the owner, not written yet
+  std::string rest_;  ///< bytes that were taken from the owner and are not written yet
   bool is_reading_ = false;
   bool is_writing_ = false;
 };

@@ -9,17 +9,17 @@
 
 namespace proleg::host {
 
-/// What is at this end of a stream of bytes.
+/// The object at this end of a stream of bytes.
 class ByteStreamOwner {
  public:
-  /// The connection of a descriptor that was being connected is there.
+  /// The descriptor, which was being connected, is connected.
   virtual void connected() {}
-  /// How many bytes may be read now. 0: none until ByteStream::resume().
+  /// Number of bytes that may be read now; after 0, no bytes are read until ByteStream::resume().
   [[nodiscard]] virtual std::size_t read_room() { return 4'096; }
   virtual void read(std::string_view bytes) = 0;
-  /// At most this many bytes to write; empty: none until ByteStream::flush().
+  /// Returns at most this many bytes to write; after an empty string, no bytes are taken until ByteStream::flush().
   [[nodiscard]] virtual std::string take_output(std::size_t max_bytes) = 0;
-  /// The stream has ended and does nothing any more. error: of the system; 0: the other end closed it.
+  /// The stream has ended. error: error of the system; 0: the other end closed the stream.
   virtual void ended(int error) = 0;
 
  protected:
@@ -30,18 +30,18 @@ class ByteStreamOwner {
 /// owner may destroy the stream in any of its functions.
 class ByteStream {
  public:
-  /// descriptor: its reads and writes return at once. is_connecting: connect() returned EINPROGRESS.
+  /// descriptor: a descriptor whose reads and writes return at once. is_connecting: connect() returned EINPROGRESS.
   ByteStream(boost::asio::io_context& context, Descriptor descriptor, bool is_connecting, ByteStreamOwner& owner);
-  /// Closes the descriptor. What the system has not taken is lost.
+  /// Closes the descriptor. Bytes that the system has not taken are lost.
   ~ByteStream();
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
 
-  /// There is output. It is written soon, not in this call.
+  /// Notes that the owner has output. It is written soon, not in this call.
   void flush();
-  /// There is room for input again.
+  /// Notes that the owner has room for input again.
   void resume();
-  /// Writes now what the system takes at once, for a last message.
+  /// Writes a last message: as many of the bytes as the system takes at once.
   void write_last(std::string_view bytes);
   [[nodiscard]] int descriptor() const;
 

@@ -91,7 +91,7 @@ void read_kind(CanInterface& interface, unsigned type, Bytes value) {
   }
 }
 
-/// Asks for the interface with that index; the answer of the kernel, or nothing.
+/// Asks the kernel for the interface with that index. Returns its answer, or nothing.
 std::optional<std::size_t> ask_kernel(unsigned index, std::span<std::byte> answer) {
   struct {
     nlmsghdr header;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t node_queue = 1'024;
 constexpr Microseconds node_retry_pause = 500;  // a full queue (ENOBUFS) cannot be waited for
 constexpr Microseconds reconnect_pause = 500'000;
-constexpr unsigned node_reads_in_a_row = 64;  // then other work of the context has its turn
+constexpr unsigned node_reads_in_a_row = 64;  // frames that are read before other work of the context runs
 
 }  // namespace
 
@@ -75,7 +75,7 @@ void CanNode::send(const CanFrame& frame) {
   }
   queue_.push_back(frame);
   if (queue_.size() == 1) {
-    retry_.set(steady_now());  // not in this call: the interface may have failed
+    retry_.set(steady_now());  // the next attempt is not in this call, because the interface may have failed
   }
 }
 

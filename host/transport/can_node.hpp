@@ -7,7 +7,6 @@
 #include <string>
 
 #include "host/transport/can_socket.hpp"
-#include "host/transport/descriptor_watch.hpp"
 #include "host/transport/event_loop.hpp"
 
 namespace proleg::host {
@@ -17,14 +16,15 @@ class CanNode {
  public:
   struct Functions {
     std::function<void(const CanFrame&)> received;
-    /// The interface has failed, with one line; or it is back, and the line is empty.
+    /// Receives one line when the interface has failed, and an empty one when it is back.
     std::function<void(const std::string&)> changed;
   };
 
-  /// Throws TransportError if the interface cannot be used now. Later it is opened again when it is back.
+  /// Opens the interface. Throws TransportError if it cannot be used now. If it fails later, it is opened again when
+  /// it is back.
   CanNode(boost::asio::io_context& context, std::string interface, Functions functions);
 
-  /// Frames that the kernel cannot take now wait for it, up to 1,024; more are dropped and counted.
+  /// Sends a frame. Up to 1,024 frames wait for the kernel; more are dropped and counted.
   void send(const CanFrame& frame);
   [[nodiscard]] const std::string& interface() const { return interface_; }
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }

@@ -1,13 +1,11 @@
-#include "host/transport/can_transport.hpp"
+#include "host/transport/open_transport.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <deque>
 #include <utility>
 
-#include "host/transport/can_error_frame.hpp"
 #include "host/transport/can_socket.hpp"
-#include "host/transport/descriptor_watch.hpp"
 #include "host/transport/event_loop.hpp"
 
 namespace proleg::host {
@@ -15,11 +13,11 @@ namespace {
 
 constexpr std::size_t max_queue = 1'024;
 constexpr Microseconds retry_pause = 1'000;  // a full queue (ENOBUFS) cannot be waited for
-/// Without a frame on the bus for so long, the frames that wait are out of date.
+/// Duration without a frame on the bus after which the waiting frames are out of date.
 constexpr Microseconds send_timeout = 500'000;
 constexpr Microseconds first_pause = 100'000;
 constexpr Microseconds longest_pause = 2'000'000;
-constexpr unsigned reads_in_a_row = 64;  // then other work of the context has its turn
+constexpr unsigned reads_in_a_row = 64;  // frames that are read before other work of the context runs
 
 class CanTransport final : public Transport {
  public:
@@ -47,8 +45,9 @@ class CanTransport final : public Transport {
       last_progress_ = now();
     }
     queue_.push_back(frame);
-    // Not in this call: the listener may be called when the interface has failed. With frames before it the timer is
-    // already set: for those of the same call, or for another try of one that the kernel has refused.
+    // The frame is not sent in this call, because the listener may be called when the interface has failed. With
+    // frames before it the timer is already set: for frames of the same call, or for another attempt to send one that
+    // the kernel has refused.
     if (queue_.size() == 1) {
       retry_.set(now());
     }
@@ -184,7 +183,7 @@ class CanTransport final : public Transport {
       wait_for_room();
     }
   }
-  /// Frames wait, here or in the kernel. If none has come on the bus for some time, they are given up.
+  /// Waits while frames wait here or in the kernel. If none has reached the bus for some time, they are given up.
   void wait_for_room() {
     if (now() < last_progress_ + send_timeout) {
       retry_.set(queue_.empty() ? last_progress_ + send_timeout : now() + retry_pause);
@@ -195,7 +194,7 @@ class CanTransport final : public Transport {
     state_.reason = blocked_text(was_full);
     notify();
   }
-  /// Why no frame comes on the bus.
+  /// One line that says why no frame reaches the bus.
   [[nodiscard]] std::string blocked_text(bool is_queue_full) const {
     if (state_.controller.state == CanState::bus_off) {
       return "the controller is bus-off after too many errors: check the bit rate and the wires, then sudo ip link "
@@ -224,12 +223,12 @@ class CanTransport final : public Transport {
   Timer reconnect_;
   BusState state_;
   Statistics statistics_;
-  std::deque<CanFrame> queue_;        ///< that the kernel has not taken
-  std::deque<CanFrame> unconfirmed_;  ///< that the kernel has taken and not confirmed
-  Microseconds last_progress_ = 0;    ///< a frame was confirmed, or the first of some was given
+  std::deque<CanFrame> queue_;        ///< frames that the kernel has not taken
+  std::deque<CanFrame> unconfirmed_;  ///< frames that the kernel has taken and not confirmed
+  Microseconds last_progress_ = 0;  ///< time at which a frame was confirmed, or the first frame was given to the kernel
   Microseconds pause_ = first_pause;
   std::uint64_t dropped_before_ = 0;
-  bool was_called_ = false;  ///< the listener
+  bool was_called_ = false;  ///< the listener was called
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ class Descriptor {
   }
   ~Descriptor() { close(); }
 
-  /// -1: none.
+  /// The number of the descriptor; -1 if there is none.
   [[nodiscard]] int number() const { return number_; }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
   [[nodiscard]] int release() { return std::exchange(number_, -1); }
@@ -26,11 +26,11 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// Reads and writes return at once from now on, and programs that are started do not inherit the descriptor. False if
-/// there is no such descriptor; errno says why.
+/// Makes reads and writes return at once from now on, and keeps programs that are started from inheriting the
+/// descriptor. Returns false if there is no such descriptor; errno says why.
 [[nodiscard]] bool make_private(const Descriptor& descriptor);
 
-/// "Permission denied" for EACCES, and so on.
+/// The text of an error of the system, such as "Permission denied" for EACCES.
 [[nodiscard]] const char* system_text(int error);
 
 }  // namespace proleg::host

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 
@@ -10,13 +11,56 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr Microseconds longest_wait = 3'600'000'000;  // a time point of `never` would overflow
+constexpr Microseconds longest_wait = 3'600'000'000;  // microseconds; a time point of `never` would overflow
 
 Clock::time_point time_point_of(Microseconds time) {
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(std::chrono::microseconds(time)));
 }
 
 }  // namespace
+
+using boost::asio::posix::stream_descriptor;
+
+/// The handlers own this, so that one that is under way when the watch has gone finds no function.
+class DescriptorWatch::Events : public std::enable_shared_from_this<DescriptorWatch::Events> {
+ public:
+  Events(boost::asio::io_context& context, int descriptor, std::function<void()> function)
+      : descriptor_(context.get_executor(), descriptor), function_(std::move(function)) {}
+
+  void wait() {
+    descriptor_.async_wait(stream_descriptor::wait_read,
+                           [self = shared_from_this()](const boost::system::error_code& error) {
+                             if (!error) {
+                               self->call();
+                             }
+                           });
+  }
+  void stop() {
+    is_stopped_ = true;
+    static_cast<void>(descriptor_.release());
+  }
+
+ private:
+  void call() {
+    if (!is_stopped_) {
+      function_();
+    }
+    if (!is_stopped_) {
+      wait();
+    }
+  }
+
+  stream_descriptor descriptor_;
+  const std::function<void()> function_;
+  bool is_stopped_ = false;
+};
+
+DescriptorWatch::DescriptorWatch(boost::asio::io_context& context, int descriptor, std::function<void()> function)
+    : events_(std::make_shared<Events>(context, descriptor, std::move(function))) {
+  events_->wait();
+}
+
+DescriptorWatch::~DescriptorWatch() { events_->stop(); }
 
 Microseconds steady_now() {
   const auto since_start = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch());
@@ -32,7 +76,7 @@ void run_until(boost::asio::io_context& context, Microseconds deadline, const bo
   for (Microseconds now = steady_now(); !is_done && now < deadline; now = steady_now()) {
     context.run_one_until(time_point_of(std::min(deadline, now + longest_wait)));
     if (context.stopped()) {
-      return;  // somebody ends the program
+      return;  // the program is being ended
     }
   }
 }

@@ -8,7 +8,21 @@
 
 namespace proleg::host {
 
-/// Microseconds on the system's steady clock (CLOCK_MONOTONIC).
+/// Calls a function, from the io_context, as long as a descriptor can be read. The function may destroy the watch.
+class DescriptorWatch {
+ public:
+  /// The descriptor stays open longer than the watch; its owner closes it.
+  DescriptorWatch(boost::asio::io_context& context, int descriptor, std::function<void()> function);
+  ~DescriptorWatch();
+  DescriptorWatch(const DescriptorWatch&) = delete;
+  DescriptorWatch& operator=(const DescriptorWatch&) = delete;
+
+ private:
+  class Events;
+  std::shared_ptr<Events> events_;
+};
+
+/// The time of the system's steady clock (CLOCK_MONOTONIC) in microseconds.
 [[nodiscard]] Microseconds steady_now();
 
 /// Runs handlers until `is_done`, or until this time. Handlers that are ready run also if the time has passed.
@@ -18,12 +32,12 @@ void run_until(boost::asio::io_context& context, Microseconds deadline, const bo
 class Timer {
  public:
   Timer(boost::asio::io_context& context, std::function<void()> function);
-  /// The function is not called any more.
+  /// Cancels the call of the function.
   ~Timer();
   Timer(const Timer&) = delete;
   Timer& operator=(const Timer&) = delete;
 
-  /// Replaces an earlier time. `never` only cancels it.
+  /// Sets the time of the call, which replaces an earlier one. `never` only cancels the call.
   void set(Microseconds time);
 
  private:

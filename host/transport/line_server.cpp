@@ -24,7 +24,7 @@ std::uint16_t LineServer::listen(const std::string& host, std::uint16_t port) {
 }
 
 void LineServer::accept(Descriptor descriptor, const std::string& client) {
-  // The end of the one before and the beginning of the next may come in either order.
+  // The end of the previous program and the beginning of the next one may be reported in either order.
   if (stream_ && has_gone()) {
     ended(0);
   }

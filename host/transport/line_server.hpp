@@ -17,28 +17,28 @@ namespace proleg::host {
 /// them. Bytes for the line are lost while no program is there, and if the program lets more than 65,536 wait.
 class LineServer final : private ByteStreamOwner {
  public:
-  /// All are called from the io_context.
+  /// Functions that are called from the io_context.
   struct Functions {
-    /// The program has sent these bytes, not more than room() said.
+    /// Receives bytes that the program has sent, not more than room() has returned.
     std::function<void(std::string_view bytes)> received;
-    /// How many bytes the line takes now. 0: none until resume().
+    /// Number of bytes that the line takes now; after 0, no bytes are read until resume().
     std::function<std::size_t()> room;
-    /// One line for a log: a program came, has gone, was refused, or loses bytes.
+    /// Receives one line for a log: a program came, has gone, was refused, or loses bytes.
     std::function<void(const std::string& line)> event;
   };
 
   LineServer(boost::asio::io_context& context, Functions functions);
 
-  /// A pseudo terminal at the other end. Returns its name. Throws TransportError with one line. The line has one end:
-  /// call this or listen(), once.
+  /// Opens a pseudo terminal at the other end. Returns its name. Throws TransportError with one line. The line has one
+  /// end: call either this function or listen(), once.
   std::string open_pseudo_terminal();
-  /// A TCP port at the other end; further programs are refused while one is connected. host, port, errors: as
-  /// TcpListener has them. Returns the port.
+  /// Opens a TCP port at the other end; further programs are refused while one is connected. host, port and errors are
+  /// those of TcpListener. Returns the port.
   std::uint16_t listen(const std::string& host, std::uint16_t port);
 
-  /// Bytes for the program.
+  /// Sends bytes to the program.
   void send(std::string_view bytes);
-  /// room() is not 0 any more.
+  /// Notes that room() is no longer 0.
   void resume();
 
  private:
@@ -59,7 +59,7 @@ class LineServer final : private ByteStreamOwner {
   std::unique_ptr<ByteStream> stream_;  ///< null: no program is there
   std::string client_;
   std::string output_;
-  bool has_lost_ = false;  ///< bytes for this program
+  bool has_lost_ = false;  ///< bytes for this program were lost
 };
 
 }  // namespace proleg::host

@@ -2,8 +2,6 @@
 
 #include <filesystem>
 
-#include "host/transport/can_transport.hpp"
-#include "host/transport/slcan_transport.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -21,7 +19,7 @@ std::unique_ptr<Link> make_link(const BusAddress& address) {
     case BusAddress::Kind::descriptor:
       return make_descriptor_link(static_cast<int>(address.number));
     case BusAddress::Kind::simulation:
-      // The program would say so too, but as a second line, after a connection that is lost.
+      // The program reports a missing file too, but as a second line, after the line about the lost connection.
       if (!std::filesystem::is_regular_file(address.name)) {
         throw InputError("--bus", 0, in_quotes(bus_address_text(address)), "sim:FILE with a scenario that is there");
       }

@@ -19,15 +19,16 @@ constexpr int child_descriptor = 3;
 constexpr Microseconds end_timeout = 2'000'000;
 constexpr useconds_t end_poll = 5'000;
 
-/// What posix_spawn() needs to know about the child.
+/// The settings of a child for posix_spawn().
 class SpawnSettings {
  public:
   SpawnSettings(int descriptor) {
     posix_spawn_file_actions_init(&actions_);
-    // The copy is inherited, also if it has the same number.
+    // The child inherits the copy, also if it has the same number.
     posix_spawn_file_actions_adddup2(&actions_, descriptor, child_descriptor);
     posix_spawnattr_init(&attributes_);
-    // In a process group of its own: Ctrl-C ends this program, which ends the child when the robot has stopped.
+    // The child has a process group of its own, so that Ctrl-C ends only this program, which ends the child when the
+    // robot has stopped.
     posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
     posix_spawnattr_setpgroup(&attributes_, 0);
   }
@@ -38,15 +39,15 @@ class SpawnSettings {
   SpawnSettings(const SpawnSettings&) = delete;
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 
-  /// The error of the system, or 0.
-  int start(std::vector<std::string> words, pid_t& process) {
-    std::vector<char*> arguments;
-    arguments.reserve(words.size() + 1);
-    for (std::string& word : words) {
-      arguments.push_back(word.data());
+  /// Starts the program. Returns the error of the system, or 0.
+  int start(std::vector<std::string> arguments, pid_t& process) {
+    std::vector<char*> pointers;
+    pointers.reserve(arguments.size() + 1);
+    for (std::string& argument : arguments) {
+      pointers.push_back(argument.data());
     }
-    arguments.push_back(nullptr);
-    return posix_spawn(&process, arguments.front(), &actions_, &attributes_, arguments.data(), environ);
+    pointers.push_back(nullptr);
+    return posix_spawn(&process, pointers.front(), &actions_, &attributes_, pointers.data(), environ);
   }
 
  private:
@@ -98,7 +99,8 @@ class ProgramLink final : public Link {
   }
 
  private:
-  /// Waits for the end, which is forced after the time-out. " with status 2", " by signal 9".
+  /// Waits for the end of the program, which is forced after the timeout. Returns the way it ended: " with status 2",
+  /// " by signal 9".
   std::string wait_for_end() {
     const Microseconds deadline = steady_now() + end_timeout;
     int status = 0;

@@ -35,13 +35,13 @@ PseudoTerminal::PseudoTerminal(boost::asio::io_context& context, std::function<v
 }
 
 void PseudoTerminal::client_gone() {
-  if (!has_client()) {  // the next one may be there already
+  if (!has_client()) {  // the next client may have opened the terminal already
     prepare();
   }
   timer_.set(steady_now());
 }
 
-/// For the next client: raw, without echo, and without characters for the one before.
+/// Prepares the terminal for the next client: raw, without echo, and without characters for the previous client.
 void PseudoTerminal::prepare() const {
   const Descriptor client(open(name_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   termios settings{};
@@ -57,7 +57,7 @@ bool PseudoTerminal::has_client() const {
   return poll(&request, 1, 0) >= 0 && (request.revents & POLLHUP) == 0;
 }
 
-/// The kernel has no event for a client that opens the terminal.
+/// Looks for a client, because the kernel has no event for a client that opens the terminal.
 void PseudoTerminal::look() {
   if (!has_client()) {
     timer_.set(steady_now() + look_period);

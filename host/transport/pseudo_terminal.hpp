@@ -16,9 +16,9 @@ class PseudoTerminal {
   /// client_gone() it is called for the next one. Throws TransportError.
   PseudoTerminal(boost::asio::io_context& context, std::function<void(Descriptor)> function);
 
-  /// What clients open, for example /dev/pts/3.
+  /// The name of the terminal that clients open, for example /dev/pts/3.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// The descriptor of the function has ended (EIO), since no client has the terminal open.
+  /// Notes that the descriptor that the function received has ended (EIO), since no client has the terminal open.
   void client_gone();
 
  private:

@@ -31,8 +31,8 @@ bool is_in_group(gid_t group) {
   return std::find(groups.begin(), groups.begin() + std::max(read, 0), group) != groups.begin() + std::max(read, 0);
 }
 
-/// Whether a process has the device open. Its links are read and nothing else: a file on a network that does not answer
-/// must not block this.
+/// Whether a process has the device open. Only the links of the process are read: a file on a network that does not
+/// answer must not block this program.
 bool has_open(const fs::path& process, dev_t device) {
   std::error_code error;
   for (fs::directory_iterator place(process / "fd", error); !error && place != fs::directory_iterator();
@@ -51,7 +51,7 @@ bool has_open(const fs::path& process, dev_t device) {
 std::vector<std::string> programs_with(dev_t device) {
   std::vector<std::string> programs;
   std::error_code error;
-  // A process may end while its folder is read: then it has nothing open.
+  // A process that ends while its folder is read has no file open.
   for (fs::directory_iterator place("/proc", error); !error && place != fs::directory_iterator();
        place.increment(error)) {
     const std::string number = place->path().filename();

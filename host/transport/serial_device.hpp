@@ -1,6 +1,6 @@
 #pragma once
 
-// A serial device, as the file system shows it: it is not opened, because some adapters reset when they are.
+// Describes a serial device by the file system. The device is not opened, because some adapters reset when they are.
 
 #include <string>
 #include <vector>
@@ -10,9 +10,9 @@ namespace proleg::host {
 struct SerialDevice {
   bool exists = false;
   bool is_character_device = false;
-  bool may_use = false;               ///< this process may read and write it
-  std::string group;                  ///< that owns it
-  bool is_user_in_group = false;      ///< this process is
+  bool may_use = false;               ///< this process may read and write the device
+  std::string group;                  ///< group that owns the device
+  bool is_user_in_group = false;      ///< this process is in the group
   std::vector<std::string> programs;  ///< that have it open, such as "ModemManager (process 812)"; others' are known to
                                       ///< root only
 };

@@ -97,7 +97,7 @@ class SerialLink final : public Link {
     cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
-    settings.c_cc[VMIN] = 1;  // with 0, no characters look like the end of the line
+    settings.c_cc[VMIN] = 1;  // with 0, a read without characters looks like the end of the line
     settings.c_cc[VTIME] = 0;
     const speed_t speed = serial_speed(baud_).value_or(B1000000);
     cfsetispeed(&settings, speed);
@@ -111,7 +111,7 @@ class SerialLink final : public Link {
       throw TransportError("it does not offer " + std::to_string(baud_) + " baud");
     }
     tcflush(line.number(), TCIOFLUSH);
-    // USB chips of FTDI otherwise keep received characters for up to 16 ms. Other drivers may refuse.
+    // Without this flag USB chips of FTDI keep received characters for up to 16 ms. Other drivers may refuse it.
     serial_struct serial{};
     if (ioctl(line.number(), TIOCGSERIAL, &serial) == 0) {
       serial.flags = static_cast<int>(static_cast<unsigned>(serial.flags) | ASYNC_LOW_LATENCY);

@@ -7,9 +7,9 @@
 namespace proleg::host {
 namespace {
 
-constexpr std::size_t max_line = 200;        // longer than any answer to V that is known
+constexpr std::size_t max_line = 200;        // characters; longer than any known answer to V
 constexpr std::size_t sample_length = 40;    // characters in an error
-constexpr std::size_t output_ahead = 1'024;  // characters that are made before the line takes them
+constexpr std::size_t output_ahead = 1'024;  // characters that are prepared before the line takes them
 constexpr unsigned max_refusals = 2;
 constexpr double microseconds_per_second = 1e6;
 
@@ -69,7 +69,7 @@ void SlcanClient::begin_step(Microseconds now, Step step) {
       command_ = "C";
       break;
     case Step::version:
-      rubbish_.clear();  // what came before may be the rest of a line
+      rubbish_.clear();  // the characters before may be the rest of a line
       command_ = "V";
       break;
     case Step::serial_number:
@@ -117,7 +117,7 @@ void SlcanClient::handle_line(Microseconds now, bool ends_with_bel) {
   }
 }
 
-/// A line that comes without a question: a frame, a state, errors.
+/// Handles a line that answers no command: a frame, a state, errors.
 bool SlcanClient::handle_report(Microseconds now) {
   if (const auto frame = parse_slcan_frame(line_)) {
     has_proof_ = true;
@@ -319,7 +319,7 @@ void SlcanClient::drop_frames() {
   pending_.clear();
 }
 
-/// The rest of a line that was begun stays, since the next line would be added to it.
+/// Drops output. The rest of a line that was begun stays, since the next line would be added to it.
 void SlcanClient::drop_output() { output_.erase(has_begun_line_ ? output_.find(slcan_end) + 1 : 0); }
 
 bool SlcanClient::send(const CanFrame& frame) {
@@ -378,7 +378,7 @@ void SlcanClient::handle_frame_answer(Microseconds now, Answer answer) {
   sign_deadline_ = never;
   last_answer_ = now;
   if (pending_.empty()) {
-    return;  // a second answer, or one to a command of the start that came late
+    return;  // a second answer, or a late answer to a command of the start
   }
   const CanFrame frame = pending_.front();
   pending_.pop_front();

@@ -9,11 +9,11 @@
 
 namespace proleg::host {
 
-/// What an slcan adapter reports.
+/// Receives the reports of an slcan adapter.
 class SlcanClientListener {
  public:
   virtual void received(Microseconds time, const CanFrame& frame) = 0;
-  /// As TransportListener::transmitted().
+  /// The adapter took a frame of send(): it confirmed the frame, or the line took it if the adapter confirms nothing.
   virtual void transmitted(Microseconds time, const CanFrame& frame) = 0;
   virtual void status_received(const CanStatus& status) = 0;
   virtual void errors_received(CanErrors errors) = 0;
@@ -33,9 +33,10 @@ class SlcanClientListener {
 class SlcanClient {
  public:
   struct Settings {
-    Microseconds answer_timeout = 300'000;   ///< for the answer to one command
-    Microseconds start_timeout = 4'000'000;  ///< for all of start()
-    Microseconds frame_timeout = 1'000'000;  ///< without an answer while frames wait for one: then V asks for a sign
+    Microseconds answer_timeout = 300'000;   ///< duration of the wait for the answer to one command
+    Microseconds start_timeout = 4'000'000;  ///< duration of all attempts to open the channel
+    Microseconds frame_timeout =
+        1'000'000;  ///< V is sent after this duration without an answer, while frames wait for one
     std::size_t window = 32;
     std::size_t max_queue = 1'024;  ///< frames that wait for the window
     bool is_listen_only = false;
@@ -44,34 +45,34 @@ class SlcanClient {
     idle,      ///< before start() and after stop()
     starting,  ///< commands are under way
     open,
-    failed,  ///< error() says why
+    failed,  ///< the channel cannot be opened or was lost; error() says why
   };
 
   SlcanClient(SlcanClientListener& listener, const Settings& settings) : listener_(listener), settings_(settings) {}
 
-  /// Begins with a new line: nothing from an earlier one is left, except counters.
+  /// Starts on a new line: nothing from an earlier line is left, except counters.
   void start(Microseconds now);
-  /// Characters from the adapter.
+  /// Receives characters from the adapter.
   void input(Microseconds now, std::string_view characters);
   /// To be called when next_deadline() has come.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
-  /// False if the channel is not open or the queue is full.
+  /// Sends a frame. Returns false if the channel is not open or the queue is full.
   [[nodiscard]] bool send(const CanFrame& frame);
-  /// At most this many characters for the adapter. May call transmitted().
+  /// Returns at most this many characters for the adapter. May call transmitted().
   [[nodiscard]] std::string take(Microseconds now, std::size_t max_characters);
   [[nodiscard]] bool has_output() const;
   /// Closes the channel: only the command C is left to be taken.
   void stop();
 
   [[nodiscard]] State state() const { return state_; }
-  /// One line: what was received and what was expected.
+  /// One line about the failure: what was received and what was expected.
   [[nodiscard]] const std::string& error() const { return error_; }
   [[nodiscard]] TransportProblem problem() const { return problem_; }
-  /// Answers to V and N, for example "V1013, NA123"; empty if there were none.
+  /// The answers to V and N, for example "V1013, NA123"; empty if there were none.
   [[nodiscard]] const std::string& adapter() const { return adapter_; }
   [[nodiscard]] bool is_acknowledging() const { return is_acknowledging_; }
-  /// All but received and connections; their listener counts them.
+  /// All numbers except received and connections, which the listener counts.
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
  private:
@@ -105,26 +106,26 @@ class SlcanClient {
   std::string adapter_;
   Statistics statistics_;
 
-  std::string line_;  ///< received so far
+  std::string line_;  ///< characters of the present line
   std::string output_;
-  bool has_begun_line_ = false;  ///< a part of a line was taken
+  bool has_begun_line_ = false;  ///< a part of an output line was taken
   std::deque<CanFrame> queue_;
-  std::deque<CanFrame> pending_;  ///< written, not confirmed
+  std::deque<CanFrame> pending_;  ///< frames that are written and not confirmed
 
   Microseconds start_deadline_ = 0;
   Microseconds step_deadline_ = 0;
-  Microseconds last_answer_ = 0;        ///< or when a frame was written although none was pending
-  Microseconds sign_deadline_ = never;  ///< of the answer to V while the channel is open
-  std::string command_;                 ///< the last one of the start
+  Microseconds last_answer_ = 0;        ///< time of the last answer, or when a frame was written while none was pending
+  Microseconds sign_deadline_ = never;  ///< deadline of the answer to V while the channel is open
+  std::string command_;                 ///< last command of the start
   std::string sample_;                  ///< the first characters of this round, for an error
-  std::string rubbish_;                 ///< the first line that is no answer, and to what
+  std::string rubbish_;                 ///< the first line that is no answer, and the command before it
   bool is_acknowledging_ = false;
   bool has_confirmed_frames_ = false;
   bool has_proof_ = false;  ///< something in this round shows that slcan is spoken
   unsigned refusals_ = 0;
 };
 
-/// Text with other than printable ASCII characters as \r, \a, \n or \xNN, shortened, and in quotes.
+/// Text in quotes and shortened, in which characters that are not printable ASCII appear as \r, \a, \n or \xNN.
 [[nodiscard]] std::string printable_bytes(std::string_view bytes);
 
 }  // namespace proleg::host

@@ -47,7 +47,7 @@ std::string SlcanSession::take_output(std::size_t max_bytes) {
 }
 
 void SlcanSession::ended(int error) {
-  // A copy: the function may destroy the session.
+  // A copy is called, because the function may destroy the session.
   const auto function = functions_.ended;
   function(error);
 }

@@ -15,9 +15,10 @@ namespace proleg::host {
 class SlcanSession final : private ByteStreamOwner, private CanPort {
  public:
   struct Functions {
-    /// A frame of the client. False: the bus has no room, and the client receives BEL.
+    /// Receives a frame of the client. Returns false if the bus has no room; the client then receives BEL.
     std::function<bool(const CanFrame&)> send;
-    /// The stream has ended; 0: the client closed it. May destroy the session.
+    /// The stream has ended. error: error of the system; 0: the client closed it. The function may destroy the
+    /// session.
     std::function<void(int error)> ended;
   };
 
@@ -43,7 +44,7 @@ class SlcanSession final : private ByteStreamOwner, private CanPort {
   Functions functions_;
   std::vector<char> buffer_ = std::vector<char>(buffer_size);
   SlcanAdapter adapter_;
-  bool is_waiting_ = false;  ///< for room in the buffer
+  bool is_waiting_ = false;  ///< the stream waits for room in the buffer
   ByteStream stream_;
 };
 

@@ -1,4 +1,4 @@
-#include "host/transport/slcan_transport.hpp"
+#include "host/transport/open_transport.hpp"
 
 #include <algorithm>
 #include <boost/system/system_error.hpp>
@@ -31,7 +31,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
     }
   }
 
-  /// Returns when the channel is open. Throws TransportError.
+  /// Opens the bus. Returns when the channel is open. Throws TransportError.
   void open() {
     for (std::size_t attempt = 0; phase_ != Phase::open; ++attempt) {
       connect();
@@ -78,7 +78,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
   enum class Phase : std::uint8_t {
     idle,        ///< before the first connection
     connecting,  ///< connect() is under way
-    starting,    ///< the adapter is asked
+    starting,    ///< the commands of the start are under way
     open,
     pause,  ///< before the next connection
     ended,
@@ -138,7 +138,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
     }
   }
 
-  /// After each event of the client.
+  /// Handles the state of the client after each of its events.
   void proceed() {
     if (client_.state() == SlcanClient::State::failed) {
       lose(client_.error() + "; " + link_->silence_hint(), client_.problem());
@@ -219,7 +219,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
   Microseconds pause_ = first_pause;
   bool has_changed_phase_ = false;
   bool is_opened_ = false;   ///< open() has returned
-  bool was_called_ = false;  ///< the listener
+  bool was_called_ = false;  ///< the listener was called
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ class TcpLink final : public Link {
     if (!socket.is_open()) {
       throw TransportError(connect_failure(errno));
     }
-    // Frames are short and must not wait for others.
+    // Frames are short and must not wait for others, so Nagle's algorithm is switched off.
     const int on = 1;
     setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     notice_dead_peers(socket.number());
@@ -71,7 +71,7 @@ class TcpLink final : public Link {
     }
   }
 
-  /// Returns the error of getaddrinfo(), 0 without one.
+  /// Adds the addresses of a host. Returns the error of getaddrinfo(), or 0.
   int add_addresses(const std::string& host) {
     addrinfo hints{};
     hints.ai_socktype = SOCK_STREAM;
@@ -89,7 +89,7 @@ class TcpLink final : public Link {
     return 0;
   }
 
-  /// A peer that has lost its power closes nothing. It is noticed after 5 + 3 * 2 s.
+  /// Notices within 5 + 3 * 2 s a peer that has lost its power, and so does not close the connection.
   static void notice_dead_peers(int socket) {
     const int on = 1;
     const int idle_s = 5;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int backlog = 8;
 
-/// "127.0.0.1:20000", "[::1]:20000".
+/// The text of an address and port: "127.0.0.1:20000", "[::1]:20000".
 std::string address_text(const sockaddr_storage& address, socklen_t size) {
   std::array<char, NI_MAXHOST> host{};
   std::array<char, NI_MAXSERV> port{};
@@ -72,7 +72,7 @@ void TcpListener::accept_clients() {
   Descriptor client(
       accept4(socket_.number(), reinterpret_cast<sockaddr*>(&address), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!client.is_open()) {
-    return;  // it has gone again
+    return;  // the client has gone again
   }
   const int on = 1;
   setsockopt(client.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

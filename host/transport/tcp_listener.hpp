@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/transport/descriptor.hpp"
-#include "host/transport/descriptor_watch.hpp"
+#include "host/transport/event_loop.hpp"
 
 namespace proleg::host {
 
@@ -15,9 +15,8 @@ namespace proleg::host {
 class TcpListener {
  public:
   /// host: an address of this computer, an IPv6 address without brackets; 127.0.0.1 and ::1 let in programs of this
-  /// computer only, 0.0.0.0 and :: everybody.
-  /// port 0: any free one. The function receives the socket of each client and its address as text. Throws
-  /// TransportError.
+  /// computer only, 0.0.0.0 and :: those of all computers. port 0: any free port. The function receives the socket of
+  /// each client and its address as text. Throws TransportError.
   TcpListener(boost::asio::io_context& context, const std::string& host, std::uint16_t port,
               std::function<void(Descriptor, const std::string&)> function);
 

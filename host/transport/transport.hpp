@@ -1,7 +1,7 @@
 #pragma once
 
-// One end of a CAN bus, by whatever cable. All of a transport runs in the thread that calls run_until() or runs its
-// io_context.
+// One end of a CAN bus, over any kind of connection. All functions of a transport run in the thread that calls
+// run_until() or runs its io_context.
 
 #include <cstdint>
 #include <stdexcept>
@@ -13,7 +13,7 @@
 
 namespace proleg::host {
 
-/// Why a bus cannot be reached, for a program that explains more than one line does.
+/// The reason why a bus cannot be reached, for a program that explains more than one line can.
 enum class TransportProblem : std::uint8_t {
   other,
   no_kernel_support,  ///< the kernel has no CAN sockets
@@ -21,9 +21,9 @@ enum class TransportProblem : std::uint8_t {
   wrong_kind,         ///< it is no CAN interface, or no serial line
   interface_down,
   no_rights,
-  in_use,       ///< by another program
-  no_answer,    ///< nothing came from the adapter
-  not_slcan,    ///< something came that no slcan adapter sends
+  in_use,       ///< another program has it open
+  no_answer,    ///< nothing was received from the adapter
+  not_slcan,    ///< bytes were received that no slcan adapter sends
   no_bit_rate,  ///< the adapter refuses 1 Mbit/s, or to open its channel
 };
 
@@ -38,13 +38,13 @@ class TransportError : public std::runtime_error {
   TransportProblem problem_;
 };
 
-/// What is known about the bus. A transport that cannot know a part leaves it as it is here.
+/// The known state of the bus. A transport that cannot know a part leaves its default value.
 struct BusState {
   bool is_connected = false;
   std::string reason;            ///< one line: why it is not connected, or why frames cannot be sent; else empty
-  CanStatus controller;          ///< of the controller at this end
+  CanStatus controller;          ///< state of the controller at this end
   CanErrors errors;              ///< kinds of errors since the transport was opened
-  std::uint64_t bus_errors = 0;  ///< reports of errors since then
+  std::uint64_t bus_errors = 0;  ///< error reports since the transport was opened
 
   friend bool operator==(const BusState&, const BusState&) = default;
 };
@@ -59,12 +59,12 @@ struct Statistics {
   std::uint64_t dropped_in = 0;   ///< received frames that the kernel dropped because this process was too slow
   std::uint64_t foreign = 0;      ///< extended and remote frames, which are ignored
   std::uint64_t malformed = 0;    ///< lines from an adapter that are not slcan
-  std::uint64_t connections = 0;  ///< 1 and one more for each reconnection
+  std::uint64_t connections = 0;  ///< number of connections: the first, and one for each reconnection
 };
 
 class TransportListener {
  public:
-  /// A frame of another node; the time is on the transport's clock.
+  /// Receives a frame of another node; the time is on the transport's clock.
   virtual void received(Microseconds time, const CanFrame& frame) = 0;
   /// The adapter or the controller took a frame of send(): SocketCAN: it is on the bus; slcan: the adapter confirmed
   /// it, or the line took it if the adapter confirms nothing.
@@ -82,9 +82,10 @@ class Transport {
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
 
-  /// Microseconds on a steady clock with an arbitrary start.
+  /// The time in microseconds on a steady clock with an arbitrary start.
   [[nodiscard]] virtual Microseconds now() const = 0;
-  /// False if the queue is full or the bus is not connected; counted as dropped_out.
+  /// Sends a frame. Returns false if the queue is full or the bus is not connected; the frame is then counted as
+  /// dropped_out.
   [[nodiscard]] virtual bool send(const CanFrame& frame) = 0;
   /// Handles events until the listener was called, or until this time. Other work of the io_context runs meanwhile.
   virtual void run_until(Microseconds deadline) = 0;

@@ -1,4 +1,3 @@
-#include "host/transport/can_error_frame.hpp"
 
 #include <gtest/gtest.h>
 

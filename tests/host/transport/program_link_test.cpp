@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 
 #include "host/transport/open_transport.hpp"
-#include "host/transport/slcan_transport.hpp"
 #include "test_bus.hpp"
 #include "tests/support/message_of.hpp"
 

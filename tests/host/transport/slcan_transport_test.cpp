@@ -1,10 +1,9 @@
 // Transports and scripted adapters at the two ends of pseudo terminals and sockets, in one process.
 
-#include "host/transport/slcan_transport.hpp"
+#include "host/transport/open_transport.hpp"
 
 #include <gtest/gtest.h>
 
-#include "host/transport/open_transport.hpp"
 #include "test_bus.hpp"
 #include "tests/support/message_of.hpp"
 

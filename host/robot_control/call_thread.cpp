@@ -10,7 +10,7 @@ namespace proleg::host {
 struct CallThread::Shared {
   std::mutex mutex;
   std::condition_variable changed;
-  std::function<void()> call;  ///< the next one, or the one that runs
+  std::function<void()> call;  ///< the next call, or the one that runs
   bool is_running = false;
   bool must_end = false;
 };
@@ -26,7 +26,7 @@ CallThread::CallThread() : shared_(std::make_shared<Shared>()) {
       lock.unlock();
       shared->call();
       lock.lock();
-      shared->call = nullptr;  // what the call owns ends here, in this thread
+      shared->call = nullptr;  // objects that the call owns are destroyed here, in this thread
       shared->is_running = false;
       shared->changed.notify_all();
     }

@@ -26,7 +26,7 @@ DriveResult drive(GaitDriver& driver, Clock& clock, const std::function<bool()>&
     result.max_delay_us = std::max(result.max_delay_us, delay_us);
     if (delay_us > driver.tick_us()) {
       ++result.late_ticks;
-      next_us = now_us;  // no burst of ticks that catches up: the joints would move too fast
+      next_us = now_us;  // late ticks are not made up for: the joints would move too fast
     }
     if (must_stop && must_stop()) {
       driver.stop();

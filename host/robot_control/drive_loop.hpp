@@ -13,7 +13,7 @@ namespace proleg::host {
 class Clock {
  public:
   virtual ~Clock() = default;
-  /// Microseconds; never decreases.
+  /// The time in microseconds; never decreases.
   [[nodiscard]] virtual std::uint64_t now_us() = 0;
   virtual void sleep_until(std::uint64_t time_us) = 0;
 };
@@ -27,10 +27,10 @@ class SteadyClock final : public Clock {
 
 struct DriveResult {
   std::uint32_t gait_ticks = 0;
-  std::uint32_t late_ticks = 0;        ///< that began more than a tick period late; the ticks behind them moved
-  std::uint64_t max_delay_us = 0;      ///< of the begin of a tick
+  std::uint32_t late_ticks = 0;        ///< ticks that began more than a tick period late; the ticks behind them moved
+  std::uint64_t max_delay_us = 0;      ///< greatest delay of the start of a tick
   double max_difference_deg = 0.0;     ///< GaitDriver::max_difference_deg()
-  std::optional<std::string> failure;  ///< what ended the run early, one line
+  std::optional<std::string> failure;  ///< one line about the failure that ended the run early
 };
 
 /// Starts the driver and calls its tick() in time until it has finished. must_stop: asked before each tick; true begins

@@ -9,14 +9,14 @@ namespace proleg::host {
 namespace {
 
 constexpr double right_angle_steps = 1 << 30;
-/// A servo that rests at a limit may measure a little more.
+/// Angle by which a servo that rests at a limit may measure more than the limit.
 constexpr double limit_tolerance_deg = 3.0;
-/// The time in which servos reach the end of a ramp.
+/// Time in which servos reach the end of a ramp after the last command.
 constexpr std::uint32_t settle_time_us = 200'000;
 
 double degrees(std::int32_t angle) { return angle * 90.0 / right_angle_steps; }
 
-/// Within +-90 degrees.
+/// An angle within +-90 degrees as a set-point.
 std::int32_t steps(double deg) {
   return static_cast<std::int32_t>(std::lround(std::clamp(deg, -90.0, 90.0) / 90.0 * right_angle_steps));
 }
@@ -148,7 +148,7 @@ void GaitDriver::stop() {
   }
 }
 
-/// Continues although a servo has failed: the others must not stop where they are.
+/// Ramps down also if a servo has failed: the others must not stop where they are.
 void GaitDriver::ramp_down() {
   const std::vector<std::int32_t> middle(limiters_.size());
   attempt([&] { static_cast<void>(send(middle)); });
@@ -161,7 +161,7 @@ void GaitDriver::ramp_down() {
   }
 }
 
-/// The first failure is the cause of the later ones.
+/// Runs an action and stores its failure if it is the first one, which is the cause of the later ones.
 void GaitDriver::attempt(const std::function<void()>& action) {
   try {
     action();

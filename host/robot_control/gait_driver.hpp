@@ -19,63 +19,64 @@ class SetpointSource {
  public:
   virtual ~SetpointSource() = default;
 
-  /// Of each joint, 90 degrees = 2^30: those of the last computed tick; before the first one, those of the start.
+  /// The set-points of the joints, 90 degrees = 2^30: those of the last computed tick; before the first one, those of
+  /// the start.
   [[nodiscard]] virtual std::span<const std::int32_t> setpoints() const = 0;
-  /// Computes a tick. contacts: of each joint, debounced, in the bits of StateFrame::contact_bits.
+  /// Computes a tick. contacts: debounced contacts of each joint, in the bits of StateFrame::contact_bits.
   virtual void advance(std::span<const std::uint8_t> contacts) = 0;
 };
 
-/// Bounds of what a joint is commanded to. Those of the plug-in's description are added to the limits.
+/// Bounds of the commands to joints. The bounds of the plug-in's description are added to them.
 struct DriveLimits {
-  std::vector<std::int32_t> lower;                      ///< of each joint, 90 degrees = 2^30, at most 0
-  std::vector<std::int32_t> upper;                      ///< at least 0
+  std::vector<std::int32_t> lower;                      ///< lower limit of each joint, 90 degrees = 2^30, at most 0
+  std::vector<std::int32_t> upper;                      ///< upper limit of each joint, 90 degrees = 2^30, at least 0
   std::uint32_t command_speed = default_command_speed;  ///< degrees a second, 90 to 10,000
 };
 
-/// The speed of the ramps, degrees a second; that of a quick stop of a module.
+/// Speed of the ramps [deg/s]; equal to that of a quick stop of a module.
 inline constexpr std::uint32_t ramp_speed = min_command_speed;
 
 /// Moves a robot through a run: ramps in from the angles that it has, plays the gait, ramps down to 0 degrees, and
-/// takes the power from the servos. Has no clock: tick() is called once a tick period.
+/// switches the power of the servos off. It has no clock: tick() is called once a tick period.
 class GaitDriver {
  public:
   enum class Phase : std::uint8_t {
     idle,       ///< the servos have no power
-    ramp_in,    ///< to the set-points of the start, at ramp_speed
+    ramp_in,    ///< the joints move to the set-points of the start, at ramp_speed
     gait,       ///< one tick of the gait for each tick()
-    ramp_down,  ///< to 0 degrees, at ramp_speed
+    ramp_down,  ///< the joints move to 0 degrees, at ramp_speed
     finished,   ///< the servos have no power, or the plug-in is lost
   };
 
   /// A tick of the gait.
   struct Tick {
-    std::uint32_t number;                     ///< from 0
-    std::span<const std::int32_t> setpoints;  ///< of the kernels
-    std::span<const double> commanded_deg;    ///< after limits and greatest speed
-    std::span<const double> measured_deg;     ///< received last when the tick ended
+    std::uint32_t number;                     ///< number of the tick, from 0
+    std::span<const std::int32_t> setpoints;  ///< set-points of the kernels
+    std::span<const double> commanded_deg;    ///< commands, after limits and greatest speed
+    std::span<const double> measured_deg;     ///< angles that were received last when the tick ended
   };
   using Observer = std::function<void(const Tick&)>;
 
-  /// control, source: must outlive the driver. ticks: of the gait; 0: until stop(). observer: after each tick of the
-  /// gait; may be empty.
+  /// control, source: must outlive the driver. ticks: ticks of the gait; 0: it runs until stop(). observer: called
+  /// after each tick of the gait; may be empty.
   GaitDriver(RobotControl& control, SetpointSource& source, const DriveLimits& limits, std::uint32_t ticks,
              Observer observer);
 
   /// Connects, reads the angles and gives the servos power. Throws RobotControlError, and then nothing has moved: a
   /// part does not answer, or a joint is outside of its limits.
   void start();
-  /// One period. Does not throw: a failure begins the ramp down. Returns the phase of the next period.
+  /// Performs one period. Does not throw: a failure begins the ramp down. Returns the phase of the next period.
   Phase tick();
   /// Begins the ramp down.
   void stop();
 
   [[nodiscard]] Phase phase() const { return phase_; }
   [[nodiscard]] std::uint32_t tick_us() const { return control_.setup().tick_us; }
-  /// Ticks of the gait so far.
+  /// Number of ticks of the gait so far.
   [[nodiscard]] std::uint32_t gait_ticks() const { return gait_ticks_; }
-  /// What ended the run early: the first failure.
+  /// The first failure, which ended the run early.
   [[nodiscard]] const std::optional<std::string>& failure() const { return failure_; }
-  /// The greatest difference of a measured angle from the one commanded in the same tick, in the gait, degrees. It
+  /// Greatest difference in degrees of a measured angle from the one commanded in the same tick of the gait. It
   /// contains the delay of the servo.
   [[nodiscard]] double max_difference_deg() const { return max_difference_deg_; }
 
@@ -85,7 +86,7 @@ class GaitDriver {
   void ramp_down();
   void attempt(const std::function<void()>& action);
   void set_step(std::uint32_t degrees_per_second);
-  /// Sends the angles that the limiters allow on the way to these. Returns whether all are reached.
+  /// Sends the angles that the limiters allow on the way to these goals. Returns whether all goals are reached.
   bool send(std::span<const std::int32_t> goals);
   void read_contacts();
   void require_within_limits(std::span<const double> measured_deg) const;
@@ -102,7 +103,7 @@ class GaitDriver {
   std::vector<ContactDebouncer> debouncers_;
   std::vector<std::uint8_t> contacts_;
   Phase phase_ = Phase::idle;
-  bool is_at_goal_ = false;  ///< all limiters have reached what was sent last
+  bool is_at_goal_ = false;  ///< all limiters have reached the last goals
   std::uint32_t gait_ticks_ = 0;
   std::uint32_t settle_ticks_ = 0;
   std::optional<std::string> failure_;

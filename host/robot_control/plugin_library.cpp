@@ -10,7 +10,7 @@
 namespace proleg::host {
 namespace {
 
-/// Why dlopen() or dlsym() failed, without the path that the message already has.
+/// The reason why dlopen() or dlsym() failed, without the path, which the message already has.
 std::string loader_error(const std::string& path) {
   const char* const text = dlerror();
   std::string error = text == nullptr ? "unknown reason" : text;
@@ -32,7 +32,7 @@ void check(const proleg_robot_control_plugin* functions, const std::string& wher
     throw RobotControlError(where + ": found no plug-in behind " + PROLEG_ROBOT_CONTROL_ENTRY +
                             "(), expected its functions; ask the author of the plug-in");
   }
-  // The first member is the same in all versions; the others are not.
+  // Only the first member is the same in all versions.
   if (functions->abi_version != PROLEG_ROBOT_CONTROL_ABI_VERSION) {
     throw RobotControlError(where + ": found version " + std::to_string(functions->abi_version) +
                             " of the plug-in interface, expected " + std::to_string(PROLEG_ROBOT_CONTROL_ABI_VERSION) +

@@ -19,24 +19,24 @@ struct Kind {
   std::string_view unit;
 };
 
-/// What plug-ins report, with the range outside of which no robot is.
+/// Kinds of information from plug-ins, with the range of plausible values.
 constexpr std::array<Kind, 4> kinds{{{"position", -360.0, 360.0, " degrees"},
                                      {"current", -100'000.0, 100'000.0, " mA"},
                                      {"temperature", -100.0, 300.0, " degrees Celsius"},
                                      {"contact", 0.0, 1.0, ""}}};
-/// Other kinds are known to the plug-in alone; their values are finite.
+/// Bound of the values of other kinds, which only the plug-in knows; they must be finite.
 constexpr double max_number = std::numeric_limits<double>::max();
 
 std::uint32_t microseconds(std::chrono::milliseconds time) {
   return static_cast<std::uint32_t>(std::chrono::microseconds(time).count());
 }
 
-/// A plug-in need not end its text.
+/// The text of a plug-in, which need not end with a zero byte.
 std::string bounded_text(const char* text, std::size_t size) { return {text, strnlen(text, size)}; }
 
 }  // namespace
 
-/// What the plug-in may use. It lives as long as a call that did not return.
+/// Objects that the plug-in may use. They live as long as a call that did not return.
 struct RobotControl::Session {
   Plugin plugin;
   RobotControlSetup setup;
@@ -51,7 +51,7 @@ struct RobotControl::Session {
   }
 };
 
-/// What a call writes. The host reads it when the call has returned.
+/// Results of a call. The host reads them when the call has returned.
 struct RobotControl::Call {
   int result = PROLEG_FAILED;
   proleg_error error{};

@@ -18,7 +18,7 @@ namespace proleg::host {
 struct RobotControlParameter {
   std::string name;
   std::string value;
-  std::uint32_t joint = PROLEG_ALL_JOINTS;  ///< kernel order
+  std::uint32_t joint = PROLEG_ALL_JOINTS;  ///< index in kernel order
   std::uint32_t line = 0;
 };
 
@@ -29,22 +29,22 @@ struct RobotControlJoint {
   double max_speed_deg_s = 360.0;
 };
 
-/// What a plug-in learns of the robot.
+/// The description of the robot for a plug-in.
 struct RobotControlSetup {
-  std::string file;  ///< the robot's, for errors
-  int line = 0;      ///< of <robot_control>, for errors
+  std::string file;  ///< name of the robot's file, for errors
+  int line = 0;      ///< line of <robot_control>, for errors
   std::uint32_t tick_us = 10'000;
-  std::vector<RobotControlJoint> joints;  ///< kernel order
+  std::vector<RobotControlJoint> joints;  ///< joints in kernel order
   std::vector<RobotControlParameter> parameters;
 };
 
-/// What a plug-in reports of the robot, checked.
+/// The checked description of the robot by a plug-in.
 struct RobotControlDescription {
   unsigned sensor_modules = 0;
   unsigned sensors_per_module = 0;
   std::string topology;
-  std::vector<double> lower_limit_deg;  ///< of each joint, -360 to 0
-  std::vector<double> upper_limit_deg;  ///< of each joint, 0 to 360
+  std::vector<double> lower_limit_deg;  ///< lower limit of each joint, -360 to 0
+  std::vector<double> upper_limit_deg;  ///< upper limit of each joint, 0 to 360
 };
 
 /// A robot that a plug-in drives: attached when this object is made, detached when it ends (thesis, appendix A.4). Each
@@ -52,11 +52,12 @@ struct RobotControlDescription {
 /// it, and checks what it returns. All functions but the destructor throw RobotControlError.
 class RobotControl {
  public:
-  /// How long the host waits for a function without a timeout of its own, and beyond the timeout of the others.
+  /// Durations for which the host waits: for a function without a timeout of its own, and beyond the timeout of the
+  /// others.
   struct Patience {
     std::chrono::milliseconds connect{30'000};
     std::chrono::milliseconds request{1000};
-    std::chrono::milliseconds grace{2000};  ///< beyond: the plug-in is given up
+    std::chrono::milliseconds grace{2000};  ///< time beyond a timeout after which the plug-in is abandoned
   };
   using Show = std::function<void(const std::string&)>;
 
@@ -72,7 +73,7 @@ class RobotControl {
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] const RobotControlSetup& setup() const;
   [[nodiscard]] const RobotControlDescription& description() const { return description_; }
-  /// A function of the plug-in did not return; no other function is called any more.
+  /// Whether a function of the plug-in did not return; no other function is called any more.
   [[nodiscard]] bool is_lost() const { return thread_.is_lost(); }
 
   void connect();
@@ -80,12 +81,12 @@ class RobotControl {
   void enable_servos(bool on);
   void send_command(const std::string& command, std::span<const double> values, std::uint32_t destination);
   void send_command_by_value(const std::string& command, double value);
-  /// An angle in degrees for each joint.
+  /// Sends an angle in degrees for each joint.
   void send_goal_positions(std::span<const double> degrees) {
     send_command("goal_position", degrees, PROLEG_ALL_JOINTS);
   }
   [[nodiscard]] std::vector<std::uint8_t> request_all_information();
-  /// One number for each joint (for "contact": for each sensor), in the range of the kind.
+  /// Requests one number for each joint (for "contact": for each sensor), in the range of the kind.
   [[nodiscard]] std::vector<double> request_information(const std::string& kind);
   void test();
   void reset_command_buffer();
@@ -96,7 +97,7 @@ class RobotControl {
 
   void open();
   void describe();
-  /// Runs a function of the plug-in. what: its name, for errors.
+  /// Runs a function of the plug-in. what: name of the function, for errors.
   void call(const std::string& what, std::chrono::milliseconds timeout,
             const std::function<int(Session&, Call&)>& function);
   [[nodiscard]] bool try_call(std::chrono::milliseconds timeout, const std::shared_ptr<Call>& call,

@@ -18,7 +18,7 @@ constexpr unsigned fault_bits = 0x4F;
 constexpr unsigned fault = 0x08;
 constexpr unsigned fault_reaction = 0x0F;
 
-/// A cause of Fault: its bit in the error register (0x1001, CiA 301), and what a person does.
+/// A cause of Fault: its bit in the error register (0x1001, CiA 301), and its remedy.
 struct Cause {
   EmergencyCode code;
   unsigned register_bit;
@@ -50,7 +50,7 @@ bool contains(const std::vector<EmergencyCode>& codes, EmergencyCode code) {
   return std::ranges::find(codes, code) != codes.end();
 }
 
-/// The cause of the Fault of a node: the one that is present now, else the one that it reported last.
+/// The cause of the Fault of a node: the present cause, or the one that the node reported last.
 const Cause* cause_of(const ObservedNode& node) {
   for (const Cause& cause : causes) {
     if ((node.answers->error_register & cause.register_bit) != 0) {

@@ -7,9 +7,9 @@
 
 namespace proleg::host {
 
-/// Drives that have switched their servo off (Fault), by cause.
+/// Finds drives that have switched their servo off (Fault), by cause.
 [[nodiscard]] std::vector<Finding> find_drive_faults(const BusObservations& observations);
-/// Drives that hold their safe pose (quick stop).
+/// Finds drives that hold their safe pose (quick stop).
 [[nodiscard]] std::optional<Finding> find_quick_stop(const BusObservations& observations);
 
 }  // namespace proleg::host

@@ -1,6 +1,6 @@
 #pragma once
 
-// What is wrong with a bus and the robot on it, in words for a person who does not know CAN.
+// Finds faults of a bus and the robot on it, and describes them for a person who does not know CAN.
 
 #include <cstdint>
 #include <optional>
@@ -19,11 +19,11 @@ namespace proleg::host {
 struct Finding {
   std::string_view code;  ///< one word for programs, such as "duplicate_node_id"; see docs/robot-on-the-table.md
   std::string what;       ///< one sentence or two: what was found, and what it means
-  std::string to_do;      ///< the same: what the person does
-  std::vector<std::uint8_t> nodes;  ///< that it is about
+  std::string to_do;      ///< one sentence or two: what the person should do
+  std::vector<std::uint8_t> nodes;  ///< nodes that have the fault
 };
 
-/// What is known about this computer's way to the bus.
+/// The known facts about the connection of this computer to the bus.
 struct ConnectionFacts {
   struct Failure {
     TransportProblem problem = TransportProblem::other;
@@ -31,27 +31,28 @@ struct ConnectionFacts {
   };
 
   BusAddress address;
-  std::optional<CanInterface> can;     ///< of a CAN interface that exists
-  std::optional<SerialDevice> serial;  ///< of a serial address
-  std::optional<Failure> failure;      ///< the bus was not opened
+  std::optional<CanInterface> can;     ///< settings of a CAN interface that exists
+  std::optional<SerialDevice> serial;  ///< device of a serial address
+  std::optional<Failure> failure;      ///< why the bus was not opened
 };
 
-/// What the modules are compared with.
+/// The modules that are expected on the bus.
 struct ExpectedModules {
   std::uint32_t core_fingerprint = 0;
 };
 
-/// Faults of the way to the bus, the most fundamental one first. As long as there is one that blocks() it, the bus must
-/// not be opened, or cannot be.
+/// Finds faults of the connection to the bus, the most fundamental one first. As long as there is one that blocks()
+/// the bus, it must not be opened, or cannot be.
 [[nodiscard]] std::vector<Finding> find_connection_faults(const ConnectionFacts& facts);
 /// Whether the bus cannot be examined before the finding has been dealt with.
 [[nodiscard]] bool blocks(const Finding& finding);
 
-/// Faults of the bus and the robot, the most fundamental one first. What a finding explains is no finding of its own.
+/// Finds faults of the bus and the robot, the most fundamental one first. A fault that another finding explains is not
+/// reported.
 [[nodiscard]] std::vector<Finding> find_bus_faults(const BusObservations& observations, const BusAddress& address,
                                                    const ExpectedModules& expected);
 
-/// "node 3", "nodes 1, 2, 5".
+/// The text for some nodes: "node 3", "nodes 1, 2, 5".
 [[nodiscard]] std::string nodes_text(const std::vector<std::uint8_t>& nodes);
 
 }  // namespace proleg::host

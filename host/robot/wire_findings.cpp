@@ -10,9 +10,10 @@ namespace proleg::host {
 namespace {
 
 constexpr double full_load = canopen::max_bus_load_permille / 1000.0;
-/// No message of a robot takes so much: a state frame in the shortest tick, 1 ms, takes 0.135.
+/// Load of one message above which its node is faulty. No message of a robot reaches it: a state frame in the shortest
+/// tick, 1 ms, takes 0.135.
 constexpr double babbling_load = 0.25;
-/// Fewer errors come from a plug that was just put in.
+/// Smallest number of errors that counts: a plug that was just put in can cause fewer.
 constexpr std::uint64_t few_errors = 3;
 
 constexpr std::string_view wires =
@@ -23,15 +24,15 @@ std::string percent(double share) { return std::to_string(static_cast<int>(share
 
 bool has_error(const BusObservations& seen, CanErrorKind kind) { return seen.own.state.errors.contains(kind); }
 
-/// Errors in the bits themselves.
+/// Whether there were errors in the bits themselves.
 bool has_bit_errors(const BusObservations& seen) {
   return has_error(seen, CanErrorKind::crc) || has_error(seen, CanErrorKind::form) ||
          has_error(seen, CanErrorKind::stuff) || has_error(seen, CanErrorKind::bit_dominant) ||
          has_error(seen, CanErrorKind::bit_recessive);
 }
 
-/// Others send, or the wires are damaged. A node that is only not acknowledged never becomes bus-off, and its receive
-/// error counter stays 0 (ISO 11898-1). Drivers of Linux report kinds of errors only if they are told to.
+/// Whether other nodes send, or the wires are damaged. A node that is only not acknowledged never becomes bus-off, and
+/// its receive error counter stays 0 (ISO 11898-1). Drivers of Linux report kinds of errors only on request.
 bool has_signals(const BusObservations& seen) {
   return has_bit_errors(seen) || seen.own.state.controller.receive_errors > 0 ||
          seen.worst_controller_state == CanState::bus_off;

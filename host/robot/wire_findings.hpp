@@ -7,10 +7,11 @@
 
 namespace proleg::host {
 
-/// Why not one frame of another node was received; nothing if some were. It explains all else.
+/// Finds the reason why no frame of another node was received, which explains all other faults; nothing if some were
+/// received.
 [[nodiscard]] std::optional<Finding> find_dead_bus(const BusObservations& observations, const BusAddress& address);
 
-/// Errors on the wires, and a bus that is full.
+/// Finds errors on the wires, and a bus that is full.
 [[nodiscard]] std::vector<Finding> find_wire_faults(const BusObservations& observations, const BusAddress& address);
 
 }  // namespace proleg::host

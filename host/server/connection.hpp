@@ -2,13 +2,13 @@
 
 namespace proleg::host {
 
-/// A connection of a browser or program, for as long as one of its handlers exists.
+/// A connection of a browser or program. It exists as long as one of its handlers.
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// Sends what there is to send, if nothing is on its way.
+  /// Sends the pending output, if nothing is being sent.
   virtual void pump() {}
-  /// Ends in an orderly way, if the other end lets it.
+  /// Ends the connection in an orderly way, if the other end permits it.
   virtual void end() = 0;
   virtual void end_by_force() = 0;
 };

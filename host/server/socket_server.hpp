@@ -18,14 +18,14 @@ namespace proleg::host {
 
 ServerTime server_now();
 
-/// Takes connections, and wakes them when there is something to send. Connections share it.
+/// Accepts connections, and wakes them when there is output. Connections share this object.
 class SocketServer : public std::enable_shared_from_this<SocketServer> {
  public:
   SocketServer(boost::asio::io_context& context, std::uint16_t port,
                std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link);
 
   void accept();
-  /// From any thread.
+  /// Schedules the delivery of the session's output. May be called from any thread.
   void post_delivery();
   void post_stop();
 
@@ -33,9 +33,9 @@ class SocketServer : public std::enable_shared_from_this<SocketServer> {
   [[nodiscard]] boost::asio::io_context& context() { return context_; }
   [[nodiscard]] SessionLink& link() { return *link_; }
 
-  /// The connection ends with this service.
+  /// Adds a connection, which ends with this server.
   void add(const std::shared_ptr<Connection>& connection) { connections_.push_back(connection); }
-  /// After each event: sends what can be sent, and waits for the next deadline.
+  /// Sends the pending output and waits for the next deadline. To be called after each event.
   void serve();
 
  private:
@@ -44,7 +44,7 @@ class SocketServer : public std::enable_shared_from_this<SocketServer> {
   void listen(std::uint16_t port);
   void accepted(boost::asio::ip::tcp::socket socket);
   void stop();
-  /// Those that have not ended; forgets the others.
+  /// The connections that have not ended; the others are removed from the list.
   [[nodiscard]] static std::vector<std::shared_ptr<Connection>> living(Connections& connections);
 
   boost::asio::io_context& context_;
@@ -57,7 +57,7 @@ class SocketServer : public std::enable_shared_from_this<SocketServer> {
   ServerAddress address_;
   bool has_ended_ = false;
   Connections connections_;
-  Connections stop_connections_;  ///< reserved for POST /stop, the oldest first
+  Connections stop_connections_;  ///< connections reserved for POST /stop, the oldest first
 };
 
 }  // namespace proleg::host

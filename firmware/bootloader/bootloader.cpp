@@ -57,7 +57,7 @@ void Bootloader::power_on(Microseconds now, std::uint8_t node, const Handover& l
   start_network(now, node);
 }
 
-/// Computes a checksum of the slot, which takes long.
+/// Checks the image in the slot. It computes a checksum, which takes long.
 void Bootloader::look_at_slot() {
   const bool is_complete = !slots_.image_in(FlashSlot::a).empty();
   unsigned flags = flags_ & ~unsigned{module_flag::has_image | module_flag::is_confirmed};
@@ -156,8 +156,9 @@ void Bootloader::poll(Microseconds now) {
     if (ends_line_) {
       leave(now);
     }
-  } else if (downloaded_ != 0 && queue_.size() == 0) {  // the answer first: while the flash is written nothing is sent
-    static_cast<void>(write_image(ports_.buffer.first(downloaded_)));  // close_write() has checked it
+  } else if (downloaded_ != 0 &&
+             queue_.size() == 0) {  // the answer goes first: while the flash is written nothing is sent
+    static_cast<void>(write_image(ports_.buffer.first(downloaded_)));  // close_write() has checked the image
     downloaded_ = 0;
   }
   if (now >= idle_at_) {
@@ -168,7 +169,7 @@ void Bootloader::poll(Microseconds now) {
   }
   if (now >= leave_at_) {
     leave_at_ = never;
-    queue_.clear();  // no node acknowledges them
+    queue_.clear();  // no node acknowledges the frames
   }
 }
 
@@ -178,7 +179,8 @@ Microseconds Bootloader::next_deadline() const {
 }
 
 void Bootloader::install_broadcast() {
-  const image::Error error = image::check_image(receiver_.image(), place_);  // before the flash is erased
+  // The image is checked before the flash is erased.
+  const image::Error error = image::check_image(receiver_.image(), place_);
   if (error != image::Error::none) {
     status_ = status_of(error);
     receiver_.set_state(ReceiverState::refused, static_cast<std::uint8_t>(error));
@@ -189,7 +191,7 @@ void Bootloader::install_broadcast() {
                       static_cast<std::uint8_t>(result));
 }
 
-/// An image that was checked.
+/// Writes an image that was checked.
 InstallResult Bootloader::write_image(std::span<const std::uint8_t> image) {
   const InstallResult result = slots_.install(image);
   look_at_slot();

@@ -1,7 +1,7 @@
 #pragma once
 
-// What one start of a module leaves for the next one, in RAM that keeps its contents over a reset: the program for the
-// bootloader, the bootloader for the program and for itself.
+// What a start of a module leaves for the next one, in RAM that keeps its contents over a reset. The program leaves it
+// for the bootloader, and the bootloader for the program and for itself.
 
 #include <cstdint>
 
@@ -14,9 +14,10 @@ enum class HandoverAction : std::uint32_t {
   stay = 0xB007'0001,      ///< the bootloader stays on the bus, though there is a program that may run
   start = 0xB007'0002,     ///< the bootloader starts the program in slot A; a start on trial has been counted
   pin_seen = 0xB007'0003,  ///< the reset pin was used a moment ago
-  started = 0xB007'0004,   ///< the program was started, so often in a row, and has not said that it has started well
+  started = 0xB007'0004,   ///< the program was started several times in a row (the argument), and has not reported a
+                           ///< good start
   runs = 0xB007'0005,      ///< the program has started well
-  install = 0xB007'0006,   ///< an image waits in RAM; its size and the session of the host: ImageInRam
+  install = 0xB007'0006,   ///< an image waits in RAM; the argument is ImageInRam
 };
 
 struct Handover {
@@ -27,8 +28,9 @@ struct Handover {
 /// The argument of HandoverAction::install.
 struct ImageInRam {
   std::uint32_t size = 0;    ///< less than 2^23 bytes
-  std::uint8_t session = 0;  ///< of the host that has sent it
-  bool ends_line = false;    ///< the host is on the module's serial line: the module comes back without its request
+  std::uint8_t session = 0;  ///< session of the host that has sent it
+  /// The host is on the module's serial line: the bootloader returns to the program without a request.
+  bool ends_line = false;
 
   [[nodiscard]] constexpr std::uint32_t argument() const {
     return size | std::uint32_t{session} << session_position | (ends_line ? line_bit : 0);
@@ -43,24 +45,25 @@ struct ImageInRam {
   static constexpr std::uint32_t line_bit = 1U << 23U;
 };
 
-/// So many starts of a program that has not said that it runs well, and it is given up: the bootloader stays.
+/// Number of starts without the report of a good start after which the program is not started any more: the bootloader
+/// stays.
 inline constexpr std::uint32_t max_bad_starts = 5;
 
-/// What the bootloader does after a reset of the chip.
+/// Actions of the bootloader after a reset of the chip.
 enum class NextStep : std::uint8_t {
-  start_program,  ///< the program in slot A, with the chip as after a reset; Handover `started` is to be left
+  start_program,  ///< start the program in slot A, with the chip as after a reset; Handover `started` must be left
   prepare,        ///< Slots::prepare_start() decides what runs; it starts after a reset, with Handover `start`
   serve_bus,
 };
 
 [[nodiscard]] NextStep next_step(const Slots& slots, const Handover& left);
 
-/// What is left for the next start when the program is started.
+/// What must be left for the next start when the program is started.
 [[nodiscard]] constexpr Handover started_after(const Handover& left) {
   return {HandoverAction::started, 1 + (left.action == HandoverAction::started ? left.argument : 0)};
 }
 
-/// Whether the program was given up.
+/// Whether the program has started badly too often, and must not be started any more.
 [[nodiscard]] constexpr bool starts_badly(const Handover& left) {
   return left.action == HandoverAction::started && left.argument >= max_bad_starts;
 }

@@ -18,7 +18,7 @@ std::array<std::uint8_t, 4> bytes_of(std::uint32_t word) {
   return bytes;
 }
 
-/// Headers have the hash of what follows.
+/// Whether two images are the same. Their headers have the hash of what follows.
 bool is_same(Bytes one, Bytes other) {
   return one.size() == other.size() &&
          (one.empty() || std::ranges::equal(one.first(image::header_size), other.first(image::header_size)));
@@ -58,7 +58,7 @@ bool Slots::may_start() const {
 InstallResult Slots::install(Bytes image) {
   const Bytes current = image_in(FlashSlot::a);
   if (is_same(current, image) && (is_confirmed(FlashSlot::a) || attempts() == 0)) {
-    return InstallResult::already_there;  // else its trial begins anew
+    return InstallResult::already_there;  // else the trial of the image begins again
   }
   const Bytes backup = image_in(FlashSlot::b);
   const bool is_current_better = is_confirmed(FlashSlot::a) || backup.empty();
@@ -96,13 +96,13 @@ unsigned Slots::attempts() const {
   return used;
 }
 
-/// An erase that is cut off can leave bits that read as before for a while. So first the slot gets a header that is
-/// none.
+/// Makes a slot empty. An erase that is cut off can leave bits that read as before for a while, so the slot gets an
+/// invalid header first.
 bool Slots::clear(FlashSlot slot) {
   return (image_in(slot).empty() || flash_.program(slot, 0, bytes_of(0))) && flash_.erase(slot);
 }
 
-/// The header last: before it is complete, the slot holds nothing.
+/// Writes an image. The header is written last: before it is complete, the slot holds no image.
 bool Slots::write(FlashSlot slot, Bytes image, bool is_proven) {
   return clear(slot) && flash_.program(slot, image::header_size, image.subspan(image::header_size)) &&
          (!is_proven || flash_.program(slot, words_at(), bytes_of(confirmed_word))) &&

@@ -7,7 +7,7 @@
 //   start     A is complete and confirmed: it runs
 //             A is complete but not confirmed: it runs on trial, at most `max_attempts` times; after that B is restored
 //             A is not complete: B is restored
-//             neither: there is nothing to run
+//             A and B are not complete: there is nothing to run
 //   restore   erases A and copies B to A
 //
 // An image is confirmed when it has started well (the module's own check, or its host). The header of an image is
@@ -29,15 +29,15 @@ namespace proleg::bootloader {
 
 enum class FlashSlot : std::uint8_t { a, b };
 
-/// The flash of the two slots. An operation takes long; nothing else runs meanwhile.
+/// The flash of the two slots. An operation takes long, and the program stands still meanwhile.
 class SlotFlash {
  public:
-  /// All bytes become 0xFF. Whether it succeeded.
+  /// Sets all bytes of a slot to 0xFF. Returns whether it succeeded.
   [[nodiscard]] virtual bool erase(FlashSlot slot) = 0;
-  /// Programs bytes that are 0xFF, word by word in ascending order. offset and size: multiples of 4. Whether it
+  /// Programs bytes that are 0xFF, word by word in ascending order. offset and size: multiples of 4. Returns whether it
   /// succeeded.
   [[nodiscard]] virtual bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
-  /// The bytes of a slot: the same number for both, a multiple of 4, more than an image and 16 bytes.
+  /// The bytes of a slot. Both slots have the same size: a multiple of 4, more than an image and 16 bytes.
   [[nodiscard]] virtual std::span<const std::uint8_t> contents(FlashSlot slot) const = 0;
 
  protected:
@@ -45,16 +45,16 @@ class SlotFlash {
 };
 
 enum class StartResult : std::uint8_t {
-  run,           ///< the image in A, which is confirmed
-  run_on_trial,  ///< the image in A; a start on trial has been counted
+  run,           ///< the image in A runs, which is confirmed
+  run_on_trial,  ///< the image in A runs; a start on trial has been counted
   nothing,       ///< no slot has an image that may run
-  flash_failed,  ///< the flash does not do what it should; what the slots hold may run at another try
+  flash_failed,  ///< the flash does not work as it should; an image in a slot may run at another try
 };
 
 enum class InstallResult : std::uint8_t {
   ok,
   already_there,  ///< A holds this image, and has not failed to start; nothing was written
-  backup_failed,  ///< the flash of B failed; A is as it was
+  backup_failed,  ///< the flash of B failed; A is unchanged
   flash_failed,   ///< the flash of A failed; B will be restored at the next start
 };
 
@@ -62,24 +62,25 @@ class Slots {
  public:
   static constexpr unsigned max_attempts = 3;
   static constexpr std::uint32_t confirmed_word = 0x600D'600D;
-  static constexpr std::uint32_t words_size = 4 * (1 + max_attempts);  ///< at the end of a slot
+  static constexpr std::uint32_t words_size = 4 * (1 + max_attempts);  ///< size of the words at the end of a slot
 
-  /// place: of images on this board, with the room that a slot has.
+  /// place: board and place of images, with the room that a slot has.
   Slots(SlotFlash& flash, const image::Place& place) : flash_(flash), place_(place) {}
 
-  /// Decides what runs, and restores A if that is needed.
+  /// Decides which image runs, and restores A if that is needed.
   [[nodiscard]] StartResult prepare_start();
   /// Whether prepare_start() would find something that may run.
   [[nodiscard]] bool may_start() const;
-  /// Writes an image into A, which the caller has checked (image::check_image()).
+  /// Writes an image into A. The caller has checked it (image::check_image()).
   [[nodiscard]] InstallResult install(std::span<const std::uint8_t> image);
-  /// The image in A has started well. Whether the flash holds that now. Does nothing if it is known already.
+  /// Confirms the image in A, which has started well. Returns whether the flash holds that now. Does nothing if it is
+  /// confirmed already.
   [[nodiscard]] bool confirm();
 
-  /// The complete image in a slot; empty without one.
+  /// The complete image in a slot; empty if there is none.
   [[nodiscard]] std::span<const std::uint8_t> image_in(FlashSlot slot) const;
   [[nodiscard]] bool is_confirmed(FlashSlot slot) const;
-  /// Starts on trial of the image in A.
+  /// Number of starts on trial of the image in A.
   [[nodiscard]] unsigned attempts() const;
 
  private:

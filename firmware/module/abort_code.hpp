@@ -5,7 +5,7 @@
 
 namespace proleg::firmware {
 
-/// SDO abort code for what the kernel answers.
+/// SDO abort code that stands for a status of the kernel.
 [[nodiscard]] canopen::AbortCode abort_code_of(Status status);
 
 }  // namespace proleg::firmware

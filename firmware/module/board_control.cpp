@@ -22,7 +22,7 @@ AbortCode save(Parts& parts, const BoardRecord& record) {
   }
 }
 
-/// The answers that CiA 301 demands if parameters are not to be saved or restored now.
+/// Checks the signature, and whether parameters may be saved or restored now; CiA 301 defines the abort codes.
 AbortCode check_signature(const Parts& parts, std::uint32_t found, std::uint32_t expected) {
   if (found != expected) {
     return AbortCode::refused_by_application;

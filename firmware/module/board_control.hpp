@@ -1,20 +1,21 @@
 #pragma once
 
-// The settings of the board in the module: what saves them, and what they act on.
+// Saving and restoring the settings of the board.
 
 #include "firmware/module/parts.hpp"
 
 namespace proleg::firmware {
 
-/// Writing the flash stops the program for up to half a second: not while the servo has power, or soon may have.
+/// Whether flash may be written now. That stops the program for up to half a second, so the servo must not have power,
+/// and must not get it soon.
 [[nodiscard]] bool may_write_flash(const Parts& parts);
 
-/// Object 0x1010: what is in force is kept. The node id stays as LSS has stored it.
+/// Object 0x1010: saves the settings in force. The node id stays as LSS has stored it.
 [[nodiscard]] canopen::AbortCode save_parameters(Parts& parts, std::uint32_t signature);
-/// Object 0x1011: all but the node id has its default value from the next reset on.
+/// Object 0x1011: from the next reset on, all settings but the node id have their default values.
 [[nodiscard]] canopen::AbortCode restore_parameters(Parts& parts, std::uint32_t signature);
 
-/// A frame on 0x7E5. The answer, if there is one.
+/// Handles a frame on 0x7E5. Returns the answer, if there is one.
 [[nodiscard]] std::optional<CanFrame> serve_lss(Parts& parts, const CanFrame& request);
 
 }  // namespace proleg::firmware

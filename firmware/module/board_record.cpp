@@ -30,7 +30,7 @@ std::uint16_t half_word(Bytes bytes, std::size_t at) {
   return static_cast<std::uint16_t>(read_little_endian(bytes, at, 2));
 }
 
-/// Reads all that the schema versions 1 and 2 have; nothing has been checked.
+/// Reads all fields of the schema versions 1 and 2, without a check.
 BoardRecord decode_all(Bytes bytes) {
   BoardRecord record;
   record.node = bytes[node_at];
@@ -47,13 +47,13 @@ BoardRecord decode_all(Bytes bytes) {
   return record;
 }
 
-/// The part that is the same in every schema.
+/// Whether the part that is the same in every schema is right.
 bool is_right(Bytes bytes) {
   return bytes[version_at] >= first_schema && bytes[node_at] <= BoardRecord::max_node &&
          read_little_endian(bytes, crc_at, 4) == crc32(bytes.first(crc_at));
 }
 
-/// Of a record that is right.
+/// Decodes a record that is right.
 BoardRecord decode(Bytes bytes) {
   if (bytes[version_at] <= BoardRecord::schema) {
     if (const BoardRecord record = decode_all(bytes); record.valid()) {
@@ -75,7 +75,7 @@ bool is_erased(Bytes bytes) {
 }
 
 struct NewestRecord {
-  Bytes bytes;  ///< empty: there is none
+  Bytes bytes;  ///< empty if there is no record
   std::uint32_t sequence = 0;
   unsigned sector = 0;
 };
@@ -94,7 +94,8 @@ NewestRecord find_newest(const std::array<Bytes, 2>& sectors) {
   return found;
 }
 
-/// Where the next record of a sector goes: after everything that was written there. Its end if it is full.
+/// Offset of the next record of a sector: behind everything that was written there; the end of the sector if it is
+/// full.
 std::size_t free_offset(Bytes sector) {
   std::size_t offset = sector.size() / BoardRecord::size * BoardRecord::size;
   while (offset > 0 && is_erased(sector.subspan(offset - BoardRecord::size, BoardRecord::size))) {
@@ -103,7 +104,7 @@ std::size_t free_offset(Bytes sector) {
   return offset;
 }
 
-/// Enters what the records of a log have in common.
+/// Writes the fields that all records of a log have.
 void complete(RecordBytes& bytes, std::uint32_t sequence) {
   write_little_endian(bytes, 0, 4, sequence);
   write_little_endian(bytes, crc_at, 4, crc32(Bytes(bytes).first(crc_at)));
@@ -113,7 +114,8 @@ AppendResult write(FlashPort& flash, const NewestRecord& before, const RecordByt
   unsigned sector = before.sector;
   std::size_t offset = free_offset(flash.contents(sector));
   if (offset + BoardRecord::size > flash.contents(sector).size()) {
-    // Erase it even if it reads as erased: an erase that was cut off can leave bits that read as 1 for a while.
+    // The sector is erased even if it reads as erased: an erase that was cut off can leave bits that read as 1 for a
+    // while.
     sector ^= 1U;
     offset = 0;
     if (!flash.erase(sector)) {
@@ -171,7 +173,7 @@ AppendResult append(FlashPort& flash, const BoardRecord& record) {
     return AppendResult::invalid_record;
   }
   const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
-  // What this program reads of a newer schema is not what the record holds.
+  // What this program reads of a newer schema is not all that the record holds.
   const bool is_known = !before.bytes.empty() && before.bytes[version_at] <= BoardRecord::schema;
   if (is_known && decode(before.bytes) == record) {
     return AppendResult::ok;

@@ -36,13 +36,13 @@
 
 namespace proleg::firmware {
 
-/// Flash that can be erased sector by sector. Both operations take long (RM0090: up to half a second to erase), and
-/// nothing else runs meanwhile.
+/// Flash that can be erased sector by sector. Both operations take long (RM0090: up to half a second to erase), and the
+/// program stands still meanwhile.
 class FlashPort {
  public:
-  /// All bytes of a sector become 0xFF. Whether it succeeded.
+  /// Sets all bytes of a sector to 0xFF. Returns whether it succeeded.
   [[nodiscard]] virtual bool erase(unsigned sector) = 0;
-  /// Programs bytes of a sector that are 0xFF. offset and size: multiples of 4. Whether it succeeded.
+  /// Programs bytes of a sector that are 0xFF. offset and size: multiples of 4. Returns whether it succeeded.
   [[nodiscard]] virtual bool program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
   /// The bytes of a sector.
   [[nodiscard]] virtual std::span<const std::uint8_t> contents(unsigned sector) const = 0;
@@ -52,27 +52,27 @@ class FlashPort {
 };
 
 struct BoardRecord {
-  static constexpr std::size_t size = 32;    ///< bytes in flash
+  static constexpr std::size_t size = 32;    ///< size in flash [bytes]
   static constexpr std::uint8_t schema = 2;  ///< the version that is written
   static constexpr std::uint8_t max_node = canopen::max_node_id;
-  static constexpr std::uint16_t max_reading = 4095;  ///< of the 12-bit ADC
+  static constexpr std::uint16_t max_reading = 4095;  ///< greatest reading of the 12-bit ADC
   static constexpr std::int32_t max_angle = quarter_turn;
   static constexpr std::uint16_t max_current_ma = 0x7FFF;
 
   std::uint8_t node = 0;  ///< 1 to 126; 0: none
   bool has_feedback = false;
-  /// Of the feedback potentiometer, as the ADC reads it, at most max_reading; different, if it is fitted.
+  /// Readings of the feedback potentiometer by the ADC, at most max_reading. They differ if it is fitted.
   std::uint16_t feedback_at_minus_90 = 0;
   std::uint16_t feedback_at_plus_90 = 0;
   bool is_gateway = false;
   /// Joint angles that the mechanics allow, 90 degrees = 2^30. The safe pose, 0, is one of them.
   std::int32_t lowest_angle = -max_angle;
   std::int32_t highest_angle = max_angle;
-  /// Of the servo's current; default values of object 0x200A.
+  /// Limits of the servo's current; default values of object 0x200A.
   std::uint16_t current_limit_ma = 2'000;
   std::uint16_t current_limit_time_ms = 500;
 
-  /// Whether everything is in its range.
+  /// Whether all values are in their ranges.
   [[nodiscard]] bool valid() const;
 
   friend bool operator==(const BoardRecord&, const BoardRecord&) = default;
@@ -81,21 +81,21 @@ struct BoardRecord {
 /// The bytes of a record.
 [[nodiscard]] std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence);
 
-/// The record with the highest sequence number among those that are right: a schema version, the right checksum, a node
-/// id in its range. Others are skipped: those that were cut off or damaged. Of a record with a newer schema version, or
-/// with anything else out of its range, only the node id is taken. Sectors of any size.
+/// The newest record: the one with the highest sequence number among those that have a schema version, the right
+/// checksum and a node id in its range. Records that were cut off or damaged are skipped. If it has a newer schema
+/// version, or another value out of its range, only its node id is taken. The sectors may have any size.
 [[nodiscard]] std::optional<BoardRecord> newest(std::span<const std::uint8_t> sector_1,
                                                 std::span<const std::uint8_t> sector_2);
 
-/// The node id of that record; 0: none.
+/// Node id of the newest record; 0: none.
 [[nodiscard]] std::uint8_t newest_node(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
 
-/// Whether that record has a schema version that this program does not know.
+/// Whether the newest record has a schema version that this program does not know.
 [[nodiscard]] bool has_newer_schema(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
 
 enum class AppendResult : std::uint8_t {
-  ok,              ///< also if it is the newest already, in a schema that is known: nothing was written then
-  invalid_record,  ///< not BoardRecord::valid(); nothing was written
+  ok,              ///< written, or it is the newest record already, in a schema that is known
+  invalid_record,  ///< BoardRecord::valid() does not hold; nothing was written
   erase_failed,    ///< the record before is still the newest
   program_failed,  ///< the record before is still the newest, or the flash does not hold what was written
 };
@@ -103,7 +103,7 @@ enum class AppendResult : std::uint8_t {
 /// Appends a record to the log in sectors 0 and 1 of the port. If the power fails meanwhile, at any instant, the newest
 /// record is the one before or this one.
 [[nodiscard]] AppendResult append(FlashPort& flash, const BoardRecord& record);
-/// The same with a copy of the newest record that has this node id and, in any schema, everything else as it was.
+/// Appends a copy of the newest record, in any schema, that differs from it in the node id only.
 [[nodiscard]] AppendResult append_node(FlashPort& flash, std::uint8_t node);
 
 }  // namespace proleg::firmware

@@ -5,8 +5,8 @@
 namespace proleg::firmware {
 
 /// Brings the controller back from bus-off (ISO 11898-1, 6.13). It asks the controller after a pause of 10 ms, then
-/// after pauses twice as long each, up to 1 s, so that a module that disturbs the bus does so less and less. The pauses
-/// are short again after 10 s on the bus.
+/// after pauses twice as long each, up to 1 s, so that a module that disturbs the bus does so less and less often. The
+/// pauses are short again after 10 s on the bus.
 class BusRecovery {
  public:
   static constexpr Microseconds min_pause_us = 10'000;
@@ -15,7 +15,7 @@ class BusRecovery {
 
   explicit BusRecovery(CanPort& port) : port_(port) {}
 
-  /// On the bus, with the shortest pause.
+  /// Returns to the start: on the bus, with the shortest pause.
   void reset() {
     off_ = false;
     pause_us_ = min_pause_us;
@@ -28,14 +28,14 @@ class BusRecovery {
     off_since_ = now;
     due_ = now + pause_us_;
   }
-  /// Returns how long it was off, in ms.
+  /// Must be called when the controller takes part again. Returns the time for which it was bus-off [ms].
   std::uint32_t bus_back(Microseconds now) {
     off_ = false;
     due_ = now + calm_us;
     return static_cast<std::uint32_t>((now - off_since_) / 1'000U);
   }
 
-  /// Asks the controller if that is due. True, once, after 10 s on the bus.
+  /// Asks the controller if that is due. Returns true once, after 10 s on the bus.
   [[nodiscard]] bool poll(Microseconds now) {
     if (now < due_) {
       return false;
@@ -55,8 +55,8 @@ class BusRecovery {
   CanPort& port_;
   bool off_ = false;
   Microseconds off_since_ = 0;
-  Microseconds pause_us_ = min_pause_us;  ///< before the next request
-  Microseconds due_ = never;              ///< off: the next request; on: the end of the 10 s
+  Microseconds pause_us_ = min_pause_us;  ///< pause before the next request
+  Microseconds due_ = never;              ///< bus-off: time of the next request; on the bus: end of the 10 s
 };
 
 }  // namespace proleg::firmware

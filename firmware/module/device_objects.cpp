@@ -10,7 +10,7 @@ namespace {
 using canopen::AbortCode;
 using canopen::NmtState;
 
-/// The row of a declared entry and the entry's place in it; or why there is none.
+/// The row of a declared entry and the entry's position in it, or the reason why it is absent.
 struct Found {
   AbortCode code = AbortCode::none;
   const ObjectAccessor* accessor = nullptr;
@@ -61,8 +61,8 @@ bool is_writable(const Parts& parts, WritableIn state) {
   return false;
 }
 
-/// What every module of this version has in front of the fingerprint of its core. Computed by the compiler: flash is
-/// short.
+/// The start of the software version, which every module of this version has in front of the fingerprint of its core.
+/// The compiler computes it, because flash is short.
 constexpr ObjectText software_text = [] {
   ObjectText text;
   text.append("protocol ");
@@ -79,7 +79,7 @@ AbortCode read_object(std::span<const ObjectAccessor> accessors, const Parts& pa
                       std::uint32_t& value) {
   Found found = find(accessors, parts.joint, address);
   if (address.index == canopen::object::error_history.index && address.sub > parts.emergencies.history().size()) {
-    found.code = AbortCode::no_data;  // CiA 301, 7.5.2.4
+    found.code = AbortCode::no_data;  // CiA 301, 7.5.2.4, demands this code
   }
   if (found.code == AbortCode::none) {
     value = found.accessor->get(parts, found.position);
@@ -130,7 +130,7 @@ void DeviceObjects::serve(Microseconds now, const CanFrame& request) {
 }
 
 void DeviceObjects::send_segments(Microseconds now) {
-  // One in a mailbox and one behind it keep the bus busy; more would fill the queue.
+  // One segment in a mailbox and one in the queue keep the bus busy; more would fill the queue.
   while (server_.has_segment() && parts_.outbox.is_empty()) {
     if (!parts_.outbox.send(server_.next_segment(now))) {
       return;

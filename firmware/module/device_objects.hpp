@@ -11,11 +11,12 @@ namespace proleg::firmware {
 /// Reads a declared entry. `unsupported_access` if the table has no row for it.
 [[nodiscard]] canopen::AbortCode read_object(std::span<const ObjectAccessor> accessors, const Parts& parts,
                                              canopen::Address address, std::uint32_t& value);
-/// Writes a declared entry with a value that has passed the declared range; the same.
+/// Writes a declared entry with a value that has passed the declared range. `unsupported_access` if the table has no
+/// row for the entry.
 [[nodiscard]] canopen::AbortCode write_object(std::span<const ObjectAccessor> accessors, Parts& parts,
                                               canopen::Address address, std::uint32_t value, Microseconds now);
 
-/// The text of an entry of type VISIBLE_STRING, as the module knows it.
+/// The value of an entry of type VISIBLE_STRING.
 class ObjectText {
  public:
   [[nodiscard]] std::span<const char> characters() const { return {characters_.data(), size_}; }
@@ -49,24 +50,25 @@ class ObjectText {
   std::array<char, 32> characters_{};
   std::uint8_t size_ = 0;
 };
-/// Nothing if the module has no such text.
+/// Text of an entry; nothing if the module has no such text.
 [[nodiscard, gnu::cold]] std::optional<ObjectText> read_text(const ModuleIdentity& identity, canopen::Address address);
 
-/// The SDO server of the module's object dictionary: what object_accessors() has, as it is when a request comes.
+/// The SDO server of the module's object dictionary. It serves the entries of object_accessors() with their present
+/// values.
 ///
-/// The host writes what a robot agrees on in Pre-operational; it takes effect at `activate`. After that it writes
-/// parameters and limits. In an open transaction it stages parameters and internal values in any state.
+/// The host writes the configuration of the robot in Pre-operational; it takes effect at `activate`. After that it
+/// writes parameters and limits. In an open transaction it stages parameters and internal values in any state.
 class DeviceObjects final : private canopen::ObjectAccess {
  public:
   explicit DeviceObjects(Parts& parts) : parts_(parts), server_(parts.identity.node, *this) {}
 
   /// Answers a frame on 0x600 + node.
   [[gnu::cold]] void serve(Microseconds now, const CanFrame& request);
-  /// Sends segments of a block upload while the queue is empty. To be called when a frame was sent.
+  /// Sends segments of a block upload while the queue is empty. Must be called when a frame was sent.
   void send_segments(Microseconds now);
   [[gnu::cold]] void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return server_.next_deadline(); }
-  /// Drops the transfer. From now on the server has the module's present node id.
+  /// Drops the transfer. The server takes the module's present node id.
   void reset() {
     server_.reset();
     server_.set_node(parts_.identity.node);
@@ -81,7 +83,7 @@ class DeviceObjects final : private canopen::ObjectAccess {
 
   Parts& parts_;
   canopen::SdoServer server_;
-  Microseconds now_ = 0;  ///< of the request that is served
+  Microseconds now_ = 0;  ///< time of the request that is served
 };
 
 }  // namespace proleg::firmware

@@ -36,7 +36,7 @@ std::int32_t Drive::wanted_setpoint(const Kernel& kernel, const canopen::AngleLi
 void Drive::start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits) {
   const unsigned joint = kernel.first_joint();
   const bool gait = mode_ == canopen::mode_gait;
-  // Between two ticks of the gait the line is the kernel's own, which the simulator computes too.
+  // Between two ticks of the gait the servo follows the kernel's line, which the simulator computes, too.
   const std::int32_t from = gait && followed_gait_ ? kernel.previous_setpoint(joint) : setpoint_;
   setpoint_ = wanted_setpoint(kernel, limits);
   followed_gait_ = gait;

@@ -31,7 +31,7 @@ EmergencyCode code_of(Fault fault) {
 
 }  // namespace
 
-// Not inlined: report, raise and end have many callers and rarely run.
+// These functions are not inlined, because report(), raise() and clear() have many callers and rarely run.
 [[gnu::noinline]] void Emergencies::report(EmergencyCode code, std::uint32_t detail) {
   if (code != EmergencyCode::none) {
     keep(code, detail);

@@ -20,8 +20,8 @@ enum class Fault : std::uint8_t {
   sensors_failed,
 };
 
-/// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A module that is
-/// stopped or has no node id sends no EMCY.
+/// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A module that is stopped or has no node id sends
+/// no EMCY.
 class Emergencies {
  public:
   Emergencies(const ModuleIdentity& identity, const NetworkNode& network, Outbox& outbox)
@@ -36,30 +36,31 @@ class Emergencies {
     faults_ &= bit(Fault::over_current);
     clear_history();
   }
-  /// From now on the reset cause is not yet reported.
+  /// Must be called at power-on: the reset cause is not yet reported.
   void power_on() { is_reset_cause_pending_ = true; }
 
-  /// An event.
+  /// Reports an event.
   void report(canopen::EmergencyCode code, std::uint32_t detail);
-  /// An error that lasts.
+  /// Reports an error that lasts.
   void raise(Fault fault, std::uint32_t detail);
-  /// The error is over: EMCY `none`, with the error's code as the detail. Nothing happens if it was not raised.
+  /// Ends an error that lasts: sends EMCY `none`, with the error's code as the detail. Nothing happens if it was not
+  /// raised.
   void clear(Fault fault) {
     if (is_raised(fault)) {
       end(fault);
     }
   }
-  /// Once after power_on(), if the program did not end as it should. To be called after the boot-up message was sent:
-  /// EMCY has the lower identifier and would overtake it.
+  /// Reports the cause of the reset if the program did not end as it should; once after power_on(). Must be called
+  /// after the boot-up message was sent: EMCY has the lower identifier and would overtake it.
   void report_reset_cause();
   [[nodiscard]] bool is_raised(Fault fault) const { return (faults_ & bit(fault)) != 0; }
 
-  /// Object 0x1003: the last errors, the newest first. The lower half is the emergency code, the upper half the lower
-  /// half of the detail.
+  /// Object 0x1003: the last errors, the newest first. The lower half of a number is the emergency code, the upper half
+  /// the lower half of the detail.
   [[nodiscard]] std::span<const std::uint32_t> history() const { return {history_.data(), history_size_}; }
   void clear_history() { history_size_ = 0; }
 
-  /// Object 0x1001.
+  /// Object 0x1001: the error register.
   [[nodiscard]] std::uint8_t error_register() const;
 
  private:

@@ -3,7 +3,8 @@
 namespace proleg::firmware {
 namespace {
 
-/// slcan has room for four characters: the lower half of the serial number.
+/// Settings of the adapter. Its serial number is the lower half of the module's, because slcan has room for four
+/// characters.
 SlcanAdapter::Settings settings_of(const ModuleIdentity& identity) {
   SlcanAdapter::Settings settings;
   std::uint32_t serial = serial_number(identity);
@@ -13,13 +14,13 @@ SlcanAdapter::Settings settings_of(const ModuleIdentity& identity) {
   return settings;
 }
 
-/// No command of slcan contains it.
+/// Takes the place of damaged characters: no command of slcan contains it.
 constexpr std::string_view damaged = "?";
 
 }  // namespace
 
 Gateway::Gateway(const ModuleIdentity& identity, const Ports& ports)
-    : can_(ports.can), line_(ports.line), adapter_(buffer_, entrance_, settings_of(identity)) {}
+    : can_(ports.can), line_(ports.line), adapter_(buffer_, host_port_, settings_of(identity)) {}
 
 void Gateway::power_on() {
   is_active_ = false;
@@ -46,7 +47,7 @@ void Gateway::set_role(bool is_gateway) {
   line_->connect(is_gateway);
 }
 
-/// One that is in a mailbox cannot be withdrawn.
+/// A frame that is in a mailbox cannot be withdrawn.
 void Gateway::discard_frames() {
   const std::size_t kept = is_in_mailbox_ ? 1 : 0;
   discarded_ += static_cast<std::uint32_t>(size_ - kept);
@@ -69,7 +70,7 @@ void Gateway::pass(Microseconds now, const CanFrame& frame) {
 }
 
 bool Gateway::confirm(Microseconds now, const CanFrame& frame) {
-  // No two mailboxes hold frames with one identifier (CanPort).
+  // Two mailboxes never hold frames with the same identifier (CanPort).
   if (!is_in_mailbox_ || queue_[first_].identifier != frame.identifier) {
     return false;
   }

@@ -16,7 +16,7 @@ void receive_commit(Parts& parts, const CanFrame& frame) {
     return;
   }
   if (parts.reported.commit == message) {
-    return;  // the host sends it three times
+    return;  // the host sends it three times, so this is a repetition
   }
   parts.reported.commit = message;
   if (status == Status::commit_in_the_past) {
@@ -36,7 +36,7 @@ void receive_command(Parts& parts, const CanFrame& frame) {
     return;
   }
   parts.drive.power().command(command->controlword);
-  // As by SDO: a value that is no joint angle is no target.
+  // A value that is no joint angle is no target; SDO rejects it, too.
   if (canopen::check_range(canopen::object::target_position, static_cast<std::uint32_t>(command->target)) ==
       canopen::AbortCode::none) {
     parts.drive.set_target(command->target);

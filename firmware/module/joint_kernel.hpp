@@ -1,14 +1,13 @@
 #pragma once
 
 #include "firmware/module/module_settings.hpp"
-#include "firmware/module/setpoint_checksum.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
 
 namespace proleg::firmware {
 
-/// The kernel of the module's one joint, and what belongs to it: whether it is configured, the robot's agreement, the
-/// joint's limits and contacts.
+/// The kernel of the module's one joint, with the state that belongs to it: whether it is configured, the configuration
+/// of the robot, the joint's limits and contacts.
 class JointKernel {
  public:
   /// Configures the joint. A status other than ok leaves it unconfigured.
@@ -16,53 +15,54 @@ class JointKernel {
   void deactivate();
   /// Whether the joint is configured.
   [[nodiscard]] bool active() const { return active_; }
-  /// +-90 degrees until they are set.
+  /// Limits of the joint, +-90 degrees until they are set.
   [[nodiscard]] const canopen::AngleLimits& limits() const { return limits_; }
 
-  /// Why the kernel rejected a request last (object 0x2001:8); ok: it has rejected none.
+  /// The last status with which the kernel has rejected a request (object 0x2001:8); ok: it has rejected none.
   [[nodiscard]] Status last_refusal() const { return last_refusal_; }
   void keep_refusal(Status status) { last_refusal_ = status; }
   void clear_refusal() { last_refusal_ = Status::ok; }
 
-  // All below: only if active().
+  // The functions below may be called only if active().
   [[nodiscard]] unsigned joint() const { return kernel_.first_joint(); }
   [[nodiscard]] std::uint16_t robot_id() const { return robot_id_; }
   [[nodiscard]] std::uint32_t configuration_crc() const { return crc_; }
-  /// SYNCs from one monitoring frame to the next.
+  /// Number of SYNCs from one monitoring frame to the next.
   [[nodiscard]] std::uint32_t monitoring_period() const { return monitoring_period_; }
   /// The algorithm of a slot that drives the joint; null if the slot does not.
   [[nodiscard]] const ActuationModule* algorithm(unsigned slot) const;
   /// Whether a slot drives the joint with the algorithm of this id.
   [[nodiscard]] bool has_algorithm(unsigned slot, std::uint8_t id) const;
 
-  // Before the start: state 0 follows from both at restart().
+  // Settings before the start: state 0 follows from limits and parameters at restart().
   Status set_limits(const canopen::AngleLimits& limits);
   Status set_parameter(unsigned slot, unsigned number, std::int32_t value);
-  /// To state 0. What is staged stays.
+  /// Returns to state 0. Staged values stay.
   void restart();
 
   Status open(std::uint16_t transaction);
   [[nodiscard]] bool has_open_transaction() const { return active_ && kernel_.has_open_transaction(); }
-  /// In the open transaction.
+  /// Stages a value in the open transaction.
   Status stage(unsigned slot, unsigned number, bool internal, std::int32_t value);
-  /// The staged value; if there is none, the value in force.
+  /// The staged value of a parameter; the value in force if none is staged.
   [[nodiscard]] std::int32_t staged_parameter(unsigned slot, unsigned number) const;
   Status commit(std::uint16_t transaction, std::uint32_t tick);
 
-  /// As Kernel::join().
+  /// Joins a robot that already moves, see Kernel::join().
   void join(std::uint32_t tick);
   /// Computes a tick, after `missed` ones whose SYNC was not received; those have the contacts of the last tick before.
-  /// sensors: as they are at SYNC. current_ma: of the servo, as it was read after the SYNC before.
+  /// sensors: touch sensors as they are at SYNC. current_ma: current of the servo, as it was read after the SYNC
+  /// before.
   void advance(unsigned missed, std::uint8_t sensors, std::uint16_t current_ma);
-  /// The flag `fault` of the state frames from the next one on.
+  /// Sets the flag `fault` of the state frames from the next one on.
   void set_fault(bool fault) { fault_ = fault; }
-  /// A state frame of another joint.
+  /// Takes a state frame of another joint.
   void receive(unsigned joint, unsigned channel, const StateFrame& frame) { kernel_.receive(joint, channel, frame); }
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
-  /// Of the last advance(); none after deactivate(), restart() or join().
+  /// Record of the last advance(); its tick is `none` after deactivate(), restart() or join().
   [[nodiscard]] const TickRecord& record() const { return record_; }
-  /// Of the set-points since restart(); not complete after join().
+  /// Checksum of the set-points since restart(); not complete after join().
   [[nodiscard]] SetpointChecksum& checksum() { return checksum_; }
   [[nodiscard]] const SetpointChecksum& checksum() const { return checksum_; }
 

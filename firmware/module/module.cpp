@@ -53,7 +53,7 @@ void Module::receive(Microseconds now, const CanFrame& frame) {
   parts_.gateway.pass(now, frame);
 }
 
-/// A frame that the module must receive, of another node or of its own.
+/// Handles a frame that the module must receive, of another node or of its own.
 void Module::handle(Microseconds now, const CanFrame& frame) {
   if (receive_state(frame)) {
     return;
@@ -72,8 +72,8 @@ void Module::handle(Microseconds now, const CanFrame& frame) {
   finish_event(now);
 }
 
-/// State frames are most of the traffic, and change nothing before the next SYNC. False: it is none, or it has the
-/// module's own identifier.
+/// Handles a state frame; false if it is no state frame, or has the module's own identifier. State frames are most of
+/// the traffic, and change nothing before the next SYNC.
 bool Module::receive_state(const CanFrame& frame) {
   const std::uint16_t base = identifier::base_of(frame.identifier);
   const std::uint8_t node = identifier::node_of(frame.identifier);
@@ -124,7 +124,7 @@ void Module::dispatch(Microseconds now, const CanFrame& frame) {
   }
 }
 
-/// Thousands of frames a second, which change nothing else.
+/// Handles frames of a broadcast of an image. There are thousands in a second, and they change nothing else.
 void Module::receive_update(Microseconds now, const CanFrame& frame) {
   const bool may_restart = may_write_flash(parts_) && !parts_.is_supply_low;
   const ProgramUpdate::Conditions conditions{parts_.identity.node, may_restart, parts_.gateway.is_active(),
@@ -142,7 +142,7 @@ void Module::receive_lss(Microseconds now, const CanFrame& frame) {
   if (const std::optional<CanFrame> answer = serve_lss(parts_, frame)) {
     parts_.outbox.send(*answer);
   }
-  // CiA 305: a slave that had no node id starts its communication when it leaves the configuration with one.
+  // CiA 305: a slave without a node id starts its communication when it has got one and leaves the configuration.
   if (parts_.network.waits_for_node() && parts_.lss.state() == canopen::lss::State::waiting &&
       parts_.lss.pending_node() != 0) {
     parts_.reset(now);
@@ -189,7 +189,7 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
     }
     require_good_hardware(parts_);
   }
-  // A controller does not receive its own frames: these count for the module that sends them as for all others.
+  // A controller does not receive its own frames. SYNC and TICK count for the module that sends them as for all others.
   if (frame.identifier == identifier::sync || frame.identifier == identifier::tick) {
     handle(now, frame);
   } else {
@@ -240,12 +240,12 @@ void Module::poll(Microseconds now) {
   if (now >= deadline_of_parts_) {
     poll_parts(now);
   }
-  parts_.drive.poll(now);  // last: a stop that is due comes before a pulse that is due
+  parts_.drive.poll(now);  // comes last: a stop that is due comes before a pulse that is due
   next_deadline_ = std::min(deadline_of_parts_, parts_.drive.next_deadline());
   serve_line(now);
 }
 
-/// All but the servo, which is due far more often.
+/// Polls all parts but the servo, which is due far more often.
 void Module::poll_parts(Microseconds now) {
   poll_bus(parts_, now);
   const bool has_booted = parts_.network.poll(now);
@@ -260,7 +260,7 @@ void Module::poll_parts(Microseconds now) {
   finish_event(now);
 }
 
-/// The servo's power and the deadlines follow from the state that the event has left.
+/// Derives the servo's power and the deadlines from the state after the event.
 void Module::finish_event(Microseconds now) {
   if (state() == NmtState::stopped) {
     objects_.reset();  // a stopped node has no SDO (CiA 301, table 37)

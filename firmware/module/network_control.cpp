@@ -8,7 +8,7 @@ namespace {
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-/// Whether the joint is configured, and the communication objects that belong to its configuration are set.
+/// Whether the joint is configured, and the communication objects of its configuration are set.
 bool is_configured(Parts& parts) {
   if (!parts.joint.active()) {
     return false;

@@ -69,7 +69,7 @@ void NetworkNode::poll_heartbeat(Microseconds now) {
   if (now < heartbeat_at_) {
     return;
   }
-  if (has_sent_boot_up_) {  // else it could take the place of the boot-up message
+  if (has_sent_boot_up_) {  // before boot-up the heartbeat could take the place of the boot-up message
     outbox_.send_newest(encode(canopen::Heartbeat{identity_.node, state_}));
   }
   const Microseconds period_us = Microseconds{heartbeat_period_ms_} * 1'000U;

@@ -11,33 +11,34 @@ class NetworkNode {
  public:
   NetworkNode(const ModuleIdentity& identity, Outbox& outbox) : identity_(identity), outbox_(outbox) {}
 
-  /// Without a node id nothing follows. Else boot-up follows after boot_up_delay_us().
+  /// Starts the communication. With a node id, boot-up follows after boot_up_delay_us(); without one, nothing follows.
   void start(Microseconds now);
-  /// Since start() without a node id: the module waits for LSS to give it one.
+  /// Whether the module was started without a node id, and waits for LSS to give it one.
   [[nodiscard]] bool waits_for_node() const { return waits_for_node_; }
-  /// The boot-up message was lost.
+  /// Must be called when the boot-up message was lost.
   void repeat_boot_up(Microseconds now);
-  /// The controller has sent a frame. True if it is the boot-up message: from then on the network knows of the module.
+  /// Must be called when the controller has sent a frame. True if it is the boot-up message: from then on the network
+  /// knows the module.
   [[nodiscard]] bool confirm_boot_up(const CanFrame& frame);
   [[nodiscard]] bool has_sent_boot_up() const { return has_sent_boot_up_; }
   void enter(canopen::NmtState state);
-  /// Another node has sent with this identifier, which is one of this node's. False: a collision was noticed before,
-  /// since start().
+  /// Must be called when another node has sent with an identifier of this node. False if a collision was noticed
+  /// before, since start().
   [[nodiscard]] bool notice_collision(std::uint16_t identifier);
   [[nodiscard]] bool has_collided() const { return collision_ != 0; }
-  /// The identifier of the first collision; 0: there was none.
+  /// Identifier of the first collision; 0: there was none.
   [[nodiscard]] std::uint16_t collision() const { return collision_; }
 
-  /// `boot_up` until the boot-up message is in the queue.
+  /// NMT state; `boot_up` until the boot-up message is in the queue.
   [[nodiscard]] canopen::NmtState state() const { return state_; }
   [[nodiscard]] bool started() const { return state_ != canopen::NmtState::boot_up || boot_up_at_ != never; }
   [[nodiscard]] bool operational() const { return state_ == canopen::NmtState::operational; }
 
   [[nodiscard]] std::uint16_t heartbeat_period_ms() const { return heartbeat_period_ms_; }
-  /// The first heartbeat is due at once. 0: no heartbeats.
+  /// Sets the period of heartbeats; 0: none. The first one is due at once.
   void set_heartbeat_period(Microseconds now, std::uint16_t period_ms);
 
-  /// Whether the module has left the state `boot_up` now.
+  /// Sends what is due. Returns whether the module has left the state `boot_up` by this call.
   [[nodiscard]] bool poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 

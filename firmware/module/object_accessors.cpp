@@ -14,8 +14,8 @@ namespace object = canopen::object;
 using canopen::AbortCode;
 using canopen::ValueKind;
 
-// Rows. `Read` is a function of the parts, and of the position in a series; its result may have any integer type.
-// `Write` returns an abort code, or nothing if it cannot fail.
+// Kinds of rows. `Read` is a function of the parts, and of the position in a series; its result may have any integer
+// type. `Write` returns an abort code, or nothing if it cannot fail.
 
 template <typename Read>
 std::uint32_t get(const Parts& parts, Position position) {
@@ -44,7 +44,7 @@ constexpr ObjectAccessor read_write(canopen::Address first, WritableIn state, Re
   return {first.index, first.sub, state, get<Read>, set<Write>};
 }
 
-/// A member of ModuleSettings.
+/// Accesses a member of ModuleSettings.
 template <auto member>
 constexpr ObjectAccessor setting(const canopen::Object& entry) {
   return read_write(
@@ -55,7 +55,7 @@ constexpr ObjectAccessor setting(const canopen::Object& entry) {
       });
 }
 
-/// An entry that may be written, but whose range has one value only.
+/// Accesses an entry that may be written, but whose range has one value only.
 template <const canopen::Object& entry>
 constexpr ObjectAccessor only_value_row() {
   static_assert(entry.minimum == entry.maximum && entry.default_value == entry.minimum);
@@ -64,7 +64,7 @@ constexpr ObjectAccessor only_value_row() {
       [](Parts& /*parts*/, const ObjectWrite& /*write*/) {});
 }
 
-/// A member of BoardRecord.
+/// Accesses a member of BoardRecord.
 template <auto member>
 constexpr ObjectAccessor board_setting(const canopen::Object& entry) {
   return read_write(
@@ -75,7 +75,7 @@ constexpr ObjectAccessor board_setting(const canopen::Object& entry) {
       });
 }
 
-/// The same for a limit of the joint, which a configured joint has taken over already.
+/// Accesses a member of BoardRecord that is a limit of the joint. A configured joint has taken it over already.
 template <auto member>
 constexpr ObjectAccessor position_limit(const canopen::Object& entry) {
   return read_write(
@@ -127,10 +127,10 @@ constexpr ObjectAccessor state_frame_identifier() {
       });
 }
 
-// Writes that do more than to keep a value.
+// Writes that do more than keep a value.
 
-/// Keeps what the kernel rejects. This and others here are not inlined: each has several callers, and SDO need not be
-/// fast.
+/// Keeps the status if the kernel has rejected a request. This function and others here are not inlined: each has
+/// several callers, and SDO need not be fast.
 [[gnu::noinline]] AbortCode answer(Parts& parts, Status status) {
   if (status != Status::ok) {
     parts.joint.keep_refusal(status);
@@ -138,7 +138,7 @@ constexpr ObjectAccessor state_frame_identifier() {
   return abort_code_of(status);
 }
 
-/// limit: the one of the two that was written.
+/// Sets both limits. limit: the one of them that was written.
 [[gnu::noinline]] AbortCode set_limits(Parts& parts, const canopen::AngleLimits& limits, std::int32_t limit) {
   if (limit < parts.board.in_force.lowest_angle) {
     return AbortCode::below_minimum;

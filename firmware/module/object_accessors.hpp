@@ -1,8 +1,7 @@
 #pragma once
 
 // How SDO reads and writes the module. One row stands for a declared entry of the object dictionary (shared/canopen),
-// or for a series of entries that are alike. An entry whose declaration gives its value (canopen::fixed_value) needs
-// none.
+// or for a series of similar entries. An entry whose declaration gives its value (canopen::fixed_value) has no row.
 
 #include <span>
 
@@ -10,14 +9,14 @@
 
 namespace proleg::firmware {
 
-/// Where an entry is in its series: steps of index and sub-index from the first one; both 0 for a single entry. In the
-/// ranges of values: the number of the parameter or internal value, and the slot.
+/// Position of an entry in its series: steps of index and sub-index from the first one; both 0 for a single entry. In a
+/// range of values: the number of the parameter or internal value, and the slot.
 struct Position {
   std::uint16_t index = 0;
   std::uint16_t sub = 0;
 };
 
-/// When SDO may write an entry. At other times the module rejects the write with `refused_by_state`.
+/// The states in which SDO may write an entry. In others the module rejects the write with `refused_by_state`.
 enum class WritableIn : std::uint8_t {
   no_state,
   any_state,
@@ -27,19 +26,19 @@ enum class WritableIn : std::uint8_t {
   open_transaction,
 };
 
-/// A value that has passed the declared range.
+/// A write of a value that has passed the declared range.
 struct ObjectWrite {
   Position position;
   std::uint32_t value = 0;  ///< signed types are sign-extended
   Microseconds now = 0;
 };
 
-/// A row. The functions of a range are called only if the joint's slot has the algorithm.
+/// A row of the table. The functions of a range are called only if the joint's slot has the algorithm.
 struct ObjectAccessor {
   using Get = std::uint32_t (*)(const Parts& parts, Position position);
   using Set = canopen::AbortCode (*)(Parts& parts, const ObjectWrite& write);
 
-  std::uint16_t index = 0;  ///< of the first entry of the series
+  std::uint16_t index = 0;  ///< index of the first entry of the series
   std::uint8_t sub = 0;
   WritableIn writable_in = WritableIn::no_state;
   Get get = nullptr;
@@ -48,12 +47,12 @@ struct ObjectAccessor {
   [[nodiscard]] constexpr canopen::Address first() const { return {index, sub}; }
 };
 
-/// The first entry of a range of values (shared/canopen/objects.hpp).
+/// Address of the first entry of a range of values (shared/canopen/objects.hpp).
 [[nodiscard]] constexpr canopen::Address first_of(canopen::ValueKind range) {
   return canopen::address_of({range, 0, 0, 0});
 }
 
-/// The table.
+/// The table of all rows.
 [[nodiscard]] std::span<const ObjectAccessor> object_accessors();
 
 }  // namespace proleg::firmware

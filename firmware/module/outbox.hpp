@@ -14,11 +14,12 @@ class Outbox {
 
   /// Whether the frame was accepted.
   bool send(const CanFrame& frame) { return count(open_ && queue_.push(frame)); }
-  /// The same for a message that is sent again and again: of those that wait only the newest is kept.
+  /// Sends a message that is sent again and again: only the newest one with its identifier waits. Returns whether it
+  /// was accepted.
   bool send_newest(const CanFrame& frame) { return count(open_ && queue_.push_newest(frame)); }
   /// Whether no frame waits for a mailbox.
   [[nodiscard]] bool is_empty() const { return queue_.size() == 0; }
-  /// To be called when the controller has sent a frame.
+  /// Must be called when the controller has sent a frame.
   void sent() { queue_.sent(); }
   void reset() {
     queue_.clear();
@@ -26,7 +27,7 @@ class Outbox {
     dropped_ = 0;
   }
 
-  /// The controller is bus-off: drops pending frames, and all frames until open().
+  /// Must be called when the controller is bus-off: drops pending frames, and all frames until open().
   void close() {
     queue_.clear();
     open_ = false;

@@ -38,7 +38,7 @@ void Parts::reset(Microseconds now) {
 void Parts::reset_communication(Microseconds now) {
   lss.reset();
   if (identity.node != lss.pending_node()) {
-    joint.deactivate();  // its configuration names the node
+    joint.deactivate();  // its configuration contains the node
   }
   identity.node = lss.pending_node();
   can.set_node(identity.node);

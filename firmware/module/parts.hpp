@@ -4,34 +4,54 @@
 #include "firmware/module/bus_recovery.hpp"
 #include "firmware/module/drive.hpp"
 #include "firmware/module/gateway.hpp"
-#include "firmware/module/host_watch.hpp"
-#include "firmware/module/lease.hpp"
-#include "firmware/module/loss_counter.hpp"
 #include "firmware/module/program_update.hpp"
 #include "firmware/module/servo_monitor.hpp"
 #include "firmware/module/state_receiver.hpp"
 #include "firmware/module/sync_producer.hpp"
-#include "firmware/module/sync_watch.hpp"
 #include "firmware/module/tick_keeper.hpp"
+#include "firmware/module/timeouts.hpp"
+#include "shared/can/can_port.hpp"
 #include "shared/canopen/lss_slave.hpp"
 
 namespace proleg::firmware {
 
-/// How far the start of the gait is.
-struct GaitStart {
-  bool has_received_sync = false;  ///< since Operational was left: the robot moves already
-  bool has_sent_state = false;     ///< the frame of state 0, since Operational was entered
-  bool has_early_sync = false;     ///< reported, since Operational was left
+/// Counts received frames that were lost, and decides which losses are reported: on a bus that is too busy, reports
+/// would cause more losses.
+class LossCounter {
+ public:
+  static constexpr Microseconds pause_us = 1'000'000;
+
+  /// count: losses since the start. Returns whether to report it: once a second at most.
+  [[nodiscard]] bool add(Microseconds now, std::uint32_t count) {
+    count_ = count;
+    if (now < next_report_) {
+      return false;
+    }
+    next_report_ = now + pause_us;
+    return true;
+  }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+ private:
+  std::uint32_t count_ = 0;
+  Microseconds next_report_ = 0;
 };
 
-/// Errors in the host's requests that were reported, so that a repetition is not.
+/// Progress of the start of the gait.
+struct GaitStart {
+  bool has_received_sync = false;  ///< SYNC was received since Operational was left: the robot moves already
+  bool has_sent_state = false;     ///< the frame of state 0 was sent since Operational was entered
+  bool has_early_sync = false;     ///< an early SYNC was reported since Operational was left
+};
+
+/// Errors in requests of the host that were reported, so that repetitions are not reported.
 struct ReportedRequests {
-  bool has_wrong_command = false;                  ///< since Operational was entered
+  bool has_wrong_command = false;                  ///< a wrong command was reported since Operational was entered
   std::optional<canopen::CommitMessage> commit{};  ///< the last one that was rejected
 };
 
-/// What a module consists of: the whole state of the program, one piece in each part. The functions over it are in
-/// network_control.hpp, tick_control.hpp, watches.hpp and host_requests.hpp, a job in each; Module calls them.
+/// The parts of a module: together they are the whole state of the program. Functions on them are in
+/// network_control.hpp, tick_control.hpp, watches.hpp and host_requests.hpp; Module calls them.
 struct Parts {
   Parts(const ModuleIdentity& module_identity, const Ports& ports);
   Parts(const Parts&) = delete;
@@ -39,11 +59,11 @@ struct Parts {
 
   /// Reads the settings of the board. The gateway is off until reset().
   void load();
-  /// As after power on: application and communication (NMT reset node).
+  /// Resets application and communication to the state after power-on (NMT reset node).
   void reset(Microseconds now);
-  /// The communication objects, 0x1000 to 0x1FFF, as after power on, and the servo without power. The application
-  /// remains as it is: what the module knows of robot, gait and servo (NMT reset communication). A node id that LSS has
-  /// configured comes into use.
+  /// Resets the communication objects, 0x1000 to 0x1FFF, to the state after power-on, and takes the servo's power (NMT
+  /// reset communication). The application remains as it is: what the module knows of robot, gait and servo. A node id
+  /// that LSS has configured takes effect.
   void reset_communication(Microseconds now);
 
   ModuleIdentity identity;
@@ -58,8 +78,8 @@ struct Parts {
   HostWatch host;
   ReportedRequests reported;
   GaitStart start;  // fills a gap before the settings
-  /// Since the reset of communication; the tick period and the identifiers of the state frames are the defaults.
   Lease lease;
+  /// Communication was reset: the tick period and the identifiers of the state frames have their defaults.
   bool must_restore_communication = false;
   ModuleSettings settings;
   JointKernel joint;

@@ -1,25 +1,25 @@
 #pragma once
 
-// What a module needs from its surroundings. Drivers of the chip, or the simulator, implement these ports and hand
-// events to Module.
+// The interfaces that a module needs. Drivers of the chip, or the simulator, implement these ports and pass events to
+// Module.
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "firmware/module/board_record.hpp"
 #include "shared/can/can_port.hpp"
+#include "shared/gait/joint_readings.hpp"
 
 namespace proleg::firmware {
 
 class ServoPort {
  public:
   /// Begins a pulse of this width, in twelfths of a microsecond, and repeats it every period from now on. If the pulse
-  /// before is not over yet, the width is that of the next one. The program requests each pulse; the port repeats one
-  /// only if the program is late, a little after the period.
+  /// before is not over yet, the width is that of the next one. The program requests each pulse; the port repeats a
+  /// pulse only if the program is late, a little after the period.
   virtual void pulse(std::int32_t width, std::uint32_t period_us) = 0;
-  /// No further pulses: the servo has no torque. One that runs ends with its width.
+  /// Stops the pulses: the servo has no torque. A pulse that has begun ends with its width.
   virtual void off() = 0;
 
  protected:
@@ -28,28 +28,20 @@ class ServoPort {
 
 class ContactPort {
  public:
-  /// Touch sensors as they are now, as in byte 6 of the state frame: bits 0-1 the link behind the joint (rear, front),
-  /// bits 2-3 the link before it, of which only the head module has sensors.
+  /// Present state of the touch sensors, as in byte 6 of the state frame: bits 0-1 the link behind the joint (rear,
+  /// front), bits 2-3 the link in front of it, of which only the head module has sensors.
   [[nodiscard]] virtual std::uint8_t read() = 0;
 
  protected:
   ~ContactPort() = default;
 };
 
-/// What the sensors of servo and chip measure.
-struct ServoReadings {
-  std::uint16_t current_ma = 0;  ///< of the servo: the mean since the last call
-  /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
-  std::optional<std::int32_t> angle;
-  std::int8_t temperature_c = 0;  ///< of the chip
-  bool are_new = true;            ///< measured since the last call; else they are those of an earlier one
-};
-
 class SensorPort {
  public:
-  /// The last readings; starts the next ones. Called once a tick, and while ticks are missing.
+  /// Returns the last readings and starts the next ones. Called once a tick, and while ticks are missing.
   [[nodiscard]] virtual ServoReadings take_readings() = 0;
-  /// Whether there is a feedback potentiometer, and what it reads, from now on. Ports that read angles ignore the call.
+  /// Sets whether there is a feedback potentiometer, and its readings, from now on. Ports that read angles ignore the
+  /// call.
   virtual void calibrate(const BoardRecord& /*board*/) {}
 
  protected:
@@ -59,14 +51,14 @@ class SensorPort {
 /// The serial line to a host: USART2 of the reference board, 1 Mbaud (docs/board.md).
 class LinePort {
  public:
-  /// Takes the line for the gateway or gives it back to the console, when the console has sent its text. Characters
-  /// that wait are dropped.
+  /// Takes the line for the gateway, or gives it back to the console. It is taken when the console has sent its text.
+  /// Characters that wait are dropped.
   virtual void connect(bool is_gateway) = 0;
-  /// Moves the oldest characters that were received; returns how many.
+  /// Moves the oldest characters that were received, and returns their number.
   [[nodiscard]] virtual std::size_t read_line(std::span<char> characters) = 0;
-  /// Whether characters were lost or damaged since the last call: they, and perhaps some before them, are missing.
+  /// Whether characters were lost or damaged since the last call: these, and perhaps some before them, are missing.
   [[nodiscard]] virtual bool take_damage() = 0;
-  /// Room for characters to send; none while the last ones are being sent, and without connect(true).
+  /// Room for characters to send; empty while the last ones are being sent, and without connect(true).
   [[nodiscard]] virtual std::span<char> line_room() = 0;
   /// Sends the first characters of line_room().
   virtual void send_line(std::size_t count) = 0;
@@ -84,14 +76,14 @@ class ProgramPort {
   [[nodiscard]] virtual std::span<const std::uint8_t> header() const = 0;
   /// Whether a bootloader has started the program.
   [[nodiscard]] virtual bool has_bootloader() const = 0;
-  /// Whether the program was found good before; else it runs on trial.
+  /// Whether the program was confirmed before; else it runs on trial.
   [[nodiscard]] virtual bool is_confirmed() const = 0;
-  /// The program is good: from now on it starts without a trial. It writes a word of flash, 16 us.
+  /// Confirms the program: from now on it starts without a trial. It writes a word of flash, which takes 16 us.
   virtual void confirm() = 0;
-  /// The program has started well this time.
+  /// Notes that the program has started well this time.
   virtual void note_good_start() = 0;
-  /// Restarts into the bootloader, which installs the first bytes of the buffer. session: of the host that has sent
-  /// them (shared/broadcast). ends_line: the host is on the module's serial line, and cannot reach the bootloader.
+  /// Restarts into the bootloader, which installs the first bytes of the buffer. session: session of the host that has
+  /// sent them (shared/broadcast). ends_line: the host is on the module's serial line, and cannot reach the bootloader.
   virtual void install(std::size_t size, std::uint8_t session, bool ends_line) = 0;
   /// Restarts into the bootloader, which stays on the bus.
   virtual void enter_bootloader() = 0;

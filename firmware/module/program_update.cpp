@@ -25,7 +25,7 @@ std::optional<CanFrame> ProgramUpdate::receive(Microseconds now, const CanFrame&
   conditions_ = conditions;
   const std::optional<CanFrame> answer = receiver_.receive(now, frame);
   if (!conditions.may_restart && receiver_.is_in_use(now)) {
-    // A module that may move has no time for an image that it would not install.
+    // A module that may move has no time to receive an image, and would not install it.
     receiver_.set_state(broadcast::ReceiverState::refused, broadcast::refused_busy);
   }
   if (receiver_.has_install_request()) {

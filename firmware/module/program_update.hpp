@@ -10,12 +10,12 @@ namespace proleg::firmware {
 /// bootloader, which installs it. After a start it finds out whether the program is good.
 class ProgramUpdate final : private broadcast::ReceiverOwner {
  public:
-  /// A program that has run for so long is confirmed, if it has received a frame, and another node has acknowledged one
-  /// of its own: so it can be replaced.
+  /// Run time after which a program is confirmed, if it has received a frame, and another node has acknowledged one of
+  /// its own: so it can be replaced.
   static constexpr Microseconds trial_us = 500'000;
-  /// The bootloader gives up a program that stops sooner than that, several times in a row.
+  /// Run time of a good start. The bootloader does not start a program again that stops sooner several times in a row.
   static constexpr Microseconds good_start_us = 5'000'000;
-  /// In which the answer to a request for the bootloader is sent, before the program ends.
+  /// Time in which the answer to a request for the bootloader is sent, before the program ends.
   static constexpr Microseconds answer_time_us = 20'000;
 
   ProgramUpdate(const ModuleIdentity& identity, const Ports& ports);
@@ -24,28 +24,28 @@ class ProgramUpdate final : private broadcast::ReceiverOwner {
 
   void power_on(Microseconds now);
 
-  /// What the module does now.
+  /// Conditions under which a request is handled.
   struct Conditions {
-    std::uint8_t node = 0;  ///< 0: none
+    std::uint8_t node = 0;  ///< node id; 0: none
     /// The servo has no power, the module is not Operational, and the supply is good.
     bool may_restart = false;
     bool is_gateway = false;
     bool has_newer_settings = false;  ///< BoardStore::has_newer()
   };
-  /// A frame of the host. Returns the answer. An image that is to be installed ends the program.
+  /// Handles a frame of the host and returns the answer. An image that is to be installed ends the program.
   [[nodiscard]] std::optional<CanFrame> receive(Microseconds now, const CanFrame& frame, const Conditions& conditions);
-  /// The controller has sent a frame.
+  /// Must be called when the controller has sent a frame.
   void transmitted() { has_sent_ = true; }
-  /// The module has received a frame of another node, or of the host on its line.
+  /// Must be called when the module has received a frame of another node, or of the host on its line.
   void received() { has_received_ = true; }
-  /// Frames were lost, any number.
+  /// Must be called when frames were lost, any number.
   void bus_was_lost() { receiver_.bus_was_lost(); }
 
   void poll(Microseconds now, bool may_restart);
   [[nodiscard]] Microseconds next_deadline() const;
 
  private:
-  // ReceiverOwner.
+  // Functions of ReceiverOwner.
   [[nodiscard]] broadcast::ModuleCondition condition() const override;
   [[nodiscard]] std::span<const std::uint8_t> image_header() const override;
 

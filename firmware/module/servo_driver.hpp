@@ -5,14 +5,14 @@
 
 namespace proleg::firmware {
 
-/// Gives the servo its pulses: along the line between two set-points, interval by interval; before the first line,
-/// along a ramp to where it begins; or, in a quick stop, along a ramp to the safe pose: 0 degrees, or the limit that is
+/// Gives the servo its pulses, interval by interval, along the line between two set-points. Before the first line they
+/// follow a ramp to its start. In a quick stop they follow a ramp to the safe pose: 0 degrees, or the limit that is
 /// nearest to it.
 class ServoDriver {
  public:
   explicit ServoDriver(ServoPort& port) : guard_(port) {}
 
-  /// As after reset: no pulses, and no line to follow.
+  /// Returns to the state after reset: no pulses, and no line to follow.
   void reset();
   void configure(const ServoSchedule& schedule) {
     schedule_ = schedule;
@@ -21,25 +21,26 @@ class ServoDriver {
   [[nodiscard]] ServoGuard& guard() { return guard_; }
   [[nodiscard]] const ServoGuard& guard() const { return guard_; }
 
-  /// SYNC `tick` came at `now`. Until the next one the set-point moves from `from` to `to` (90 degrees = 2^30). If SYNC
-  /// was early and an interval of the tick before is pending, its pulse is given now.
+  /// Must be called when SYNC `tick` came at `now`. Until the next SYNC the set-point moves from `from` to `to` (90
+  /// degrees = 2^30). If SYNC was early and an interval of the tick before is pending, its pulse is given now.
   void start_tick(Microseconds now, std::uint32_t tick, std::int32_t from, std::int32_t to);
 
-  /// Ramps from one angle to another one, both within the limits, and holds that: before the first line, if the servo
-  /// has no pulses yet. speed: degrees a second, at most the greatest one. While it ramps, `to` may change.
+  /// Ramps from one angle to another one, both within the limits, and holds that. It does so only before the first
+  /// line, if the servo has no pulses yet. speed: degrees a second, at most the greatest one. While it ramps, `to` may
+  /// change.
   void ramp_in(Microseconds now, std::int32_t from, std::int32_t to, std::uint32_t speed);
-  /// Since ramp_in(), until the servo follows a line or stops.
+  /// Whether ramp_in() was called, and the servo has not followed a line or stopped since.
   [[nodiscard]] bool is_ramping_in() const { return mode_ == Mode::ramping_in; }
-  /// Ramped in, and holds the angle.
+  /// Whether the servo has ramped in, and holds the angle.
   [[nodiscard]] bool has_ramped_in() const { return is_ramping_in() && next_step_ == never; }
   /// Follows the line, from its next interval on.
   void follow();
-  /// Follows the line and has given a pulse.
+  /// Whether the servo follows the line and has given a pulse.
   [[nodiscard]] bool is_moving() const { return mode_ == Mode::following && guard_.is_pulsing(); }
-  /// Ramps from the last pulse to the safe pose at 90 degrees a second, then holds. A servo that was given no pulse yet
+  /// Ramps from the last pulse to the safe pose at 90 degrees a second, then holds. A servo without a pulse so far
   /// stays off: its angle is not known.
   void quick_stop(Microseconds now);
-  /// No pulses.
+  /// Stops the pulses.
   void stop();
 
   void poll(Microseconds now);
@@ -48,12 +49,12 @@ class ServoDriver {
  private:
   enum class Mode : std::uint8_t { off, ramping_in, following, stopping };
 
-  /// A ramp, in either direction; its first step is a period from now.
+  /// Begins a ramp in either direction; its first step is a period from now.
   void begin_ramp(Microseconds now, std::int32_t goal, std::uint32_t speed);
   [[nodiscard]] bool is_ramping() const { return mode_ == Mode::stopping || mode_ == Mode::ramping_in; }
 
   [[nodiscard]] bool has_pending_interval() const { return elapsed_us_ < schedule_.tick_period_us(); }
-  /// Of several intervals that have started only the latest gets a pulse.
+  /// Skips intervals: if several have started, only the latest gets a pulse.
   void skip_to(Microseconds since_sync_us);
   void take_interval(Microseconds now);
   void take_ramp_step(Microseconds now);
@@ -63,14 +64,15 @@ class ServoDriver {
   Mode mode_ = Mode::off;
   std::int32_t from_ = 0;
   std::int32_t to_ = 0;
-  std::uint32_t elapsed_us_ = ~0U;  ///< from SYNC to the next interval; a tick period or more: none is pending
+  /// Time from SYNC to the next interval; a tick period or more: no interval is pending.
+  std::uint32_t elapsed_us_ = ~0U;
   Microseconds sync_at_ = 0;
-  Microseconds next_step_ = never;  ///< of the ramp; never: it has ended
-  std::int32_t goal_ = 0;           ///< of the ramp
-  std::int32_t step_ = 0;           ///< of the ramp, in a servo period
+  Microseconds next_step_ = never;  ///< time of the ramp's next step; never: the ramp has ended
+  std::int32_t goal_ = 0;           ///< end of the ramp
+  std::int32_t step_ = 0;           ///< change of the angle in a servo period of the ramp
 };
 
-// Up to a thousand times a second; in the header so that the compiler can inline it.
+// poll() runs up to a thousand times a second; it is in the header so that the compiler can inline it.
 
 inline void ServoDriver::poll(Microseconds now) {
   if (is_ramping()) {

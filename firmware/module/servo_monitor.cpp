@@ -17,7 +17,7 @@ void ServoMonitor::reset(const BoardRecord& board) {
 }
 
 void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
-  constexpr std::uint16_t max_current_ma = 0x7FFF;  // of object 0x6078
+  constexpr std::uint16_t max_current_ma = 0x7FFF;  // greatest value of object 0x6078
   readings_ = port_.take_readings();
   readings_.current_ma = std::min(readings_.current_ma, max_current_ma);
   if (!measures_angle_) {

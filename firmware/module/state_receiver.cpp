@@ -60,7 +60,7 @@ void StateReceiver::receive(const CanFrame& frame, unsigned channel, std::uint8_
     }
     return;
   }
-  // How far the label is from the coming tick, plus one: 0 to 2 for a module that has just computed, or has not yet.
+  // Distance of the label from the coming tick, plus one: 0 to 2, whether the module has computed its tick or not.
   const auto distance = static_cast<std::uint8_t>(state->label() - joint_.kernel().tick() + 1U);
   if (distance > 2) {
     ++unknown_labels_;

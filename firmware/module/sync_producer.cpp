@@ -33,7 +33,7 @@ void SyncProducer::send_sync(Microseconds now) {
   next_sync_ += tick_period_us_;
   tick_sent_ = false;
   if (next_sync_ <= now) {
-    // Called too late by a period or more: the modules count these as missed.
+    // The call is late by a period or more. The modules count the SYNCs of these periods as missed.
     const Microseconds missed = (now - next_sync_) / tick_period_us_ + 1;
     tick_ += static_cast<std::uint32_t>(missed);
     next_sync_ += missed * tick_period_us_;

@@ -5,9 +5,9 @@
 namespace proleg::firmware {
 
 /// Produces SYNC and TICK (CiA 301, section 7.2.5; docs/protocol.md) while it runs: TICK of tick 0, then SYNC 0, then a
-/// SYNC every period of the module's own clock, without drift, and TICK before every tenth. TICK is handed over 1 ms
-/// before its SYNC, or a tenth of a period if that is less. SYNC 0 waits until TICK was sent, so that it cannot
-/// overtake it on a busy bus. A later SYNC may: TickKeeper allows it.
+/// SYNC every period of the module's own clock, without drift, and TICK before every tenth SYNC. TICK is passed to the
+/// queue 1 ms before its SYNC, or a tenth of a period if that is less. SYNC 0 waits until TICK was sent, so that it
+/// cannot overtake it on a busy bus. Later SYNCs may overtake their TICK: TickKeeper allows it.
 class SyncProducer {
  public:
   static constexpr std::uint32_t ticks_between_announcements = 10;
@@ -19,18 +19,18 @@ class SyncProducer {
   void stop() { state_ = State::stopped; }
   [[nodiscard]] bool runs() const { return state_ != State::stopped; }
 
-  /// The controller has dropped its pending frames.
+  /// Must be called when the controller has dropped its pending frames.
   void bus_off(Microseconds now);
 
   void poll(Microseconds now);
-  /// The controller has sent a frame of the module.
+  /// Must be called when the controller has sent a frame of the module.
   void transmitted(Microseconds now, const CanFrame& frame);
   [[nodiscard]] Microseconds next_deadline() const;
 
  private:
   enum class State : std::uint8_t {
     stopped,
-    starting,   ///< TICK 0 must be handed over
+    starting,   ///< TICK 0 must be passed to the queue
     announced,  ///< TICK 0 is pending
     running,
   };
@@ -41,12 +41,12 @@ class SyncProducer {
 
   Outbox& outbox_;
   State state_ = State::stopped;
-  bool tick_sent_ = false;  ///< before the next SYNC
+  bool tick_sent_ = false;  ///< whether TICK was sent before the next SYNC
   std::uint32_t tick_period_us_ = 0;
   std::uint32_t configuration_crc_ = 0;
   std::uint32_t lead_us_ = 0;
-  std::uint32_t tick_ = 0;      ///< of the next SYNC
-  Microseconds next_sync_ = 0;  ///< starting: the next attempt to hand over TICK 0
+  std::uint32_t tick_ = 0;      ///< tick of the next SYNC
+  Microseconds next_sync_ = 0;  ///< time of the next SYNC; in `starting`, of the next attempt to pass TICK 0
 };
 
 }  // namespace proleg::firmware

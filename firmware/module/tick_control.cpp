@@ -15,7 +15,7 @@ void send_state(Parts& parts) {
   }
 }
 
-/// State 0 follows from the parameters as they are now. Its frame is sent, so that all joints have it at tick 0.
+/// Computes state 0 from the present parameters. Its frame is sent, so that all joints have it at tick 0.
 void prepare_start(Parts& parts) {
   parts.joint.set_fault(parts.drive.power().state() == PowerState::fault);
   parts.joint.restart();
@@ -30,7 +30,8 @@ void report_early_sync(Parts& parts, std::uint32_t early_us) {
   }
 }
 
-/// The joints take turns, so that their frames do not come all at once.
+/// Sends monitoring in the joint's tick of the period: the joints take turns, so that their frames do not come
+/// together.
 void send_monitoring(Parts& parts, std::uint32_t tick) {
   const std::uint32_t period = parts.joint.monitoring_period();
   if (tick % period == parts.joint.joint() % period) {
@@ -49,7 +50,7 @@ void compute(Parts& parts, Microseconds now, const SyncMeaning& meaning) {
   send_state(parts);
   read_servo(parts, now);
   send_monitoring(parts, kernel.tick() - 1U);
-  parts.drive.update(now, true, true);  // so that the first pulse can be that of this SYNC
+  parts.drive.update(now, true, true);  // before the tick, so that the first pulse can be that of this SYNC
   parts.drive.start_tick(now, kernel.tick() - 1U, kernel, parts.joint.limits());
   parts.emergencies.clear(Fault::sync_lost);
   if (meaning.joined) {
@@ -69,7 +70,7 @@ void stop_gait(Parts& parts) {
   parts.keeper.lose();
   parts.start = {};
   if (parts.joint.active()) {
-    parts.joint.restart();  // no tick yet: commits for any tick of the next start are in time
+    parts.joint.restart();  // there is no tick yet: commits for any tick of the next start are in time
   }
 }
 
@@ -109,7 +110,7 @@ void receive_sync(Parts& parts, Microseconds now, const CanFrame& frame) {
     if (const std::uint32_t early_us = parts.sync.early_us(now, kernel.configuration().tick_period_us); early_us != 0) {
       if (canopen::ticks_until_counter(kernel.tick(), *counter) != canopen::sync_counters - 1U) {
         report_early_sync(parts, early_us);
-      }  // else the frame came twice, which CAN allows
+      }  // else the frame was received twice, which CAN allows
       return;
     }
   }

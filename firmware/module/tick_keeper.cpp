@@ -6,7 +6,7 @@ namespace proleg::firmware {
 
 bool TickKeeper::announce(std::uint32_t tick, std::uint32_t coming) {
   if (keeps_tick() && coming - tick - 1U < max_late) {
-    return true;  // other frames kept it from the bus until its SYNC, or a few more, were sent
+    return true;  // TICK waited for the bus until its SYNC, or a few more, were sent
   }
   const bool fits = !keeps_tick() || tick - coming <= max_missed;
   if (!fits) {
@@ -22,7 +22,7 @@ SyncMeaning TickKeeper::sync(std::uint8_t counter, std::uint32_t coming) {
   SyncMeaning meaning;
   if (keeps_tick()) {
     const std::uint32_t ahead = canopen::ticks_until_counter(coming, counter);
-    if (ahead == canopen::sync_counters - 1) {  // a repetition of the one before
+    if (ahead == canopen::sync_counters - 1) {  // the SYNC is a repetition of the one before
       return meaning;
     }
     if (ahead <= max_missed && (!announced_ || announced_tick_ - coming <= ahead)) {

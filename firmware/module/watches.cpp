@@ -38,7 +38,7 @@ void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame) {
 
 namespace {
 
-/// A condition of the hardware with which the servo must have no pulses.
+/// Raises or clears the fault of a condition of the hardware with which the servo must have no pulses.
 void follow(Parts& parts, Fault fault, bool is_present) {
   if (!is_present) {
     parts.emergencies.clear(fault);
@@ -122,7 +122,8 @@ void update_drive(Parts& parts, Microseconds now) {
 void update_watches(Parts& parts, Microseconds now) {
   const bool is_enabled = parts.drive.power().state() == PowerState::operation_enabled;
   parts.host.update(now, is_enabled);
-  // A joint that ramps in has no tick yet. If its host dies, the heartbeat is missing; without one, SYNC is.
+  // A joint that ramps in has no tick yet. If its host stops, the heartbeat is missing; if none is expected, SYNC is
+  // missing.
   const bool waits_for_sync = is_enabled && !(parts.drive.is_ramping_in() && parts.host.expects_heartbeat());
   parts.sync.update(now, parts.network.operational() && (parts.keeper.keeps_tick() || waits_for_sync));
 }

@@ -11,39 +11,44 @@
 namespace proleg::stm32f405 {
 namespace {
 
-// A bit of 14 quanta, sampled after 12 of them: at 85.7 %. CiA 301 recommends 87.5 %, which 42 MHz cannot give: the
-// divisors of 42 allow 6, 7, 14 and 21 quanta, and the first segment has at most 16 (81 % of 21).
+// A bit has 14 quanta and is sampled after 12 of them: at 85.7 %. CiA 301 recommends 87.5 %, which 42 MHz cannot give:
+// the divisors of 42 allow 6, 7, 14 and 21 quanta, and the first segment has at most 16 (81 % of 21).
 constexpr std::uint32_t prescaler = 3;
 constexpr std::uint32_t segment_1 = 11;
 constexpr std::uint32_t segment_2 = 2;
 static_assert(board::apb1 / prescaler / (1 + segment_1 + segment_2) == 1'000'000);
 
-/// The controller enters initialization mode after the current frame: 135 bits at most, and errors.
+/// Number of reads within which the controller enters initialization mode. It does so after the current frame: 135 bits
+/// at most, and errors.
 constexpr std::uint32_t reads_for_a_frame = 10'000;
-/// RFOM ends after a few cycles of APB1.
+/// Number of reads within which RFOM ends: it takes a few cycles of APB1.
 constexpr unsigned reads_for_release = 16;
-/// The FIFO holds three frames. If more come meanwhile, the interrupt comes again.
+/// Number of frames that an interrupt handles: the FIFO holds three. If more frames come meanwhile, the interrupt comes
+/// again.
 constexpr unsigned frames_per_interrupt = 3;
 
-/// Bits of TSR for a mailbox.
+/// The bits of TSR for a mailbox.
 constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mailbox) {
   return bits_of_mailbox_0 << (8U * mailbox);
 }
 
 // Filter banks, all in 16-bit scale and into FIFO 0. They pass data frames with 11-bit identifiers that concern the
 // module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
-constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, all heartbeats
-constexpr unsigned common_bank = 1;      ///< messages for all nodes
-constexpr unsigned service_bank = 2;     ///< the identifiers of the LSS master, and of a host that sends an image
-constexpr unsigned first_list_bank = 3;  ///< lists: state frames that the joint depends on, four a bank
-constexpr unsigned all_states_bank = can1::filter_banks - 1;  ///< masks: all state frames, if the lists are too short
-constexpr unsigned every_frame_bank = all_states_bank - 1;    ///< masks: every data frame, for the host of a gateway
+constexpr unsigned node_bank = 0;    ///< masks that pass the module's own identifiers and all heartbeats
+constexpr unsigned common_bank = 1;  ///< lists that pass messages for all nodes
+/// Lists that pass the identifiers of the LSS master, and of a host that sends an image.
+constexpr unsigned service_bank = 2;
+constexpr unsigned first_list_bank = 3;  ///< lists that pass state frames that the joint depends on, four in each bank
+/// Masks that pass all state frames, if the lists are too short.
+constexpr unsigned all_states_bank = can1::filter_banks - 1;
+/// Masks that pass every data frame, for the host of a gateway.
+constexpr unsigned every_frame_bank = all_states_bank - 1;
 constexpr unsigned list_banks = every_frame_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
 constexpr std::uint32_t banks_of_every_robot = 1U << node_bank | 1U << common_bank | 1U << service_bank;
 
 constexpr std::uint32_t filter_of(std::uint32_t identifier) { return identifier << can1::filter_stid_position; }
-/// Identifier and mask: passes if the bits of `mask` are equal.
+/// Identifier and mask of a filter: a frame passes if the bits of `mask` are equal.
 constexpr std::uint32_t masked(std::uint32_t identifier, std::uint32_t mask) {
   return filter_of(identifier) | (filter_of(mask) | can1::filter_rtr | can1::filter_ide) << 16U;
 }
@@ -53,8 +58,8 @@ constexpr std::uint32_t pair_of(std::uint32_t first, std::uint32_t second) {
 
 constexpr std::uint32_t function_bits = CanFrame::max_identifier & ~std::uint32_t{canopen::identifier::node_bits};
 
-/// A bank may be written while it is not in use. The module's own identifiers pass, so that it notices another node
-/// that sends with them; without a node id (0) that are common messages.
+/// Lets frames to a node pass. A bank may be written while it is not in use. The module's own identifiers pass, so that
+/// it notices another node that sends with them. Without a node id (0) they are common messages.
 void accept_frames_of(std::uint8_t node) {
   namespace identifier = canopen::identifier;
   const can1::FilterBank own(node_bank);
@@ -62,7 +67,7 @@ void accept_frames_of(std::uint8_t node) {
   own.second.write(masked(identifier::heartbeat, function_bits));
 }
 
-/// Filters that are the same in every robot.
+/// Sets the filters that are the same in every robot.
 void accept_common_frames() {
   namespace identifier = canopen::identifier;
   constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank | 1U << every_frame_bank;
@@ -89,12 +94,12 @@ void accept_common_frames() {
   can1::fmr.write(can1::fmr_can2sb_of(can1::filter_banks));
 }
 
-/// A word of data without the bytes from `length` on, whose contents the controller leaves open.
+/// A word of data without the bytes from `length` on, which the controller does not define.
 constexpr std::uint32_t first_bytes(std::uint32_t word, std::uint32_t length) {
   return length >= 4 ? word : word & ((1U << (8U * length)) - 1U);
 }
 
-/// The oldest frame of FIFO 0.
+/// Reads the oldest frame of FIFO 0.
 void read_frame(CanFrame& frame) {
   const std::uint32_t sent_length = can1::rdt0r.read() & can1::dtr_dlc;
   const std::uint32_t length = sent_length > CanFrame::max_length ? CanFrame::max_length : sent_length;
@@ -102,10 +107,11 @@ void read_frame(CanFrame& frame) {
                                            length > 4 ? first_bytes(can1::rdh0r.read(), length - 4U) : 0U};
   frame.identifier = static_cast<std::uint16_t>(can1::ri0r.read() >> can1::ir_stid_position);
   frame.length = static_cast<std::uint8_t>(length);
-  std::memcpy(frame.data.data(), words.data(), sizeof(words));  // the CPU is little-endian, as the registers are
+  std::memcpy(frame.data.data(), words.data(), sizeof(words));  // the CPU and the registers are both little-endian
 }
 
-/// At bus-off: pending frames would be out of date when the controller is back. CAN1_TX comes for each aborted frame.
+/// Aborts all frames at bus-off: pending frames would be out of date when the controller is back. CAN1_TX comes for
+/// each aborted frame.
 void abort_all() {
   can1::tsr.write(of_mailbox(can1::tsr_abrq0, 0) | of_mailbox(can1::tsr_abrq0, 1) | of_mailbox(can1::tsr_abrq0, 2));
 }
@@ -164,13 +170,13 @@ void Can::set_node(std::uint8_t node) {
 }
 
 void Can::listen(std::span<const std::uint16_t> identifiers) {
-  // A bank may be written while it is not in use.
+  // A filter bank may be written while it is not in use.
   std::uint32_t used = banks_of_every_robot | every_frame_bank_;
   can1::fa1r.write(used);
   if (identifiers.size() > list_banks * list_entries) {
     used |= 1U << all_states_bank;
   } else {
-    // The last bank is filled up with what passes anyway.
+    // The rest of the last bank is filled with identifiers that pass anyway.
     const auto entry = [identifiers](std::size_t i) {
       return std::uint32_t{i < identifiers.size() ? identifiers[i] : canopen::identifier::sync};
     };
@@ -210,7 +216,7 @@ CanStatus Can::status() {
 CanErrors Can::take_errors() {
   const std::uint32_t kind = can1::esr.read() >> can1::esr_lec_position & can1::esr_lec_unchanged;
   can1::esr.write(can1::esr_lec_unchanged << can1::esr_lec_position);
-  // RM0090, section 32.9.2: LEC 1 to 6.
+  // Kinds of errors in the order of LEC, 1 to 6 (RM0090, section 32.9.2).
   constexpr std::array<CanErrorKind, 6> kinds{CanErrorKind::stuff,           CanErrorKind::form,
                                               CanErrorKind::acknowledgement, CanErrorKind::bit_recessive,
                                               CanErrorKind::bit_dominant,    CanErrorKind::crc};
@@ -224,9 +230,9 @@ CanErrors Can::take_errors() {
 #endif
 
 void Can::recover() {
-  // Also while an earlier request is in progress: the controller may have gone bus-off again since.
+  // This check is made even while an earlier request is in progress: the controller may have gone bus-off again since.
   if (is_bus_off_.load(std::memory_order_relaxed)) {
-    abort_all();  // again: bus-off may have come while send() ran
+    abort_all();  // frames are aborted again, because bus-off may have come while send() ran
     can1::mcr.write(can1::mcr_dbf | can1::mcr_inrq);
     recovery_ = Recovery::entering;
   }
@@ -269,7 +275,7 @@ void Can::on_transmit_interrupt(std::uint32_t stamp) {
       continue;
     }
     can1::tsr.write(of_mailbox(can1::tsr_rqcp0, mailbox));
-    if ((status & of_mailbox(can1::tsr_txok0, mailbox)) != 0) {  // else it was aborted
+    if ((status & of_mailbox(can1::tsr_txok0, mailbox)) != 0) {  // else the frame was aborted
       put(stamp, EventKind::transmitted, mailboxes_[mailbox]);
     }
     is_pending_[mailbox].store(false, std::memory_order_relaxed);
@@ -295,7 +301,7 @@ void Can::on_receive_interrupt(std::uint32_t stamp) {
       lost_.store(lost_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
     }
     can1::rf0r.write(can1::rf0r_rfom);
-    // Until that is done the same frame is still the oldest, and would raise the interrupt again.
+    // Until the release is done the same frame is still the oldest, and would raise the interrupt again.
     unsigned reads = reads_for_release;
     do {
       status = can1::rf0r.read();

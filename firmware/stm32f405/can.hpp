@@ -2,12 +2,12 @@
 
 // The bxCAN controller CAN1 (RM0090, section 32) at 1 Mbit/s: eleven-bit data frames, three transmit mailboxes.
 //
-// The interrupts (CAN1_TX, CAN1_RX0, CAN1_SCE, all of one priority) put each event into a ring, with its time. The
-// module's program, at a lower priority, takes the events in their order, and sends. Two frames on a bus are 47 us
-// apart or more, and no interrupt waits that long: so a received frame and a sent one never wait for their interrupts
-// at the same time. (They can while flash is erased. Then the NVIC takes CAN1_TX first, which has the lower position;
-// the mailbox with the lowest number comes first. A module that erases is Pre-operational, where the order of frames
-// has no effect.)
+// The interrupts (CAN1_TX, CAN1_RX0, CAN1_SCE, all with the same priority) put each event into a ring, with its time.
+// The module's program, at a lower priority, takes the events in their order, and sends. Two frames on a bus are 47 us
+// apart or more, and no interrupt waits that long, so a received frame and a sent one never wait for their interrupts
+// at the same time. (They can while flash is erased. Then the NVIC takes CAN1_TX first, which has the lower position,
+// and the mailbox with the lowest number comes first. A module that erases is Pre-operational, where the order of
+// frames has no effect.)
 
 #include <array>
 #include <atomic>
@@ -23,43 +23,44 @@ class Can final : public CanPort {
 
   struct Event {
     std::uint32_t stamp = 0;  ///< MicrosecondClock::stamp()
-    CanFrame frame;           ///< of received and transmitted
+    CanFrame frame;           ///< the frame that was received or sent
     EventKind kind = EventKind::received;
   };
 
-  /// Sets the controller up; it takes part in the bus after 11 recessive bits. False: it does not enter its
+  /// Sets the controller up; it takes part in the bus after 11 recessive bits. False if it does not enter its
   /// initialization mode.
   [[nodiscard]] bool start();
 
-  // At the priority of the module's program.
+  // Functions for the priority of the module's program.
 
-  /// The last mailbox takes only identifiers below 0x100. Also false if a mailbox holds a frame with this identifier,
-  /// so that frames with one identifier keep their order; and from bus-off until the controller is back.
+  /// Sends a frame. The last mailbox takes only identifiers below 0x100. Also false if a mailbox holds a frame with
+  /// this identifier, so that frames with the same identifier keep their order; and from bus-off until the controller
+  /// is back.
   [[nodiscard]] bool send(const CanFrame& frame) override;
   void set_node(std::uint8_t node) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
   void receive_all(bool all) override;
-#ifndef PROLEG_CAN_WITHOUT_ERROR_COUNTS  // the bootloader has no room for what it does not ask for
+#ifndef PROLEG_CAN_WITHOUT_ERROR_COUNTS  // the bootloader does not use them, and has no room for them
   [[nodiscard]] CanStatus status() override;
-  /// Of the errors since the last call, the last one.
+  /// The last one of the errors since the last call.
   [[nodiscard]] CanErrors take_errors() override;
 #endif
   void recover() override;
 
-  /// The oldest event; null: there is none. It stays until drop_event().
+  /// The oldest event; null if there is none. It stays until drop_event().
   [[nodiscard]] const Event* next_event() const { return events_.front(); }
   void drop_event() { events_.pop(); }
 
   /// Whether recover() is in progress. No interrupt reports its end: is_bus_off() must be polled.
   [[nodiscard]] bool recovering() const { return recovery_ != Recovery::none; }
-  /// Whether the controller is bus-off, or on its way back. To be called whenever the module's program runs. It reads
-  /// the controller's state, so no event can be lost; CAN1_SCE only makes the program run.
+  /// Whether the controller is bus-off, or recovers from it. Must be called whenever the module's program runs. It
+  /// reads the controller's state, so no event can be lost; CAN1_SCE only makes the program run.
   [[nodiscard]] bool is_bus_off();
 
-  /// Frames that were lost since start(), because the controller's FIFO or the ring was full.
+  /// Number of frames that were lost since start(), because the controller's FIFO or the ring was full.
   [[nodiscard]] std::uint32_t lost_frames() const { return lost_.load(std::memory_order_relaxed); }
 
-  // For the interrupts.
+  // Functions for the interrupts.
   void on_transmit_interrupt(std::uint32_t stamp);
   void on_receive_interrupt(std::uint32_t stamp);
   void on_status_interrupt();
@@ -70,19 +71,20 @@ class Can final : public CanPort {
   enum class Recovery : std::uint8_t {
     none,
     entering,  ///< initialization mode is requested
-    leaving,   ///< its end is requested: the controller waits for 128 times 11 recessive bits
+    leaving,   ///< the end of initialization mode is requested: the controller waits for 128 times 11 recessive bits
   };
 
   void follow_recovery();
   void put(std::uint32_t stamp, EventKind kind, const CanFrame& frame);
 
   EventRing<Event, 64> events_;
-  std::array<CanFrame, mailbox_count> mailboxes_{};            ///< the frames in them
+  std::array<CanFrame, mailbox_count> mailboxes_{};            ///< the frames in the mailboxes
   std::array<std::atomic<bool>, mailbox_count> is_pending_{};  ///< set by send(), cleared by CAN1_TX
-  std::atomic<bool> is_bus_off_{false};                        ///< set by CAN1_SCE too, cleared by follow_recovery()
+  std::atomic<bool> is_bus_off_{false};                        ///< also set by CAN1_SCE, cleared by follow_recovery()
   std::atomic<std::uint32_t> lost_{0};
   Recovery recovery_ = Recovery::none;
-  std::uint32_t every_frame_bank_ = 0;  ///< as FA1R has it: 0, or its bit while all frames are to be received
+  /// Value in FA1R: 0, or the bit of the bank while all frames are to be received.
+  std::uint32_t every_frame_bank_ = 0;
 };
 
 }  // namespace proleg::stm32f405

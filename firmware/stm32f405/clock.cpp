@@ -7,7 +7,7 @@
 namespace proleg::stm32f405 {
 namespace {
 
-// PLL: the input must be 1 to 2 MHz, the VCO 100 to 432 MHz; Q gives 48 MHz.
+// Factors of the PLL: its input must be 1 to 2 MHz, the VCO 100 to 432 MHz; Q gives 48 MHz.
 constexpr std::uint32_t pll_m = 8;
 constexpr std::uint32_t pll_n = 336;
 constexpr std::uint32_t pll_p = 2;
@@ -15,11 +15,11 @@ constexpr std::uint32_t pll_q = 7;
 static_assert(board::crystal / pll_m * pll_n / pll_p == board::core);
 static_assert(board::crystal / pll_m * pll_n / pll_q == 48'000'000);
 
-/// One for each 30 MHz at 2.7 to 3.6 V (RM0090, table 10).
+/// Wait states of the flash: one for each 30 MHz at 2.7 to 3.6 V (RM0090, table 10).
 constexpr std::uint32_t wait_states = (board::core - 1) / 30'000'000;
 
-/// A read in a loop takes 5 cycles or more. The crystal starts in 2 ms (data sheet, table 33) and gets 50; the PLL
-/// locks in 0.3 ms and gets 5.
+/// Numbers of reads in two times; a read in a loop takes 5 cycles or more. The crystal starts in 2 ms (data sheet,
+/// table 33) and gets 50; the PLL locks in 0.3 ms and gets 5.
 constexpr std::uint32_t reads_in_50_ms = board::internal_oscillator / 20 / 5;
 
 bool switch_to_pll() {
@@ -38,22 +38,22 @@ ClockResult start_clocks() {
   if (!wait_until_set(rcc::cr, rcc::cr_hserdy, reads_in_50_ms)) {
     return ClockResult::no_crystal;
   }
-  rcc::cr.set(rcc::cr_csson);  // NMI from here on if the crystal stops: faults.cpp
+  rcc::cr.set(rcc::cr_csson);  // from now on, NMI comes if the crystal stops (faults.cpp)
   // 168 MHz needs the voltage regulator in scale 1, which it has from reset on (RM0090, section 5.4.1).
   rcc::pllcfgr.change(rcc::pllcfgr_mask, rcc::pllcfgr_of(pll_m, pll_n, pll_p, pll_q) | rcc::pllcfgr_pllsrc_hse);
   rcc::cr.set(rcc::cr_pllon);
   if (!wait_until_set(rcc::cr, rcc::cr_pllrdy, reads_in_50_ms / 10)) {
     return ClockResult::no_pll;
   }
-  // Wait states and prescalers before the clock that needs them (RM0090, section 3.5.1).
+  // Wait states and prescalers are set before the clock that needs them (RM0090, section 3.5.1).
   flash_interface::acr.change(flash_interface::acr_latency_mask, wait_states | flash_interface::acr_prften |
                                                                      flash_interface::acr_icen |
                                                                      flash_interface::acr_dcen);
   rcc::cfgr.change(rcc::cfgr_prescalers_mask, rcc::cfgr_hpre_1 | rcc::cfgr_ppre1_4 | rcc::cfgr_ppre2_2);
   rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_pll);
   if (!switch_to_pll()) {
-    // First the source: a PLL that locks late would clock the buses without prescalers. They are set back because the
-    // console needs the initial frequency of APB1.
+    // The source is switched back first: a PLL that locks late would clock the buses without prescalers. The prescalers
+    // are set back because the console needs the initial frequency of APB1.
     rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_hsi);
     rcc::cfgr.change(rcc::cfgr_prescalers_mask, 0);
     return ClockResult::no_pll;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t on = usart2::cr1_ue | usart2::cr1_te;
 
-/// A byte takes 87 us; a read 5 cycles or more, at up to 168 MHz.
+/// Number of reads in which a byte is sent. A byte takes 87 us; a read takes 5 cycles or more, at up to 168 MHz.
 constexpr std::uint32_t reads_for_a_byte = 10'000;
 
 }  // namespace
@@ -56,7 +56,7 @@ bool Console::is_idle() const { return pending_.front() == nullptr && usart2::sr
 
 void Console::on_interrupt() {
   if (const char* const character = pending_.front()) {
-    static_cast<void>(usart2::sr.read());  // with the write to DR it clears TC (RM0090, section 30.6.1)
+    static_cast<void>(usart2::sr.read());  // together with the write to DR, it clears TC (RM0090, section 30.6.1)
     usart2::dr.write(static_cast<unsigned char>(*character));
     pending_.pop();
   } else {

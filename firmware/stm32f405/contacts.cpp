@@ -6,7 +6,7 @@
 namespace proleg::stm32f405 {
 
 std::uint8_t Contacts::read() {
-  // One read for all four, so that they are from one instant.
+  // All four inputs are read at once, so that they are from the same instant.
   constexpr unsigned first = board::contacts[0].number;
   static_assert(board::contacts[1].port == board::contacts[0].port && board::contacts[1].number == first + 1);
   static_assert(board::contacts[2].port == board::contacts[0].port && board::contacts[2].number == first + 2);

@@ -4,7 +4,7 @@
 
 namespace proleg::stm32f405 {
 
-/// The four touch inputs as they are now; start_pins() configures them. A closed switch is a contact.
+/// Reads the four touch inputs, which start_pins() configures. A closed switch is a contact.
 class Contacts final : public firmware::ContactPort {
  public:
   [[nodiscard]] std::uint8_t read() override;

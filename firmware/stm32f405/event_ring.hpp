@@ -7,36 +7,36 @@
 
 namespace proleg::stm32f405 {
 
-/// A queue from one interrupt priority to a lower one, on one processor. Only one side writes each index, and the
-/// higher priority runs as a whole between two instructions of the lower one. So it needs no lock; only the compiler
-/// must keep the order of the writes.
+/// A queue from one interrupt priority to a lower one, on one processor. Each index is written by one side only, and
+/// the higher priority always runs between two instructions of the lower one. So the queue needs no lock; only the
+/// compiler must keep the order of the writes.
 template <typename T, std::size_t size>
 class EventRing {
   static_assert((size & (size - 1)) == 0, "a power of two, so that the indices may wrap");
 
  public:
-  // For the side that fills it.
+  // Functions for the side that fills the queue.
 
-  /// Free entries; the other side may free more at any time.
+  /// Number of free entries; the other side may free more at any time.
   [[nodiscard]] std::size_t room() const {
     return size - (written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_relaxed));
   }
-  /// Where the next entry goes; null if there is no room.
+  /// Place of the next entry; null if there is no room.
   [[nodiscard]] T* back() {
     if (room() == 0) {
       return nullptr;
     }
     return &entries_[written_.load(std::memory_order_relaxed) % size];
   }
-  /// Hands over the entry in back().
+  /// Adds the entry in back() to the queue.
   void push() {
     std::atomic_signal_fence(std::memory_order_release);
     written_.store(written_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
   }
 
-  // For the side that empties it.
+  // Functions for the side that empties the queue.
 
-  /// The oldest entry; null if there is none. It stays until pop().
+  /// The oldest entry; null if the queue is empty. It stays until pop().
   [[nodiscard]] const T* front() const {
     if (written_.load(std::memory_order_relaxed) == read_.load(std::memory_order_relaxed)) {
       return nullptr;

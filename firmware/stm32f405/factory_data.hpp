@@ -1,6 +1,6 @@
 #pragma once
 
-// What the maker of the chip has written into its system memory.
+// The data that the maker of the chip has written into its system memory.
 
 #include <array>
 
@@ -8,10 +8,10 @@
 
 namespace proleg::stm32f405::factory {
 
-/// 96 bits, different in each chip; the lowest word first (RM0090, section 39.1).
+/// The unique id: 96 bits, different in each chip; the lowest word first (RM0090, section 39.1).
 [[nodiscard]] std::array<std::uint32_t, 3> unique_id();
 
-/// Data sheet, table 70.
+/// Calibration of the temperature sensor (data sheet, table 70).
 [[nodiscard]] TemperatureCalibration temperature_calibration();
 
 }  // namespace proleg::stm32f405::factory

@@ -23,7 +23,7 @@ namespace {
 
 using Words = std::array<std::uint32_t, sizeof(FaultRecord) / 4>;
 
-/// Words, and not a FaultRecord, because nothing here may be initialized.
+/// A FaultRecord as words, because nothing here may be initialized.
 struct StoredRecord {
   std::uint32_t mark;
   Words record;
@@ -32,7 +32,7 @@ struct StoredRecord {
 
 constexpr std::uint32_t valid_mark = 0xFA17'0001;
 
-/// Not initialized at the start: it has the contents of the RAM, which are arbitrary after power-on.
+/// The record. It is not initialized at the start: it has the contents of the RAM, which are arbitrary after power-on.
 [[gnu::section(".noinit")]] StoredRecord stored;
 
 std::uint32_t check_of(const Words& record) {
@@ -113,8 +113,8 @@ extern "C" {
 
 using proleg::stm32f405::FaultRecord;
 
-/// All faults, NMI, and interrupts that the program does not enable. The stack pointer may be wrong: the record is
-/// written with a new stack.
+/// Handles all faults, NMI, and interrupts that the program does not enable. The stack pointer may be wrong, so the
+/// record is written with a new stack.
 [[gnu::naked]] void fault_handler() {
   asm volatile(
       "mrs r0, msp\n\t"
@@ -125,7 +125,8 @@ using proleg::stm32f405::FaultRecord;
 }
 
 void report_fault(const std::uint32_t* frame) {
-  // First the servo: after a clock failure its timer runs at the wrong frequency. A reset would shorten its pulse.
+  // The servo comes first: after a clock failure its timer runs at the wrong frequency. A reset would shorten its
+  // pulse.
   proleg::stm32f405::hardware.servo.finish_last_pulse();
   FaultRecord record;
   asm volatile("mrs %0, ipsr" : "=r"(record.exception));
@@ -142,7 +143,7 @@ void report_fault(const std::uint32_t* frame) {
   proleg::stm32f405::reset_chip();
 }
 
-/// The compiler's tables have it in place of a virtual function that is not overridden.
+/// The compiler's tables contain this function in place of a virtual function that is not overridden.
 [[noreturn]] void __cxa_pure_virtual() {
   proleg::stm32f405::hardware.servo.finish_last_pulse();
   proleg::stm32f405::record_fault(FaultRecord::Reason::pure_virtual_call);

@@ -9,9 +9,9 @@ namespace {
 
 constexpr unsigned first_sector = 1;
 
-/// Twice the maximum of the data sheet.
+/// Time after which an erase has failed: twice the maximum of the data sheet.
 constexpr std::uint32_t erase_timeout_us = 1'000'000;
-// A client of the module still waits when a flash that does not end is reported.
+// A client of the module still waits when a flash operation that does not end is reported.
 static_assert(erase_timeout_us + firmware::BoardRecord::size / 4 * program_timeout_us < canopen::storing_time_us);
 
 constexpr std::uint32_t address_of(unsigned sector) {

@@ -5,9 +5,8 @@
 namespace proleg::stm32f405 {
 
 /// Sectors 1 and 2 of the flash, 16 KiB each at 0x08004000 and 0x08008000: sectors 0 and 1 of the port (RM0090, section
-/// 3.3, table 5).
-/// An operation takes up to half a second (flash_operations.hpp); the timer repeats the servo's last pulse meanwhile.
-/// To be used only while the servo has no power.
+/// 3.3, table 5). An operation takes up to half a second (flash_operations.hpp); the timer repeats the servo's last
+/// pulse meanwhile. The class must be used only while the servo has no power.
 class BoardRecordFlash final : public firmware::FlashPort {
  public:
   static constexpr std::uint32_t sector_count = 2;

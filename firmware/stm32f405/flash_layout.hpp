@@ -1,6 +1,6 @@
 #pragma once
 
-// The use of the flash (docs/board.md). The linker script has the same addresses for what is linked.
+// The use of the flash (docs/board.md). The linker script has the same addresses for the parts that are linked.
 
 #include <cstdint>
 
@@ -23,12 +23,12 @@ struct Sector {
   std::uint32_t size = 0;
 };
 
-/// Where the chip starts.
+/// The sector from which the chip starts.
 inline constexpr Sector bootloader_sector{0, 0x0800'0000, 16 * 1024};
 /// The slots of the bootloader (firmware/bootloader/slots.hpp). An image is much smaller than one of these sectors.
 inline constexpr Sector image_sector_a{5, slot_a, 128 * 1024};
 inline constexpr Sector image_sector_b{8, 0x0808'0000, 128 * 1024};
-/// Of an image, with its header.
+/// Greatest size of an image, with its header.
 inline constexpr std::uint32_t max_image_size = 88 * 1024;
 
 }  // namespace proleg::stm32f405::flash_layout

@@ -12,7 +12,8 @@ namespace {
 using namespace flash_interface;
 
 /// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
-/// Returns the status register. It may call no function and read only registers and the stack: all else is in flash.
+/// Returns the status register. It may call no function and read only registers and the stack, because everything else
+/// is in flash.
 [[gnu::section(".ram_code"), gnu::noinline, gnu::noclone]] std::uint32_t operate(std::uint32_t control,
                                                                                  std::uintptr_t address,
                                                                                  std::uint32_t word,
@@ -41,7 +42,7 @@ bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std:
   if (!wait_until_clear(sr, sr_bsy, 1)) {
     return false;  // an operation that exceeded its timeout is still running
   }
-  if (cr.has(cr_lock)) {  // keys that are not expected lock it until the next reset
+  if (cr.has(cr_lock)) {  // wrong keys lock the register until the next reset
     keyr.write(keyr_key1);
     keyr.write(keyr_key2);
   }
@@ -49,7 +50,8 @@ bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std:
   return (operate(control, address, word, timeout_us) & (sr_bsy | sr_errors)) == 0;
 }
 
-/// The data cache may hold what was there before the erase (RM0090, section 3.5.2). Programming keeps it up to date.
+/// Clears the data cache, which may hold the data before the erase (RM0090, section 3.5.2). Programming keeps it up to
+/// date.
 void clear_data_cache() {
   acr.clear(acr_dcen);
   acr.set(acr_dcrst);

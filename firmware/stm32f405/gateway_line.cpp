@@ -10,15 +10,16 @@
 namespace proleg::stm32f405 {
 namespace {
 
-// RM0090, table 42.
+// Channels of the streams (RM0090, table 42).
 constexpr unsigned channel = 4;
 constexpr dma::Stream receive_stream(dma::dma1, 5);
 constexpr dma::Stream transmit_stream(dma::dma1, 6);
 
-/// 5 ms of the line: longer than the program ever takes until it reads, but for an erase of flash.
+/// Size of the ring: 5 ms of the line, longer than the program ever takes until it reads, except for an erase of flash.
 constexpr std::size_t input_size = 512;
 constexpr std::size_t output_size = 512;
-// Not members: the driver's virtual table makes it initialized data, which the image in flash contains.
+// These buffers are not members: the driver's virtual table makes it initialized data, which the image in flash
+// contains.
 constinit std::array<char, input_size> input{};
 constinit std::array<char, output_size> output{};
 
@@ -28,7 +29,7 @@ constexpr std::uint32_t sending =
     dma::cr_channel(channel) | dma::cr_minc | dma::cr_to_peripheral | dma::cr_tcie | dma::cr_en;
 constexpr std::uint32_t on = usart2::cr1_ue | usart2::cr1_te | usart2::cr1_re | usart2::cr1_idleie;
 
-/// A stream that is switched off ends the transfer under way, of a few cycles.
+/// Number of reads until a stream is off. It ends the transfer under way first, which takes a few cycles.
 constexpr std::uint32_t reads_until_off = 100;
 
 static_assert(board::apb1 % GatewayLine::baud == 0, "the baud rate is exact");
@@ -100,7 +101,8 @@ bool GatewayLine::take_damage() {
     return false;
   }
   note_passes();
-  // Who passes a whole ring passes both. The program reads in time, so this is after an erase of flash.
+  // A whole ring of characters passes the half and the end. The program reads in time, so this happens only after an
+  // erase of flash.
   const bool is_overwritten = has_passed_half_ && has_passed_end_;
   const bool is_damaged = is_damaged_.exchange(false, std::memory_order_relaxed);
   if (is_overwritten || is_damaged) {
@@ -138,7 +140,7 @@ void GatewayLine::send_line(std::size_t count) {
   is_sending_ = true;
   transmit_stream.ndtr.write(static_cast<std::uint32_t>(count));
   transmit_stream.clear_flags(dma::all_flags);
-  usart2::sr.write(~usart2::sr_tc);  // so that is_idle() of the console is right
+  usart2::sr.write(~usart2::sr_tc);  // makes is_idle() of the console right
   std::atomic_signal_fence(std::memory_order_release);
   transmit_stream.cr.write(sending);
 }
@@ -148,7 +150,7 @@ void GatewayLine::on_line_interrupt() {
   if ((status & (usart2::sr_fe | usart2::sr_nf | usart2::sr_ore)) != 0) {
     is_damaged_.store(true, std::memory_order_relaxed);
   }
-  // A read of DR clears the flags. DMA reads a character that is there: this read must not take it.
+  // A read of DR clears the flags. If a character is there, DMA reads it, and this read must not take it.
   if ((status & usart2::sr_rxne) == 0) {
     static_cast<void>(usart2::dr.read());
   }

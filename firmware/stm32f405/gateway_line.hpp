@@ -7,8 +7,8 @@
 
 namespace proleg::stm32f405 {
 
-/// The gateway's serial line: USART2 at 1 Mbaud, with DMA in both directions. What is received goes into a ring; the
-/// module's program runs when the line goes idle, and at each half of the ring. What is sent goes out of a buffer; the
+/// The gateway's serial line: USART2 at 1 Mbaud, with DMA in both directions. Received characters go into a ring; the
+/// module's program runs when the line goes idle, and at each half of the ring. Characters to send are in a buffer; the
 /// program runs when that is empty. So the CPU works a few times for each burst of characters, not for each character.
 class GatewayLine final : public firmware::LinePort {
  public:
@@ -16,24 +16,24 @@ class GatewayLine final : public firmware::LinePort {
 
   explicit constexpr GatewayLine(Console& console) : console_(&console) {}
 
-  // LinePort. At the priority of the module's program.
+  // Functions of LinePort, for the priority of the module's program.
   void connect(bool is_gateway) override { is_wanted_ = is_gateway; }
   [[nodiscard]] std::size_t read_line(std::span<char> characters) override;
   [[nodiscard]] bool take_damage() override;
   [[nodiscard]] std::span<char> line_room() override;
   void send_line(std::size_t count) override;
 
-  /// Takes the line over, or gives it back, when nothing is being sent. To be called whenever the module's program
+  /// Takes the line over, or gives it back, when nothing is being sent. Must be called whenever the module's program
   /// runs.
   void follow_console();
 
-  // For the interrupts.
+  // Functions for the interrupts.
   [[nodiscard]] bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
-  /// USART2: idle line or an error, while connected.
+  /// Handles USART2: idle line or an error, while connected.
   void on_line_interrupt();
-  /// DMA: half of the ring is full, or all of it.
+  /// Handles DMA: half of the ring is full, or all of it.
   void on_receive_interrupt();
-  /// DMA: all is sent but the last two characters.
+  /// Handles DMA: all characters are sent but the last two.
   void on_transmit_interrupt();
 
  private:
@@ -46,11 +46,11 @@ class GatewayLine final : public firmware::LinePort {
   Console* console_;
   std::size_t read_position_ = 0;
   bool is_wanted_ = false;
-  bool has_passed_half_ = false;  ///< since the last read_line()
-  bool has_passed_end_ = false;   ///< the same
+  bool has_passed_half_ = false;  ///< the half of the ring was passed since the last read_line()
+  bool has_passed_end_ = false;   ///< the end of the ring was passed since the last read_line()
   bool is_sending_ = false;
   std::atomic<bool> is_connected_{false};  ///< read by USART2's interrupt
-  std::atomic<bool> is_damaged_{false};    ///< set by USART2's interrupt too
+  std::atomic<bool> is_damaged_{false};    ///< also set by USART2's interrupt
 };
 
 }  // namespace proleg::stm32f405

@@ -42,7 +42,7 @@ void start_pins() {
     set_pull(pin, Pull::up);
     set_mode(pin, PinMode::input);
   }
-  // Pulled up, so that the bus looks idle on a board without a transceiver.
+  // The input is pulled up, so that the bus looks idle on a board without a transceiver.
   set_pull(board::can_receive, Pull::up);
   // A bit of 1 us leaves no time for slow edges.
   set_fast_edges(board::can_transmit);

@@ -4,9 +4,9 @@
 
 extern "C" {
 
-[[noreturn]] void reset_handler();  ///< start.cpp
-void fault_handler();               ///< faults.cpp
-void can1_tx_handler();             ///< hardware.cpp, as the interrupts below
+[[noreturn]] void reset_handler();  ///< defined in start.cpp
+void fault_handler();               ///< defined in faults.cpp
+void can1_tx_handler();             ///< defined in hardware.cpp, as are the interrupts below
 void can1_rx0_handler();
 void can1_sce_handler();
 void tim5_handler();
@@ -15,7 +15,7 @@ void usart2_handler();
 void dma1_stream5_handler();
 void dma1_stream6_handler();
 
-/// The program at the lowest priority, which interrupts request; and the start. Each program (main.cpp, the tests of
+/// The program at the lowest priority, which interrupts request, and the start. Each program (main.cpp, the tests of
 /// the drivers) defines both.
 void pend_sv_handler();
 [[noreturn]] void run_program();

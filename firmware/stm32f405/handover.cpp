@@ -12,13 +12,13 @@ struct Words {
   std::uint32_t check;
 };
 
-/// The linker scripts keep it free of everything else: 256 bytes at 0x2001FF00. Volatile: who reads it is the next
-/// start.
+/// The words, 256 bytes at 0x2001FF00. The linker scripts keep this memory free of everything else. They are volatile,
+/// because the next start reads them.
 [[gnu::section(".handover")]] volatile Words words;
 
-/// Arbitrary contents have the right check once in 2^32.
+/// Check value of the words. Arbitrary contents have the right one once in 2^32.
 constexpr std::uint32_t check_of(std::uint32_t action, std::uint32_t argument) {
-  constexpr std::uint32_t factor = 0x9E37'79B1;  // odd: different arguments have different checks
+  constexpr std::uint32_t factor = 0x9E37'79B1;  // it is odd, so that different arguments have different checks
   return ~(action ^ argument * factor);
 }
 

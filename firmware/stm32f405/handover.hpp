@@ -7,9 +7,10 @@
 
 namespace proleg::stm32f405 {
 
-/// What was left; `none` if it was taken before. After power-on the RAM is arbitrary, which reads as `none`.
+/// What the last start has left; `none` if it was taken before. After power-on the RAM is arbitrary, which reads as
+/// `none`.
 [[nodiscard]] bootloader::Handover read_handover();
-/// The same, once: then it is `none`.
+/// What the last start has left. Afterwards it is `none`.
 [[nodiscard]] bootloader::Handover take_handover();
 void leave_handover(const bootloader::Handover& handover);
 

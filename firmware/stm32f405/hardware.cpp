@@ -10,7 +10,7 @@ namespace proleg::stm32f405 {
 
 namespace {
 
-/// Without an initial value, so that the zeros of which it mainly consists need no flash.
+/// Memory for Hardware without an initial value, so that the zeros of which it mainly consists need no flash.
 union HardwareStorage {
   constexpr HardwareStorage() : nothing() {}
   std::byte nothing;
@@ -30,7 +30,7 @@ void request_pend_sv() { scb::icsr.write(scb::icsr_pendsvset); }
 void enable_interrupts() {
   constexpr std::uint32_t first = 0;
   constexpr std::uint32_t middle = 8;
-  constexpr std::uint32_t last = 15;  // PendSV, the deadline and the line's DMA: none interrupts another
+  constexpr std::uint32_t last = 15;  // priority of PendSV, the deadline and the line's DMA: none interrupts another
   scb::shpr3.write(last << (scb::shpr3_pendsv_position + 4U));
   nvic::set_priority(Interrupt::usart2, middle);
   nvic::enable(Interrupt::usart2);

@@ -24,19 +24,20 @@ struct Hardware {
   Console console;
   GatewayLine line{console};
   BoardRecordFlash board_records;
-  ProgramPlace program;
+  ProgramPlace program{servo};
 };
 
-/// Nothing may use it before make_hardware().
+/// The drivers; they may be used only after make_hardware().
 extern Hardware& hardware;
 
-/// To be called once, first of all.
+/// Makes the drivers. Must be called once, before anything else.
 void make_hardware();
 
 /// Sets the priorities of all interrupts and enables them. pend_sv_handler() may run from now on.
 void enable_interrupts();
 
-/// pend_sv_handler() runs as soon as no higher priority does. If it runs now, it runs again afterwards.
+/// Requests PendSV: pend_sv_handler() runs as soon as no higher priority does. If it runs now, it runs again
+/// afterwards.
 void request_pend_sv();
 
 }  // namespace proleg::stm32f405

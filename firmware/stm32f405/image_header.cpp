@@ -1,12 +1,12 @@
-// The header of the image, in front of the vector table. What is known only after linking, its length, checksums and
-// hash, complete_image.py enters.
+// The header of the image, in front of the vector table. complete_image.py writes the fields that are known only after
+// linking: length, checksums and hash.
 
+#include "shared/image/image_header.hpp"
 #include "firmware/module/board_record.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "image_commit.hpp"
 #include "shared/canopen/declared_objects.hpp"
-#include "shared/image/header_layout.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::stm32f405 {

@@ -7,7 +7,7 @@
 #include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/module_task.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
-#include "firmware/stm32f405/reset_cause.hpp"
+#include "firmware/stm32f405/reset.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
@@ -21,7 +21,7 @@ constinit ModuleTask the_module_task;
 
 using firmware::ResetCause;
 
-/// Why the program has started, and the record of the fault that stopped it before.
+/// The cause of the program's start, and the record of the fault that stopped it before.
 struct Start {
   ResetCause cause = ResetCause::power_on;
   std::optional<FaultRecord> fault;
@@ -101,7 +101,7 @@ void print(const Start& start, const std::optional<firmware::BoardRecord>& recor
   }
 }
 
-/// The watchdog restarts the chip; the crystal may start then.
+/// Waits until the watchdog restarts the chip; the crystal may start then.
 [[noreturn]] void wait_for_watchdog() {
   for (;;) {
     asm volatile("wfi");
@@ -124,7 +124,8 @@ void start_clocks_or_give_up(const Start& start) {
     if (start.fault) {
       print(*start.fault);
     }
-    hardware.program.note_good_start();  // the crystal is to blame: the bootloader shall not give the program up
+    hardware.program
+        .note_good_start();  // the crystal has failed, not the program: the bootloader must not count a bad start
     give_up(result == ClockResult::no_crystal ? FaultRecord::Reason::no_crystal : FaultRecord::Reason::no_pll);
   }
 }
@@ -156,7 +157,7 @@ extern "C" {
 
 void run_program() {
   make_hardware();
-  static_cast<void>(start_watchdog(watchdog_ms));  // if that fails it has 512 ms, which is enough
+  static_cast<void>(start_watchdog(watchdog_ms));  // if it fails, the watchdog has 512 ms, which is enough
   const Start start = find_start();
   start_pins();
   start_clocks_or_give_up(start);

@@ -23,7 +23,7 @@ def number(name, minimum, maximum):
 
 
 def angle(degrees):
-    """90 degrees = 2^30, to nearest."""
+    """Converts degrees to 90 degrees = 2^30, rounded to the nearest."""
     return (degrees * 2**31 + 90) // 180
 
 

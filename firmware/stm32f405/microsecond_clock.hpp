@@ -6,15 +6,16 @@
 namespace proleg::stm32f405 {
 
 /// The module's own clock (TIM5): microseconds since start(), on the crystal. Interrupts record the 32 bits of the
-/// counter; the module's program extends them to 64. Only that one priority may call functions other than stamp().
+/// counter; the module's program extends them to 64. Only the priority of that program may call functions other than
+/// stamp().
 class MicrosecondClock {
  public:
   void start();
 
-  /// The counter; it wraps after 71 minutes. For any priority.
+  /// The counter, which wraps after 71 minutes. Any priority may read it.
   [[nodiscard]] static std::uint32_t stamp() { return tim5.cnt().read(); }
 
-  /// The time of a stamp that is at most half an hour old. Must be called at least every half hour.
+  /// Time of a stamp that is at most half an hour old. Must be called at least every half hour.
   [[nodiscard]] Microseconds at(std::uint32_t stamp) {
     const auto since_latest = static_cast<std::int32_t>(stamp - static_cast<std::uint32_t>(latest_));
     const Microseconds time = latest_ + static_cast<Microseconds>(std::int64_t{since_latest});
@@ -23,15 +24,15 @@ class MicrosecondClock {
   }
   [[nodiscard]] Microseconds now() { return at(stamp()); }
 
-  /// TIM5's interrupt comes at this time, at most half an hour from now. False: the time has passed, and the interrupt
-  /// may not come.
+  /// Requests TIM5's interrupt at this time, at most half an hour from now. False if the time has passed; the interrupt
+  /// may then not come.
   [[nodiscard]] static bool wake_at(Microseconds deadline) {
     const auto low = static_cast<std::uint32_t>(deadline);
     tim5.ccr1().write(low);
     // A match raises the interrupt from now on. This comparison finds a deadline that passed before.
     return static_cast<std::int32_t>(stamp() - low) < 0;
   }
-  /// For the interrupt.
+  /// Must be called by the interrupt.
   static void on_interrupt() { tim5.sr().write(~Timer::sr_cc1if); }
 
  private:

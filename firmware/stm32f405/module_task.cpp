@@ -8,9 +8,10 @@
 namespace proleg::stm32f405 {
 namespace {
 
-/// A quarter of the watchdog's time: with its fastest clock it expires after almost three of these.
+/// Longest time between two runs, a quarter of the watchdog's time: with its fastest clock it expires after almost
+/// three of these.
 constexpr Microseconds max_pause_us = 50'000;
-/// The end of bus-off raises no interrupt; it takes 1.4 ms at least.
+/// Time between two looks at the controller at bus-off: its end raises no interrupt. It takes 1.4 ms at least.
 constexpr Microseconds recovery_poll_us = 1'000;
 
 static_assert(std::is_trivially_destructible_v<firmware::Module>,
@@ -46,7 +47,7 @@ void ModuleTask::run() {
   if (hardware.can.recovering()) {
     next = now + recovery_poll_us < next ? now + recovery_poll_us : next;
   }
-  // If the deadline is as it was, and still to come, TIM5 is set already.
+  // If the deadline is unchanged, and still to come, TIM5 is set already.
   if (next != due_ || next <= now) {
     due_ = next;
     if (!MicrosecondClock::wake_at(due_)) {
@@ -60,7 +61,8 @@ Microseconds ModuleTask::in_order(Microseconds time) {
   return last_time_;
 }
 
-/// Some at a time: while frames come as fast as the program takes them, the deadlines and the watchdog have their turn.
+/// Takes some events at a time, so that deadlines and the watchdog are served even if frames come as fast as the
+/// program takes them.
 void ModuleTask::take_events() {
   constexpr unsigned events_in_a_row = 16;
   for (unsigned i = 0; i < events_in_a_row; ++i) {
@@ -77,7 +79,8 @@ void ModuleTask::take_events() {
   request_pend_sv();
 }
 
-/// States, not events: what happened twice, or was not seen, ends in the present state.
+/// Passes the state of controller and supply to the module. If a change happened twice, or was not noticed, the module
+/// still has the present state.
 void ModuleTask::follow_bus(Microseconds now) {
   const bool is_off = hardware.can.is_bus_off();
   if (is_off && !module_->is_bus_off()) {
@@ -99,7 +102,7 @@ void ModuleTask::follow_supply(Microseconds now) {
   }
 }
 
-/// Last, and a little at a time: the events of the bus come first.
+/// Serves the line after everything else, and a few characters at a time: the events of the bus come first.
 void ModuleTask::serve_line(Microseconds now) {
   hardware.line.follow_console();
   if (module_ && module_->serve_line(in_order(now))) {

@@ -26,14 +26,15 @@
 
 namespace proleg::stm32f405 {
 
-/// Hands the events of the hardware to the module, in their order, and polls it at its deadlines.
+/// Passes the events of the hardware to the module, in their order, and polls it at its deadlines.
 class ModuleTask {
  public:
-  /// To be called before the interrupts are enabled. Without it the task only feeds the watchdog. The record of each
-  /// tick is copied to last_tick, with the drive's state now, so that its address is known before the program runs.
+  /// Starts the module. Must be called before the interrupts are enabled; without it the task only feeds the watchdog.
+  /// The record of each tick is copied to last_tick, with the present state of the drive, so that its address is known
+  /// before the program runs.
   void start(const firmware::ModuleIdentity& identity, firmware::TickRecord& last_tick);
 
-  /// For PendSV and TIM5.
+  /// Must be called by PendSV and TIM5.
   void run();
 
  private:
@@ -44,14 +45,14 @@ class ModuleTask {
   void handle(const Can::Event& event, Microseconds time);
   void publish_tick();
   void poll(Microseconds now);
-  /// The time, or the last one that the module received if that is later: an interrupt may record an event while the
+  /// `time`, or the last time that the module received if that is later: an interrupt may record an event while the
   /// module works on a deadline.
   [[nodiscard]] Microseconds in_order(Microseconds time);
 
   std::optional<firmware::Module> module_;
   firmware::TickRecord* last_tick_ = nullptr;  ///< null: there is no module
-  Microseconds last_time_ = 0;                 ///< that the module received
-  Microseconds due_ = 0;                       ///< when to poll next
+  Microseconds last_time_ = 0;                 ///< last time that the module received
+  Microseconds due_ = 0;                       ///< time of the next poll
   Microseconds poll_by_ = 0;                   ///< the latest time to poll, and to feed the watchdog
 };
 

@@ -16,15 +16,15 @@ struct Pin {
 namespace board {
 
 inline constexpr std::uint16_t id = 1;
-inline constexpr std::uint8_t revision = 1;  ///< of the hardware: which images it can run
+inline constexpr std::uint8_t revision = 1;  ///< revision of the hardware, which decides which images it can run
 
-// Clocks, in Hz. RM0090, section 7.2; the limits are those of the data sheet.
+// Clocks in Hz (RM0090, section 7.2). The limits are those of the data sheet.
 inline constexpr std::uint32_t crystal = 8'000'000;
 inline constexpr std::uint32_t internal_oscillator = 16'000'000;  ///< HSI: the clock before the crystal has started
 inline constexpr std::uint32_t core = 168'000'000;
-inline constexpr std::uint32_t apb1 = core / 4;         ///< CAN1, USART2; at most 42 MHz
-inline constexpr std::uint32_t apb1_timers = 2 * apb1;  ///< TIM2, TIM5
-inline constexpr std::uint32_t apb2 = core / 2;         ///< ADC1; at most 84 MHz
+inline constexpr std::uint32_t apb1 = core / 4;         ///< clock of CAN1 and USART2; at most 42 MHz
+inline constexpr std::uint32_t apb1_timers = 2 * apb1;  ///< clock of TIM2 and TIM5
+inline constexpr std::uint32_t apb2 = core / 2;         ///< clock of ADC1; at most 84 MHz
 
 inline constexpr Pin can_receive{'B', 8};
 inline constexpr Pin can_transmit{'B', 9};
@@ -33,15 +33,15 @@ inline constexpr unsigned can_function = 9;
 inline constexpr Pin servo{'A', 5};  ///< TIM2, channel 1
 inline constexpr unsigned servo_function = 1;
 
-/// Touch sensors: switches to ground. In the order of firmware::ContactPort: rear and front of the link behind the
-/// joint, rear and front of the link before it.
+/// Touch sensors: switches to ground, in the order of firmware::ContactPort: rear and front of the link behind the
+/// joint, rear and front of the link in front of it.
 inline constexpr std::array<Pin, 4> contacts{{{'B', 12}, {'B', 13}, {'B', 14}, {'B', 15}}};
 
 inline constexpr Pin servo_current{'C', 0};  ///< 1 V per A
 inline constexpr unsigned servo_current_channel = 10;
 inline constexpr Pin feedback{'C', 1};  ///< slider of the potentiometer, between ground and VDDA
 inline constexpr unsigned feedback_channel = 11;
-inline constexpr unsigned temperature_channel = 16;  ///< inside the chip
+inline constexpr unsigned temperature_channel = 16;  ///< channel of the sensor inside the chip
 inline constexpr std::uint32_t vdda_millivolt = 3300;
 
 inline constexpr Pin console_transmit{'A', 2};

@@ -6,13 +6,12 @@
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/flash_operations.hpp"
 #include "firmware/stm32f405/handover.hpp"
-#include "firmware/stm32f405/hardware.hpp"
 #include "firmware/stm32f405/reset.hpp"
 #include "shared/fixed/little_endian.hpp"
 
 extern "C" {
 
-/// RAM that the program does not use, from the linker script.
+/// RAM that the program does not use; the linker script defines it.
 extern std::uint8_t image_buffer_start[];
 extern std::uint8_t image_buffer_end[];
 
@@ -27,15 +26,16 @@ using bootloader::Slots;
 constexpr std::uint32_t confirmed_word_address =
     flash_layout::image_sector_a.address + flash_layout::image_sector_a.size - Slots::words_size;
 
-/// `started` stays until the program has started well: it may stop before.
+/// Whether the bootloader has started the program. `started` stays until the program has started well: it may stop
+/// before.
 bool was_started_by_bootloader() {
   const HandoverAction action = read_handover().action;
   return action == HandoverAction::started || action == HandoverAction::runs;
 }
 
-/// A reset would shorten the servo's last pulse.
-[[noreturn]] void restart_with(const bootloader::Handover& handover) {
-  hardware.servo.finish_last_pulse();
+/// Restarts the chip. A reset would shorten the servo's last pulse, so it waits for its end.
+[[noreturn]] void restart_with(const bootloader::Handover& handover, const Servo& servo) {
+  servo.finish_last_pulse();
   leave_handover(handover);
   reset_chip();
 }
@@ -59,7 +59,7 @@ bool ProgramPlace::is_confirmed() const {
 void ProgramPlace::confirm() {
   std::array<std::uint8_t, 4> bytes{};
   write_little_endian(bytes, 0, bytes.size(), Slots::confirmed_word);
-  static_cast<void>(program_words(confirmed_word_address, bytes));  // if it fails the trial goes on
+  static_cast<void>(program_words(confirmed_word_address, bytes));  // if it fails the trial continues
 }
 
 void ProgramPlace::note_good_start() {
@@ -70,9 +70,9 @@ void ProgramPlace::note_good_start() {
 
 void ProgramPlace::install(std::size_t size, std::uint8_t session, bool ends_line) {
   const bootloader::ImageInRam image{static_cast<std::uint32_t>(size), session, ends_line};
-  restart_with({HandoverAction::install, image.argument()});
+  restart_with({HandoverAction::install, image.argument()}, servo_);
 }
 
-void ProgramPlace::enter_bootloader() { restart_with({HandoverAction::stay, 0}); }
+void ProgramPlace::enter_bootloader() { restart_with({HandoverAction::stay, 0}, servo_); }
 
 }  // namespace proleg::stm32f405

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/module/ports.hpp"
+#include "firmware/stm32f405/servo.hpp"
 
 namespace proleg::stm32f405 {
 
@@ -8,6 +9,9 @@ namespace proleg::stm32f405 {
 /// stub in its place (docs/board.md) no image can be installed over the bus.
 class ProgramPlace final : public firmware::ProgramPort {
  public:
+  /// servo: ends its last pulse before a restart; must outlive the object.
+  explicit ProgramPlace(const Servo& servo) : servo_(servo) {}
+
   [[nodiscard]] std::span<std::uint8_t> buffer() override;
   [[nodiscard]] std::span<const std::uint8_t> header() const override;
   [[nodiscard]] bool has_bootloader() const override;
@@ -16,6 +20,9 @@ class ProgramPlace final : public firmware::ProgramPort {
   void note_good_start() override;
   void install(std::size_t size, std::uint8_t session, bool ends_line) override;
   void enter_bootloader() override;
+
+ private:
+  const Servo& servo_;
 };
 
 }  // namespace proleg::stm32f405

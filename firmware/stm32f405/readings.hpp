@@ -1,6 +1,6 @@
 #pragma once
 
-// From readings of the ADC (12 bits, 0 to 4095 = VDDA) to physical values. Integers, rounded to nearest.
+// Conversion of readings of the ADC (12 bits, 0 to 4095 = VDDA) to physical values, in integers, rounded to nearest.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace proleg::stm32f405 {
 
-/// Servo current in mA.
+/// Servo current [mA].
 [[nodiscard]] constexpr std::uint16_t current_of(std::uint32_t reading) {
   constexpr std::uint32_t milliampere_per_volt = 1000;
   constexpr auto full_scale = static_cast<std::int32_t>(board::vdda_millivolt * milliampere_per_volt / 1000);
@@ -26,8 +26,7 @@ struct TemperatureCalibration {
   std::uint16_t at_110 = 0;
 };
 
-/// Temperature of the chip in degrees Celsius, on the line through the two points; -128 from a chip without
-/// calibration.
+/// Temperature of the chip [degrees Celsius], on the line through the two points; -128 from a chip without calibration.
 [[nodiscard]] constexpr std::int8_t temperature_of(std::uint32_t reading, TemperatureCalibration calibration) {
   constexpr std::int32_t min_temperature = -128;
   constexpr std::int32_t max_temperature = 127;

@@ -10,9 +10,9 @@ import pathlib
 import subprocess
 import sys
 
-# Eight words and one to align (PM0214, section 2.3.7); the FPU is not used.
+# An exception frame: eight words and one to align (PM0214, section 2.3.7); the FPU is not used.
 EXCEPTION_FRAME = 36
-# Of the module's program: firmware/stm32f405/hardware.cpp sets them.
+# Priorities of the module's program, which firmware/stm32f405/hardware.cpp sets.
 PRIORITIES = [["pend_sv_handler", "tim5_handler", "dma1_stream5_handler", "dma1_stream6_handler"], ["usart2_handler"],
               ["can1_tx_handler", "can1_rx0_handler", "can1_sce_handler", "pvd_handler"]]
 

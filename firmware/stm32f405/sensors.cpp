@@ -11,8 +11,8 @@ namespace proleg::stm32f405 {
 namespace {
 
 constexpr std::uint32_t adc_hz = board::apb2 / 4;  // at most 36 MHz (data sheet, table 67)
-/// 3 us from switching on to the first conversion, 10 us from switching the temperature sensor on (tables 67, 69). A
-/// read of a register takes 3 cycles of the core or more.
+/// Number of reads in 10 us, the time from switching the temperature sensor on to its first conversion; the ADC takes 3
+/// us (tables 67, 69). A read of a register takes 3 cycles of the core or more.
 constexpr std::uint32_t reads_in_10_us = board::core / 100'000 / 3;
 
 // A conversion takes 12 cycles and its sampling time, which must be 10 us for the temperature sensor (table 69).
@@ -22,7 +22,7 @@ static_assert(temperature_sampling_cycles > adc_hz / 100'000);
 /// Channel 0 of this stream is ADC1 (RM0090, table 43).
 constexpr dma::Stream samples(dma::dma2, 0);
 
-/// CR2 while it samples the current.
+/// Value of CR2 while the current is sampled.
 constexpr std::uint32_t on =
     adc1::cr2_adon | adc1::cr2_dma | adc1::cr2_dds | adc1::cr2_extsel_tim3_trgo | adc1::cr2_exten_rising;
 
@@ -65,13 +65,14 @@ void Sensors::start_sampling() {
   taken_at_ = MicrosecondClock::stamp();
 }
 
-firmware::ServoReadings Sensors::take_readings() {
+ServoReadings Sensors::take_readings() {
   const bool is_current_new = take_current();
   readings_.are_new = take_others() && is_current_new;
   return readings_;
 }
 
-/// False: no sample has come since the last reading, or more than the ring holds came in the time of exactly one ring.
+/// Takes the current. False if no sample has come since the last reading, or if more than the ring holds came in the
+/// time of exactly one ring.
 bool Sensors::take_current() {
   const std::uint32_t next = ring_size - samples.ndtr.read();
   const std::uint32_t now = MicrosecondClock::stamp();
@@ -92,7 +93,7 @@ bool Sensors::take_current() {
   return true;
 }
 
-/// False: called again within 28 us, or the ADC has stopped.
+/// Takes the other readings. False if it is called again within 28 us, or the ADC has stopped.
 bool Sensors::take_others() {
   if (!adc1::sr.has(adc1::sr_jeoc)) {
     return false;

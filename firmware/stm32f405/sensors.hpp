@@ -10,17 +10,17 @@ namespace proleg::stm32f405 {
 
 /// Servo current, feedback potentiometer and the chip's temperature, by ADC1. No interrupt takes part:
 /// - Current: TIM3 starts a conversion (the regular group) every 239 us, and DMA2 writes the result into a ring. A
-///   reading is the mean of what has come since the reading before, at most 61 ms. The servo's pulses, its motor's and
-///   the ticks have periods that 239 us, a prime number, does not divide: a pulsed current does not hide between
-///   samples.
-/// - The others: the injected group, which take_readings() starts. It does not wait the 28 us that it takes.
+///   reading is the mean of the samples since the reading before, at most of 61 ms. The periods of the servo's pulses,
+///   its motor's and the ticks are not multiples of 239 us, a prime number, so that the samples do not miss a pulsed
+///   current.
+/// - The others: the injected group, which take_readings() starts. It does not wait for the result, which takes 28 us.
 class Sensors final : public firmware::SensorPort {
  public:
   static constexpr std::uint32_t sample_period_us = 239;
 
   void start();
-  [[nodiscard]] firmware::ServoReadings take_readings() override;
-  /// There is no angle without a potentiometer, as before the first call.
+  [[nodiscard]] ServoReadings take_readings() override;
+  /// Sets the readings of the potentiometer. There is no angle without a potentiometer, as before the first call.
   void calibrate(const firmware::BoardRecord& board) override { feedback_ = board; }
 
  private:
@@ -33,10 +33,10 @@ class Sensors final : public firmware::SensorPort {
 
   firmware::BoardRecord feedback_;
   TemperatureCalibration temperature_;
-  firmware::ServoReadings readings_;
+  ServoReadings readings_;
   std::array<volatile std::uint16_t, ring_size> ring_{};  ///< DMA writes it
-  std::uint32_t taken_ = 0;                               ///< where the next sample will be, as of the last reading
-  std::uint32_t taken_at_ = 0;                            ///< MicrosecondClock::stamp() of the last reading
+  std::uint32_t taken_ = 0;     ///< position of the next sample at the time of the last reading
+  std::uint32_t taken_at_ = 0;  ///< MicrosecondClock::stamp() of the last reading
 };
 
 }  // namespace proleg::stm32f405

@@ -15,32 +15,33 @@ constexpr std::uint32_t counts_per_us = servo_counts_per_us;
 constexpr std::uint32_t counter_hz = counts_per_us * 1'000'000;
 static_assert(board::apb1_timers % counter_hz == 0);
 
-/// The output is low for this long at least, between pulses.
+/// Shortest time between pulses for which the output is low.
 constexpr std::uint32_t min_pause = 500 * counts_per_us;
 
-/// Counts until the timer repeats a pulse because the program is late.
+/// Number of counts until the timer repeats a pulse because the program is late.
 constexpr std::uint32_t counts_to_repeat(std::uint32_t width, std::uint32_t period_us) {
   const std::uint32_t late = period_us * counts_per_us / 4U * 5U;
   return std::max(late, width + min_pause);
 }
 
-/// Of the pulses that a servo knows: 0.5 to 2.5 ms.
+/// Greatest width of the pulses that a servo accepts: 0.5 to 2.5 ms.
 constexpr std::uint32_t max_width_us = 2'500;
 constexpr std::uint32_t max_width = max_width_us * counts_per_us;
 
-/// Of the timer without prescaler after the crystal has stopped.
+/// Counts per microsecond of the timer without prescaler after the crystal has stopped.
 constexpr std::uint32_t internal_counts_per_us =
     std::uint64_t{board::apb1_timers} * board::internal_oscillator / board::core / 1'000'000;
 static_assert(internal_counts_per_us == 8);
 
-/// From the switch to HSI to the update event in which the rest of the pulse begins; the counter hardly moves then.
-/// These are 40 instructions at 16 MHz: with the wait states of the flash, and APB1 at 4 MHz, about 100 cycles.
+/// Counts from the switch to HSI to the update event in which the rest of the pulse begins; the counter hardly moves
+/// meanwhile. These are 40 instructions at 16 MHz: with the wait states of the flash, and APB1 at 4 MHz, about 100
+/// cycles.
 constexpr std::uint32_t internal_counts_late = 6 * internal_counts_per_us;
 
 bool is_high() { return (GpioPort(board::servo.port).idr().read() >> board::servo.number & 1U) != 0; }
 
-/// Waits until the longest pulse is over, at most. If the counter stands still, the number of reads ends it: one takes
-/// 5 cycles or more.
+/// Waits while the output is high, at most until the longest pulse is over. If the counter stands still, the number of
+/// reads ends the wait: a read takes 5 cycles or more.
 void wait_while_high(std::uint32_t core_hz) {
   for (std::uint32_t reads = core_hz / 1'000'000 * max_width_us / 5; reads != 0; --reads) {
     if (!is_high() || tim2.cnt().read() >= max_width) {
@@ -60,7 +61,7 @@ void Servo::start() {
   tim2.ccmr1().write(Timer::ccmr1_oc1m_pwm1 | Timer::ccmr1_oc1pe);
 }
 
-/// After the counter has wrapped the requested width is active.
+/// Updates active_width_: after the counter has wrapped, the requested width is active.
 void Servo::follow_timer() {
   if ((tim2.sr().read() & Timer::sr_uif) != 0) {
     active_width_ = requested_width_;
@@ -89,12 +90,12 @@ void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
   }
 }
 
-/// The crystal has stopped: HSI clocks the core, and all prescalers are as before (RM0090, section 7.2.7). The rest of
-/// the pulse becomes a pulse of its own, which begins with an update event; the output stays high at this event. The
-/// timer ends it, so its length does not depend on how long instructions take, and OC1PE stays set, as PWM mode needs
-/// it. False: the pin must be low now.
+/// Ends the pulse after the crystal has stopped: HSI clocks the core, and all prescalers are as before (RM0090, section
+/// 7.2.7). The rest of the pulse becomes a pulse of its own, which begins with an update event; the output stays high
+/// at this event. The timer ends it, so its length does not depend on the duration of instructions, and OC1PE stays
+/// set, as PWM mode needs it. False: the pin must be low now.
 bool Servo::continue_with_internal_oscillator() const {
-  // Of the request before, if the timer alone began this pulse: that is one step of the servo away.
+  // If the timer alone has begun this pulse, this is the width of the request before: it is one step of the servo away.
   const std::uint32_t width = active_width_;
   const std::uint32_t count = tim2.cnt().read();
   if (width > max_width || count >= width) {
@@ -118,7 +119,7 @@ void Servo::finish_last_pulse() const {
   if (rcc::apb1enr.has(rcc::apb1enr_tim2) && is_high()) {
     const bool has_internal_clock = rcc::cir.has(rcc::cir_cssf);
     if (!has_internal_clock || continue_with_internal_oscillator()) {
-      tim2.ccr1().write(0);  // no further pulse
+      tim2.ccr1().write(0);  // there are no further pulses
       wait_while_high(has_internal_clock ? board::internal_oscillator : board::core);
     }
   }

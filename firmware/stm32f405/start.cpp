@@ -6,7 +6,7 @@
 
 extern "C" {
 
-// Places in flash and RAM, from the linker script.
+// Places in flash and RAM; the linker script defines them.
 extern const std::uint32_t ram_code_load[];
 extern std::uint32_t ram_code_start[];
 extern std::uint32_t ram_code_end[];

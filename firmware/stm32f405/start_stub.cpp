@@ -1,5 +1,5 @@
-// Flash sector 0, where the chip starts: jumps to the image in slot A. For boards without the bootloader, which
-// receives and verifies images (bootloader/).
+// Flash sector 0, from which the chip starts: it jumps to the image in slot A. It is for boards without the bootloader,
+// which receives and verifies images (bootloader/).
 
 #include <cstdint>
 
@@ -15,7 +15,7 @@ using flash_layout::slot_size;
 constexpr std::uint32_t ram = 0x2000'0000;
 constexpr std::uint32_t ram_size = 128 * 1024;
 
-/// Erased flash (all bits 1) has neither a stack nor a program.
+/// Whether stack and entry can be those of a program. Erased flash (all bits 1) has neither.
 [[gnu::always_inline]] inline bool is_plausible(std::uint32_t stack, std::uint32_t entry) {
   constexpr std::uint32_t stack_alignment = 8;
   return stack > ram && stack <= ram + ram_size && stack % stack_alignment == 0 && entry >= slot_a &&
@@ -27,7 +27,7 @@ constexpr std::uint32_t ram_size = 128 * 1024;
 
 extern "C" {
 
-/// After an exception, or without an image: only a debugger or a programmer can help.
+/// Stops after an exception, or without an image: only a debugger or a programmer can help.
 [[gnu::section(".stub.text"), noreturn]] void stub_stop() {
   for (;;) {
     asm volatile("wfi");
@@ -50,7 +50,7 @@ namespace {
 
 struct StubVectors {
   std::uint32_t initial_stack;
-  void (*handlers[3])();  ///< reset, NMI, HardFault
+  void (*handlers[3])();  ///< handlers of reset, NMI, HardFault
 };
 
 [[gnu::section(".stub.vectors"), gnu::used]] constinit const StubVectors stub_vectors{

@@ -12,7 +12,7 @@ void Supply::start() {
   exti::rtsr.set(exti::line_pvd);
   exti::ftsr.set(exti::line_pvd);
   exti::imr.set(exti::line_pvd);
-  has_dropped_.store(is_low(), std::memory_order_relaxed);  // no edge comes for it
+  has_dropped_.store(is_low(), std::memory_order_relaxed);  // no edge comes if the voltage is low already
 }
 
 }  // namespace proleg::stm32f405

@@ -13,7 +13,7 @@ class Supply {
  public:
   void start();
 
-  /// Whether the voltage was too low since the last call, for however short a time.
+  /// Whether the voltage was too low since the last call, for any length of time.
   [[nodiscard]] bool take_drop() {
     const bool has_dropped = has_dropped_.load(std::memory_order_relaxed);
     if (has_dropped) {
@@ -23,7 +23,8 @@ class Supply {
   }
   [[nodiscard]] static bool is_low() { return pwr::csr.has(pwr::csr_pvdo); }
 
-  /// For the interrupt, which comes at both edges: at the rising one too, because it may come late for the falling one.
+  /// Must be called by the interrupt. It comes at both edges; the rising one is needed, because the interrupt may come
+  /// late for the falling one.
   void on_interrupt() {
     exti::pr.write(exti::line_pvd);
     has_dropped_.store(true, std::memory_order_relaxed);

@@ -8,14 +8,14 @@
 
 extern "C" {
 
-extern const std::uint32_t stack_top[];  ///< from the linker script
+extern const std::uint32_t stack_top[];  ///< the linker script defines it
 
 }  // extern "C"
 
 namespace proleg::stm32f405 {
 
-/// PM0214, table 17, and RM0090, table 61: up to the last interrupt that a program enables. What no one sets is a
-/// fault.
+/// The vector table (PM0214, table 17, and RM0090, table 61) up to the last interrupt that a program enables. All
+/// handlers that are not set are fault handlers.
 template <unsigned interrupt_count>
 struct VectorTable {
   using Handler = void (*)();
@@ -28,7 +28,7 @@ struct VectorTable {
 
   const std::uint32_t* initial_stack = stack_top;
   Handler reset = reset_handler;
-  std::array<Handler, 14> exceptions{};  ///< from NMI, exception 2, on
+  std::array<Handler, 14> exceptions{};  ///< handlers from NMI, exception 2, on
   std::array<Handler, interrupt_count> interrupts{};
 };
 static_assert(sizeof(VectorTable<5>) == sizeof(VectorTable<5>::Handler) * (16 + 5));

@@ -1,4 +1,4 @@
-// The vector table of the module's program. Who starts it sets VTOR and the stack pointer.
+// The vector table of the module's program. The code that starts the program sets VTOR and the stack pointer.
 
 #include "firmware/stm32f405/vector_table.hpp"
 

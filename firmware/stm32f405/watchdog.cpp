@@ -7,13 +7,14 @@ constexpr std::uint32_t lsi_hz = 32'000;
 constexpr std::uint32_t prescaler = 16;
 constexpr std::uint32_t counts_of_a_millisecond = lsi_hz / prescaler / 1'000;
 
-/// The watchdog loads PR and RLR within 5 periods of LSI; the core still runs at 16 MHz, 5 cycles or more a read.
+/// Number of reads in 5 periods of LSI, within which the watchdog loads PR and RLR. The core still runs at 16 MHz, and
+/// a read takes 5 cycles or more.
 constexpr std::uint32_t reads_in_5_ms = 16'000;
 
 }  // namespace
 
 bool start_watchdog(std::uint32_t milliseconds) {
-  iwdg::kr.write(iwdg::kr_start);  // first: it switches on LSI, which the others need
+  iwdg::kr.write(iwdg::kr_start);  // comes first: it switches on LSI, which the other registers need
   iwdg::kr.write(iwdg::kr_unlock);
   iwdg::pr.write(iwdg::pr_16);
   iwdg::rlr.write(milliseconds * counts_of_a_millisecond - 1U);

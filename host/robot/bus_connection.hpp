@@ -26,11 +26,6 @@ class BusConnection final : public CanPort, private TransportListener {
   BusConnection(const BusConnection&) = delete;
   BusConnection& operator=(const BusConnection&) = delete;
 
-  /// From now on `user` gets frames and times. It must outlive the connection, or be detached before. A user may attach
-  /// and detach others while it is called.
-  void attach(BusUser& user);
-  void detach(BusUser& user);
-
   /// Sends a frame of any user.
   [[nodiscard]] bool send(const CanFrame& frame) override;
 
@@ -52,6 +47,10 @@ class BusConnection final : public CanPort, private TransportListener {
   [[nodiscard]] std::string diagnosis() const;
 
  private:
+  friend class BusAttachment;
+
+  void attach(BusUser& user);
+  void detach(BusUser& user);
   void received(Microseconds time, const CanFrame& frame) override;
   void transmitted(Microseconds time, const CanFrame& frame) override;
   void poll_users();
@@ -64,6 +63,21 @@ class BusConnection final : public CanPort, private TransportListener {
   std::bitset<128> heard_;
   std::uint64_t requested_ = 0;  ///< number of frames that the transport took
   std::unique_ptr<Transport> transport_;
+};
+
+/// While this object exists, the bus hands frames and times to a user; those attached first get them first. A user may
+/// attach and detach others while it is called.
+class BusAttachment {
+ public:
+  /// bus, user: must outlive this.
+  BusAttachment(BusConnection& bus, BusUser& user) : bus_(bus), user_(user) { bus_.attach(user_); }
+  ~BusAttachment() { bus_.detach(user_); }
+  BusAttachment(const BusAttachment&) = delete;
+  BusAttachment& operator=(const BusAttachment&) = delete;
+
+ private:
+  BusConnection& bus_;
+  BusUser& user_;
 };
 
 }  // namespace proleg::host

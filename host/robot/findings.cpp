@@ -5,8 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "host/robot/drive_findings.hpp"
-#include "host/robot/wire_findings.hpp"
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -353,14 +351,6 @@ class Diagnosis {
 std::vector<Finding> find_bus_faults(const BusObservations& observations, const BusAddress& address,
                                      const ExpectedModules& expected) {
   return Diagnosis(observations, address, expected).run();
-}
-
-std::string nodes_text(const std::vector<std::uint8_t>& nodes) {
-  std::string text = nodes.size() == 1 ? "node " : "nodes ";
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + std::to_string(nodes[i]);
-  }
-  return text;
 }
 
 }  // namespace proleg::host

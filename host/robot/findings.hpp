@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "host/robot/bus_findings.hpp"
 #include "host/robot/bus_observations.hpp"
 #include "host/transport/bus_address.hpp"
 #include "host/transport/can_interface.hpp"
@@ -15,13 +15,6 @@
 #include "host/transport/transport.hpp"
 
 namespace proleg::host {
-
-struct Finding {
-  std::string_view code;  ///< one word for programs, such as "duplicate_node_id"; see docs/robot-on-the-table.md
-  std::string what;       ///< one sentence or two: what was found, and what it means
-  std::string to_do;      ///< one sentence or two: what the person should do
-  std::vector<std::uint8_t> nodes;  ///< nodes that have the fault
-};
 
 /// The known facts about the connection of this computer to the bus.
 struct ConnectionFacts {
@@ -51,8 +44,5 @@ struct ExpectedModules {
 /// reported.
 [[nodiscard]] std::vector<Finding> find_bus_faults(const BusObservations& observations, const BusAddress& address,
                                                    const ExpectedModules& expected);
-
-/// The text for some nodes: "node 3", "nodes 1, 2, 5".
-[[nodiscard]] std::string nodes_text(const std::vector<std::uint8_t>& nodes);
 
 }  // namespace proleg::host

@@ -1,5 +1,13 @@
 #pragma once
 
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <memory>
+
+#include "host/server/request_policy.hpp"
+#include "host/server/server_types.hpp"
+#include "host/server/session_link.hpp"
+
 namespace proleg::host {
 
 /// A connection of a browser or program. It exists as long as one of its handlers.
@@ -12,5 +20,22 @@ class Connection {
   virtual void end() = 0;
   virtual void end_by_force() = 0;
 };
+
+/// The functions of the server that its connections use. All connections share it.
+class ConnectionServer {
+ public:
+  virtual ~ConnectionServer() = default;
+  [[nodiscard]] virtual const ServerAddress& address() const = 0;
+  [[nodiscard]] virtual boost::asio::io_context& context() = 0;
+  [[nodiscard]] virtual SessionLink& link() = 0;
+  /// Adds a connection, which ends with this server.
+  virtual void add(const std::shared_ptr<Connection>& connection) = 0;
+  /// Sends the pending output and waits for the next deadline. To be called after each event.
+  virtual void serve() = 0;
+};
+
+[[nodiscard]] inline ServerTime server_now() {
+  return std::chrono::duration_cast<ServerTime>(std::chrono::steady_clock::now().time_since_epoch());
+}
 
 }  // namespace proleg::host

@@ -15,7 +15,6 @@
 
 #include "host/server/client_stream.hpp"
 #include "host/server/request_policy.hpp"
-#include "host/server/socket_server.hpp"
 #include "host/server/viewer_connection.hpp"
 
 namespace proleg::host {
@@ -47,7 +46,7 @@ std::vector<std::string_view> fields(const Request& request, http::field name) {
 /// A connection that handles HTTP requests, one after the other.
 class HttpConnection final : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(std::shared_ptr<SocketServer> server, ClientStream stream, ConnectionUse use)
+  HttpConnection(std::shared_ptr<ConnectionServer> server, ClientStream stream, ConnectionUse use)
       : server_(std::move(server)), stream_(std::move(stream)), use_(use) {}
 
   void open();
@@ -66,7 +65,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   void drain();
   void upgrade(Request request);
 
-  const std::shared_ptr<SocketServer> server_;
+  const std::shared_ptr<ConnectionServer> server_;
   ClientStream stream_;
   const ConnectionUse use_;
   beast::flat_buffer buffer_{max_header_bytes + max_body_bytes};
@@ -188,7 +187,7 @@ void HttpConnection::upgrade(Request request) {
 
 }  // namespace
 
-std::shared_ptr<Connection> open_http_connection(std::shared_ptr<SocketServer> server, asio::ip::tcp::socket socket,
+std::shared_ptr<Connection> open_http_connection(std::shared_ptr<ConnectionServer> server, asio::ip::tcp::socket socket,
                                                  asio::ssl::context* tls, ConnectionUse use) {
   auto connection = std::make_shared<HttpConnection>(std::move(server), ClientStream(std::move(socket), tls), use);
   connection->open();

@@ -21,10 +21,6 @@ constexpr std::chrono::milliseconds accept_pause{100};
 
 }  // namespace
 
-ServerTime server_now() {
-  return std::chrono::duration_cast<ServerTime>(std::chrono::steady_clock::now().time_since_epoch());
-}
-
 SocketServer::SocketServer(asio::io_context& context, std::uint16_t port,
                            std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link)
     : context_(context),

@@ -9,17 +9,14 @@
 #include <vector>
 
 #include "host/server/connection.hpp"
-#include "host/server/request_policy.hpp"
 #include "host/server/server_certificate.hpp"
 #include "host/server/server_types.hpp"
 #include "host/server/session_link.hpp"
 
 namespace proleg::host {
 
-ServerTime server_now();
-
 /// Accepts connections, and wakes them when there is output. Connections share this object.
-class SocketServer : public std::enable_shared_from_this<SocketServer> {
+class SocketServer final : public ConnectionServer, public std::enable_shared_from_this<SocketServer> {
  public:
   SocketServer(boost::asio::io_context& context, std::uint16_t port,
                std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link);
@@ -29,14 +26,11 @@ class SocketServer : public std::enable_shared_from_this<SocketServer> {
   void post_delivery();
   void post_stop();
 
-  [[nodiscard]] const ServerAddress& address() const { return address_; }
-  [[nodiscard]] boost::asio::io_context& context() { return context_; }
-  [[nodiscard]] SessionLink& link() { return *link_; }
-
-  /// Adds a connection, which ends with this server.
-  void add(const std::shared_ptr<Connection>& connection) { connections_.push_back(connection); }
-  /// Sends the pending output and waits for the next deadline. To be called after each event.
-  void serve();
+  [[nodiscard]] const ServerAddress& address() const override { return address_; }
+  [[nodiscard]] boost::asio::io_context& context() override { return context_; }
+  [[nodiscard]] SessionLink& link() override { return *link_; }
+  void add(const std::shared_ptr<Connection>& connection) override { connections_.push_back(connection); }
+  void serve() override;
 
  private:
   using Connections = std::deque<std::weak_ptr<Connection>>;

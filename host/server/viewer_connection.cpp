@@ -8,8 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "host/server/socket_server.hpp"
-
 namespace proleg::host {
 namespace {
 
@@ -29,7 +27,7 @@ constexpr int send_buffer_bytes = 128 << 10;
 /// The WebSocket of a viewer.
 class ViewerConnection final : public Connection, public std::enable_shared_from_this<ViewerConnection> {
  public:
-  ViewerConnection(std::shared_ptr<SocketServer> server, ClientStream stream)
+  ViewerConnection(std::shared_ptr<ConnectionServer> server, ClientStream stream)
       : server_(std::move(server)), socket_(std::move(stream)), close_timer_(server_->context()) {}
 
   void open(Request request);
@@ -46,7 +44,7 @@ class ViewerConnection final : public Connection, public std::enable_shared_from
   void send_close_frame();
   void leave();
 
-  const std::shared_ptr<SocketServer> server_;
+  const std::shared_ptr<ConnectionServer> server_;
   websocket::stream<ClientStream> socket_;
   asio::steady_timer close_timer_;
   beast::flat_buffer buffer_;
@@ -167,7 +165,7 @@ void ViewerConnection::leave() {
 
 }  // namespace
 
-std::shared_ptr<Connection> open_viewer_connection(std::shared_ptr<SocketServer> server, ClientStream stream,
+std::shared_ptr<Connection> open_viewer_connection(std::shared_ptr<ConnectionServer> server, ClientStream stream,
                                                    Request request) {
   auto connection = std::make_shared<ViewerConnection>(std::move(server), std::move(stream));
   connection->open(std::move(request));

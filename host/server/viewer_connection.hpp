@@ -9,11 +9,9 @@
 
 namespace proleg::host {
 
-class SocketServer;
-
 /// Opens the WebSocket of a viewer, for which `request` asks. The stream has no unread bytes behind the request.
 [[nodiscard]] std::shared_ptr<Connection> open_viewer_connection(
-    std::shared_ptr<SocketServer> server, ClientStream stream,
+    std::shared_ptr<ConnectionServer> server, ClientStream stream,
     boost::beast::http::request<boost::beast::http::string_body> request);
 
 }  // namespace proleg::host

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "shared/can/can_status.hpp"
+#include "shared/can/can_port.hpp"
 
 namespace proleg::host {
 

@@ -7,7 +7,6 @@
 #include "host/transport/descriptor.hpp"
 #include "shared/can/can_frame.hpp"
 #include "shared/can/can_port.hpp"
-#include "shared/can/can_status.hpp"
 
 namespace proleg::host {
 

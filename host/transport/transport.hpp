@@ -9,7 +9,6 @@
 
 #include "shared/can/can_frame.hpp"
 #include "shared/can/can_port.hpp"
-#include "shared/can/can_status.hpp"
 
 namespace proleg::host {
 

@@ -13,7 +13,7 @@ void add(Symbol& sum, const Symbol& symbol) {
   }
 }
 
-/// block_symbols if there is none.
+/// The lowest number in a set; block_symbols if the set is empty.
 unsigned lowest(const SymbolSet& set) {
   for (unsigned i = 0; i < set.words.size(); ++i) {
     if (set.words[i] != 0) {
@@ -23,7 +23,7 @@ unsigned lowest(const SymbolSet& set) {
   return block_symbols;
 }
 
-/// Calls it with each number in a set, in ascending order.
+/// Calls `call` with each number in a set, in ascending order.
 template <typename Call>
 void for_each(const SymbolSet& set, Call call) {
   for (unsigned i = 0; i < set.words.size(); ++i) {
@@ -33,13 +33,13 @@ void for_each(const SymbolSet& set, Call call) {
   }
 }
 
-/// The exclusive or of symbols of a block. Four bytes at a time, the fourth one twice.
+/// The exclusive or of symbols of a block. It adds four bytes at a time; the second four begin with the fourth byte.
 class SymbolSum {
  public:
   void add(std::span<const std::uint8_t> bytes, unsigned number) {
     const std::size_t at = number * symbol_size;
     if (at + symbol_size > bytes.size()) {
-      broadcast::add(last_, symbol_of(bytes, number));  // it is not full
+      broadcast::add(last_, symbol_of(bytes, number));  // the last symbol of the block is not full
       return;
     }
     std::uint32_t first = 0;
@@ -137,7 +137,7 @@ bool BlockDecoder::add(unsigned repair, const Symbol& symbol) {
   }
   equation.pivot = lowest(equation.unknown);
   if (equation.pivot == block_symbols) {
-    return false;  // it follows from the others
+    return false;  // the equation follows from the others
   }
   for (unsigned i = 0; i < equations_; ++i) {
     remove_pivot(equation_[i], equation);

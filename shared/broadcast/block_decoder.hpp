@@ -1,12 +1,12 @@
 #pragma once
 
-// Some bytes go to many modules at once, by broadcast: each frame has a symbol of 7 bytes, 256 symbols are a block.
-// Every module misses other symbols. To repeat all of them to all would, with twelve modules and a tenth of the frames
-// lost, take nearly as long as the first time. So the host sends repair symbols instead: each is the exclusive or of a
-// random half of the block's symbols. A module that misses m symbols of a block solves m linear equations over GF(2);
-// any m that are independent do, and m + 1.6 random ones have m independent ones on average. The same repair symbols
-// help all modules. (Random linear code; M. Luby et al., "The Use of Forward Error Correction in Reliable Multicast",
-// RFC 3453, section 2.3.)
+// Some bytes go to many modules at once, by broadcast: each frame has a symbol of 7 bytes, and 256 symbols are a block.
+// Each module misses different symbols. With twelve modules and a tenth of the frames lost, repeating all missed
+// symbols to all modules would take nearly as long as the first time. So the host sends repair symbols instead: each is
+// the exclusive or of a random half of the block's symbols. A module that misses m symbols of a block solves m linear
+// equations over GF(2). Any m independent ones suffice, and m + 1.6 random ones have m independent ones on average. The
+// same repair symbols help all modules. (Random linear code; M. Luby et al., "The Use of Forward Error Correction in
+// Reliable Multicast", RFC 3453, section 2.3.)
 
 #include <array>
 #include <bit>
@@ -21,8 +21,8 @@ inline constexpr unsigned block_symbols = 256;
 
 using Symbol = std::array<std::uint8_t, symbol_size>;
 
-/// Numbers of symbols of a block. Its words are visible, because a decoder that looks at bits one by one is slower than
-/// the bus.
+/// A set of numbers of symbols in a block. Its words are visible, because a decoder that looks at single bits is slower
+/// than the bus.
 struct SymbolSet {
   static constexpr unsigned word_bits = 32;
   using Words = std::array<std::uint32_t, block_symbols / word_bits>;
@@ -42,33 +42,34 @@ struct SymbolSet {
   Words words{};
 };
 
-/// Symbol `number` of a block, which has it; zeros follow if the last one is not full.
+/// Symbol `number` of a block, which must have it. If the last symbol is not full, zeros follow.
 [[nodiscard]] Symbol symbol_of(std::span<const std::uint8_t> bytes, unsigned number);
-/// Puts it into the block.
+/// Writes symbol `number` into the block.
 void put_symbol(std::span<std::uint8_t> bytes, unsigned number, const Symbol& symbol);
 
-/// Which symbols of a block with this many a repair symbol contains. block: its number; repair: 0 to 255, different
-/// for all repair symbols of a block. A set without symbols is possible.
+/// The symbols that a repair symbol contains, for a block with this number of symbols. block: its number; repair: 0 to
+/// 255, different for all repair symbols of a block. The set may be empty.
 [[nodiscard]] SymbolSet repair_set(unsigned block, unsigned repair, unsigned symbols);
 
-/// The repair symbol of a block. bytes: those of the block, 1 to 1,792; zeros follow if the last symbol is not full.
+/// The repair symbol of a block. bytes: the block, 1 to 1,792 bytes; if the last symbol is not full, zeros follow.
 [[nodiscard]] Symbol repair_symbol(std::span<const std::uint8_t> bytes, unsigned block, unsigned repair);
 
-/// Completes one block after the other.
+/// Completes blocks, one after the other.
 class BlockDecoder {
  public:
-  /// Symbols of a block that repair symbols can replace. A block that misses more must be sent again first.
+  /// Greatest number of symbols of a block that repair symbols can replace. A block that misses more must be sent
+  /// again.
   static constexpr unsigned max_missing = 64;
 
-  /// Begins with a block: its bytes, as far as they were received, and which of its symbols were. Both must stay until
-  /// the next call; add() completes them.
+  /// Begins a block. bytes: the block, as far as it was received; received: its symbols that were received. Both must
+  /// stay until the next call; add() completes them.
   void start(std::span<std::uint8_t> bytes, SymbolSet& received, unsigned block);
-  /// A repair symbol of this block has come. True: all symbols of the block are there now. More symbols may come, in
-  /// any order, also twice.
+  /// Takes a repair symbol of this block. Returns whether all symbols of the block are complete. More repair symbols
+  /// may come, in any order, also twice.
   [[nodiscard]] bool add(unsigned repair, const Symbol& symbol);
 
  private:
-  /// The exclusive or of some symbols that are missing.
+  /// The exclusive or of some of the symbols that are missing.
   struct Equation {
     SymbolSet unknown;
     Symbol sum{};
@@ -81,12 +82,12 @@ class BlockDecoder {
   SymbolSet* received_ = nullptr;
   unsigned block_ = 0;
   unsigned missing_ = 0;
-  unsigned equations_ = 0;  ///< independent ones
-  /// When there are as many as unknowns, each has its pivot only: all are solved.
+  unsigned equations_ = 0;  ///< number of independent equations
+  /// When there are as many equations as unknowns, each contains only its pivot: all are solved.
   std::array<Equation, max_missing> equation_{};
 };
 
-/// Symbols of a block of this many bytes.
+/// Number of symbols of a block with this number of bytes.
 [[nodiscard]] constexpr unsigned symbols_of(std::size_t bytes) {
   return static_cast<unsigned>((bytes + symbol_size - 1) / symbol_size);
 }

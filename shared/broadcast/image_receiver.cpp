@@ -100,7 +100,8 @@ HeaderWord ImageReceiver::header_word(std::uint8_t number) const {
   return {number, begin + size <= header.size() ? read_little_endian(header, begin, size) : 0};
 }
 
-/// A repeated request does not begin the session again. Another host sees in the answer that the module is not its own.
+/// Begins a session, unless the request is a repeated one. Another host sees in the answer that the module has a
+/// session with a different host.
 void ImageReceiver::select(Microseconds now, std::uint8_t session) {
   const bool is_repetition = status_.state >= ReceiverState::installed && status_.session == session &&
                              now - last_request_ < session_timeout_us;
@@ -132,7 +133,7 @@ void ImageReceiver::restart_collection() {
   has_block_ = false;
 }
 
-/// The host repeats this request, because it may be lost.
+/// Takes a request that begins a block. The host repeats it, because it may be lost.
 void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
   if (status_.state != ReceiverState::receiving || block >= blocks_of(image_.size()) ||
       kind > static_cast<std::uint8_t>(BlockKind::repairs)) {
@@ -151,13 +152,14 @@ void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
   next_symbol_ = 0;
 }
 
-/// It comes after the frame that begins the block. If it is for another block, that frame was lost.
+/// Takes the checksum of a block. It comes after the frame that begins the block; if it is for another block, that
+/// frame was lost.
 void ImageReceiver::take_checksum(unsigned block, std::uint32_t checksum) {
   if (status_.state != ReceiverState::receiving) {
     return;
   }
   if (!expects_checksums_ && missing_ != symbols_of(image_.size())) {
-    restart_collection();  // of what came before nothing is known
+    restart_collection();  // the symbols that came before are not known any more
   }
   expects_checksums_ = true;
   has_block_ = has_block_ && block == block_;
@@ -198,11 +200,12 @@ ReportAnswer ImageReceiver::report() const {
   return answer;
 }
 
-/// Symbols of the present block are there now.
+/// Counts symbols of the present block that were received.
 void ImageReceiver::count_received(unsigned symbols) {
   missing_ -= symbols;
   if (missing_in(block_) == 0 && checksum_ && crc32(bytes_of(block_)) != *checksum_) {
-    // Frames from the middle of one block to the middle of another were lost: symbols of the other one are in this one.
+    // The frames from the middle of one block to the middle of another were lost, so this block contains symbols of the
+    // other.
     received_[block_] = {};
     missing_ += missing_in(block_);
     has_block_ = false;

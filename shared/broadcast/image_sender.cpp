@@ -7,8 +7,8 @@
 namespace proleg::broadcast {
 namespace {
 
-/// Repair symbols for a module that misses so many: a ninth of them is lost if a tenth of all frames is, and a few more
-/// make it unlikely that another round is needed.
+/// Number of repair symbols for a module that misses this number of symbols. A ninth more replaces the repair symbols
+/// that are lost if a tenth of all frames is lost. A few more make it unlikely that another round is needed.
 constexpr unsigned repairs_for(unsigned missing) { return missing + missing / 8 + 6; }
 
 }  // namespace
@@ -56,7 +56,7 @@ void ImageSender::enter(Microseconds now, Step step) {
   }
 }
 
-/// Hands frames to the controller while it takes them.
+/// Passes frames to the controller until it has no room.
 void ImageSender::pump(Microseconds now) {
   if (is_unsent_) {
     --attempt_;
@@ -73,7 +73,7 @@ void ImageSender::pump(Microseconds now) {
     }
     if (!port_.send(*frame)) {
       deadline_ = now + options_.send_timeout_us;
-      return;  // transmitted() goes on
+      return;  // transmitted() continues
     }
     if (announced_ < announcements()) {
       ++announced_;
@@ -84,7 +84,7 @@ void ImageSender::pump(Microseconds now) {
   }
 }
 
-/// The next frame of this step; nothing at its end.
+/// The next frame of this step; nothing at the end of the step.
 std::optional<CanFrame> ImageSender::next_broadcast() {
   if (step_ != Step::send) {
     return announced_ == announcements() ? std::nullopt
@@ -111,7 +111,7 @@ std::optional<CanFrame> ImageSender::next_broadcast() {
   return symbol_frame(symbol_, symbol_of(bytes, symbol_));
 }
 
-/// Begins with the first block from the present one on that has something to send, if there is one.
+/// Goes to the first block, from the present one on, that has something to send, if there is one.
 void ImageSender::next_block() {
   while (block_ < blocks_of(image_.size()) && plans_[block_].first == plans_[block_].end) {
     ++block_;
@@ -145,7 +145,7 @@ void ImageSender::plan_repairs() {
   }
 }
 
-/// Goes to the next module that must be asked in this step, from the present one on.
+/// Goes to the first module, from the present one on, that must be asked in this step.
 void ImageSender::next_target(Microseconds now) {
   const auto is_asked = [this](const Target& target) {
     switch (step_) {
@@ -206,13 +206,13 @@ void ImageSender::finish_round(Microseconds now) {
         end(State::complete);
       } else {
         plan_repairs();
-        // A module that has restarted belongs to no session any more.
+        // A module that has restarted does not belong to the session any more.
         enter(now, begins_again_ ? Step::select : Step::send);
       }
       return;
     default:
       if (std::ranges::any_of(targets_, is_waiting) && now < install_ends_) {
-        deadline_ = now + options_.status_period_us;  // then the next round begins
+        deadline_ = now + options_.status_period_us;  // the next round begins at this time
       } else {
         end(State::done);
       }

@@ -38,56 +38,57 @@ inline constexpr std::uint16_t module_identifier = 0x691;
 
 inline constexpr unsigned max_blocks = 96;
 inline constexpr std::size_t block_size = block_symbols * symbol_size;
-inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in a report
+inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in a report: the module waits for `begin`
 inline constexpr std::uint8_t no_block = 0xFF;
-inline constexpr std::uint8_t needs_symbols = 0x80;  ///< with the number of a block in a report
+/// Bit of the number of a block in a report: repair symbols cannot complete the block.
+inline constexpr std::uint8_t needs_symbols = 0x80;
 
 enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave, header, enter, check };
 
 enum class BlockKind : std::uint8_t { symbols, repairs };
 
-/// What a module does.
+/// States of a module in a broadcast.
 enum class ReceiverState : std::uint8_t {
   idle,       ///< takes part in no session
   selected,   ///< waits for `begin`
   receiving,  ///< symbols are missing
   complete,   ///< has all symbols
   installed,
-  refused,  ///< the image; the flash is as it was
+  refused,  ///< it has rejected the image; the flash is unchanged
   failed,   ///< the flash has failed
 };
 
-/// What a module says of itself in a status.
+/// Bits of the flags in a status.
 namespace module_flag {
-inline constexpr std::uint8_t runs_program = 1U << 0U;  ///< its program answers; else its bootloader
+inline constexpr std::uint8_t runs_program = 1U << 0U;  ///< the program answers; else the bootloader answers
 inline constexpr std::uint8_t has_image = 1U << 1U;     ///< slot A holds a complete image
 inline constexpr std::uint8_t is_confirmed = 1U << 2U;  ///< that image has started well once
-/// The servo has power, or the module is Operational: it does not restart.
+/// The servo has power, or the module is Operational: the module does not restart.
 inline constexpr std::uint8_t is_busy = 1U << 3U;
-/// The settings have a later schema: the program uses only their node id.
+/// The settings have a later schema, so the program uses only their node id.
 inline constexpr std::uint8_t has_newer_settings = 1U << 4U;
 /// A host may be connected to its serial line, which ends when the module installs an image.
 inline constexpr std::uint8_t is_gateway = 1U << 5U;
-/// The program has stopped just after its start, again and again: the bootloader stays.
+/// The program has stopped just after its start several times, so the bootloader stays active.
 inline constexpr std::uint8_t starts_badly = 1U << 6U;
-/// Without it nothing can be installed over the bus.
+/// The module has a bootloader; without it nothing can be installed over the bus.
 inline constexpr std::uint8_t has_bootloader = 1U << 7U;
 }  // namespace module_flag
 
 struct ModuleCondition {
-  std::uint8_t flags = 0;  ///< module_flag
-  std::uint8_t node = 0;   ///< 0: none
+  std::uint8_t flags = 0;  ///< bits of module_flag
+  std::uint8_t node = 0;   ///< node id; 0: none
 
   friend bool operator==(const ModuleCondition&, const ModuleCondition&) = default;
 };
 
-// Errors of `refused`; smaller numbers are those of image::Error.
-inline constexpr std::uint8_t refused_busy = 0x80;  ///< module_flag::is_busy
-inline constexpr std::uint8_t refused_size = 0x81;  ///< the module has no room for so many bytes
+// Errors of the state `refused`; smaller numbers are those of image::Error.
+inline constexpr std::uint8_t refused_busy = 0x80;  ///< the module is_busy (module_flag)
+inline constexpr std::uint8_t refused_size = 0x81;  ///< the module has no room for an image of this size
 
 struct StatusAnswer {
   ReceiverState state = ReceiverState::idle;
-  std::uint8_t error = 0;  ///< of `refused` and `failed`: the installer's
+  std::uint8_t error = 0;  ///< error of the states `refused` and `failed`, from the installer
   std::uint8_t session = 0;
   ModuleCondition condition{};
 };
@@ -98,12 +99,12 @@ struct HeaderWord {
 };
 
 struct ReportAnswer {
-  std::uint8_t blocks = 0;  ///< that miss symbols
-  std::uint8_t most = 0;    ///< symbols that one of them misses, at most BlockDecoder::max_missing
+  std::uint8_t blocks = 0;  ///< number of blocks that miss symbols
+  std::uint8_t most = 0;    ///< greatest number of symbols that one of them misses, at most BlockDecoder::max_missing
   std::array<std::uint8_t, 3> some{no_block, no_block, no_block};
 };
 
-/// Bytes of block `number` of an image: empty behind the last one.
+/// Bytes of block `number` of an image; empty behind the last block.
 template <typename Byte>
 [[nodiscard]] constexpr std::span<Byte> block_of(std::span<Byte> image, unsigned number) {
   const std::size_t begin = number * block_size;
@@ -132,7 +133,7 @@ template <typename Byte>
 [[nodiscard]] CanFrame answer_frame(std::uint32_t serial, const ReportAnswer& report);
 [[nodiscard]] CanFrame answer_frame(std::uint32_t serial, const HeaderWord& word);
 
-/// The answer of this module to a request with this code; nothing if it is another frame.
+/// The answer of this module to a request with this code; nothing for any other frame.
 [[nodiscard]] std::optional<StatusAnswer> decode_status(const CanFrame& frame, Code code, std::uint32_t serial);
 [[nodiscard]] std::optional<ReportAnswer> decode_report(const CanFrame& frame, std::uint32_t serial);
 [[nodiscard]] std::optional<HeaderWord> decode_header_word(const CanFrame& frame, std::uint32_t serial);

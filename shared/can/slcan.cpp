@@ -10,7 +10,7 @@ constexpr std::size_t counter_digits = 3;
 constexpr std::string_view state_letters = "awpb";      // in the order of CanState
 constexpr std::string_view error_letters = "abBcfoOs";  // in the order of CanErrorKind
 
-/// Not substr(), which may throw: the images of the modules contain no exceptions.
+/// Removes the first characters. substr() may throw, and the images of the modules contain no exceptions.
 std::string_view without_first(std::string_view text, std::size_t count) {
   text.remove_prefix(count);
   return text;
@@ -34,7 +34,7 @@ class Digits {
  public:
   explicit Digits(std::string_view text) : text_(text) {}
 
-  /// The next digits as a number; nothing if they are not there.
+  /// Takes the next `count` digits as a number; nothing if they are missing.
   std::optional<std::uint32_t> take(std::size_t count, unsigned base) {
     if (text_.size() < count) {
       return std::nullopt;
@@ -193,7 +193,7 @@ SlcanLineReader::Event SlcanLineReader::push(char character) {
     return character == slcan_end ? Event::line : Event::rejected;
   }
   if (character == '\n' && line_.view().empty() && !is_too_long_) {
-    return Event::none;  // of a program that ends lines with CR LF
+    return Event::none;  // the LF of a program that ends lines with CR LF
   }
   if (line_.view().size() == slcan_max_line) {
     is_too_long_ = true;

@@ -10,7 +10,7 @@ using namespace std::string_view_literals;  // no strlen() in the image of the m
 constexpr std::uint16_t sync_identifier = 0x080;
 constexpr std::uint32_t microseconds_per_millisecond = 1'000;
 
-// Status flags of LAWICEL's manual, command F.
+// Status flags that command F reports (LAWICEL's manual).
 constexpr unsigned flag_receive_full = 1U << 0U;
 constexpr unsigned flag_transmit_full = 1U << 1U;
 constexpr unsigned flag_error_warning = 1U << 2U;
@@ -18,7 +18,7 @@ constexpr unsigned flag_overrun = 1U << 3U;
 constexpr unsigned flag_error_passive = 1U << 5U;
 constexpr unsigned flag_bus_error = 1U << 7U;
 
-/// CR alone.
+/// The answer of a line that was accepted: CR alone.
 std::optional<SlcanText> accepted() { return SlcanText(); }
 
 bool is_state_frame(std::uint16_t identifier) {
@@ -48,7 +48,7 @@ void SlcanAdapter::input(std::string_view characters) {
         execute(reader_.line());
         break;
       case SlcanLineReader::Event::too_long:
-        execute("too long"sv);  // no command begins so
+        execute("too long"sv);  // no command begins so: the line is rejected
         break;
     }
   }
@@ -56,7 +56,7 @@ void SlcanAdapter::input(std::string_view characters) {
 
 void SlcanAdapter::execute(std::string_view line) {
   if (line.empty()) {
-    return;  // programs send empty lines to end a line that was begun before
+    return;  // programs send empty lines to end a line that they have begun before
   }
   const bool was_open = is_open();
   const std::optional<SlcanText> text = answer(line);
@@ -230,7 +230,7 @@ void SlcanAdapter::reset() {
 }
 
 void SlcanAdapter::write_pending_status() {
-  // The latest state replaces one for which there was no room.
+  // Only the latest state waits for room in the output.
   if (is_open() && status_is_pending_ && write(format_slcan_status(status_).view(), slcan_end, Importance::answer)) {
     status_is_pending_ = false;
   }

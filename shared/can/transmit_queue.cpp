@@ -24,7 +24,7 @@ bool TransmitQueue::push_newest(const CanFrame& frame) {
   for (std::size_t i = 0; i < size_; ++i) {
     if (frames_[i].identifier == frame.identifier) {
       frames_[i] = frame;
-      hand_over();  // the controller may have come back
+      hand_over();  // the controller may have recovered
       return true;
     }
   }

@@ -16,11 +16,11 @@ class TransmitQueue {
 
   /// Sends the frame now or queues it. False, without an effect, if the queue is full.
   [[nodiscard]] bool push(const CanFrame& frame);
-  /// The same for a message that is sent again and again: replaces one with the same identifier that waits, since that
-  /// is out of date. So there is one buffer for each message, and a node that was alone on the bus does not send what
-  /// has piled up.
+  /// Sends or queues a message that is sent again and again. It replaces one with the same identifier that waits, since
+  /// that one is out of date. So each message needs one buffer, and a node that was alone on the bus does not send a
+  /// backlog.
   [[nodiscard]] bool push_newest(const CanFrame& frame);
-  /// To be called when the controller has sent a frame.
+  /// Must be called when the controller has sent a frame.
   void sent();
   void clear() { size_ = 0; }
   [[nodiscard]] std::size_t size() const { return size_; }

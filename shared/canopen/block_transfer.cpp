@@ -13,13 +13,13 @@ BlockReceiver::Segment BlockReceiver::take(std::uint8_t head) {
     return Segment::skipped;
   }
   ++taken_;
-  fruitless_ = 0;
+  unanswered_ = 0;
   is_complete_ = (head & last_segment) != 0;
   return Segment::taken;
 }
 
 std::uint8_t BlockReceiver::acknowledge() {
-  ++fruitless_;
+  ++unanswered_;
   if (has_come_) {
     acknowledged_ = taken_;
     has_acknowledged_ = true;

@@ -6,11 +6,11 @@
 
 namespace proleg::canopen {
 
-/// A host refuses a robot whose frames take more than this share of the bus in the worst case, in thousandths. The rest
-/// is for EMCY, SDO and the host.
+/// Greatest share of the bus, in thousandths, that the frames of a robot may take in the worst case: a host refuses
+/// others. The rest is for EMCY, SDO and the host.
 inline constexpr std::uint32_t max_bus_load_permille = 850;
 
-/// SYNCs between two monitoring frames of a module: 10, or 100 if 10 would exceed max_bus_load_permille.
+/// Numbers of SYNCs between two monitoring frames of a module: 10, or 100 if 10 would exceed max_bus_load_permille.
 inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
 
 /// Share of a 1 Mbit/s bus, in thousandths and rounded up, that a robot's SYNC, state frames and monitoring take if
@@ -21,7 +21,7 @@ inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
   const auto second_frames = static_cast<std::uint32_t>(std::popcount(kernel.second_channel_senders().bits()));
   constexpr std::uint32_t state_bits = 135;
   constexpr std::uint32_t sync_bits = 65;
-  constexpr std::uint32_t tick_bits = 135;  // every tenth tick
+  constexpr std::uint32_t tick_bits = 135;  // TICK is sent in every tenth tick
   constexpr std::uint32_t monitoring_bits = 115;
   const std::uint32_t bits = (kernel.joint_count + second_frames) * state_bits + sync_bits + (tick_bits + 9) / 10 +
                              (kernel.joint_count * monitoring_bits + monitoring_period - 1) / monitoring_period;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The entries of the object dictionary with fixed addresses. objects.hpp has those that follow from the declarations of
-// the algorithms.
+// The entries of the object dictionary with fixed addresses. objects.hpp has the entries that follow from the
+// declarations of the algorithms.
 
 #include <array>
 
@@ -13,37 +13,38 @@
 
 namespace proleg::canopen {
 
-/// Version of docs/protocol.md, major and minor in a byte each.
+/// Version of docs/protocol.md: the major number is the high byte, the minor number the low byte.
 inline constexpr std::uint16_t protocol_version = 0x0100;
-/// A placeholder ("PROL") that CiA has not assigned. A maker of modules replaces it with its own vendor id.
+/// A placeholder ("PROL") for a vendor id, which CiA has not assigned. A maker of modules replaces it with its own.
 inline constexpr std::uint32_t placeholder_vendor = 0x50524F4C;
-/// A COB-ID with this bit belongs to no message: the PDO is off (CiA 301, 7.5.2.35).
+/// This bit in a COB-ID switches the PDO off (CiA 301, 7.5.2.35).
 inline constexpr std::uint32_t pdo_off = 0x80000000;
-/// In the COB-ID of a transmit PDO: no remote frames (CiA 301, 7.5.2.37).
+/// This bit in the COB-ID of a transmit PDO excludes remote frames (CiA 301, 7.5.2.37).
 inline constexpr std::uint32_t no_remote_frames = 0x40000000;
-/// In 0x1005: the module produces SYNC (CiA 301, 7.5.2.5).
+/// This bit in 0x1005 says that the module produces SYNC (CiA 301, 7.5.2.5).
 inline constexpr std::uint32_t produces_sync = 0x40000000;
 
-/// Modes of operation (0x6060): negative ones are the manufacturer's.
+/// Modes of operation (0x6060). Negative numbers are for the manufacturer.
 inline constexpr std::int8_t mode_gait = -1;
 inline constexpr std::int8_t mode_direct_position = 8;  ///< cyclic synchronous position (CiA 402)
 
-/// Capabilities (0x2000:5), bits.
-inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< a feedback potentiometer on the joint
+/// Bits of the capabilities (0x2000:5).
+inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< the joint has a feedback potentiometer
 
-/// Statusword (0x6041), bit 10: target reached (CiA 402, 8.4.2). Here: the joint has ramped in.
+/// Bit 10 of the statusword (0x6041): target reached (CiA 402, 8.4.2). Here it says that the joint has ramped in.
 inline constexpr std::uint16_t target_reached = 1U << 10U;
 
-/// What is written to 0x1010 and 0x1011: "save" and "load", the first letter in the lowest byte (CiA 301, 7.5.2.13).
+/// Values that are written to 0x1010 and 0x1011: "save" and "load", the first letter in the lowest byte (CiA 301,
+/// 7.5.2.13).
 inline constexpr std::uint32_t signature_save = 0x65766173;
 inline constexpr std::uint32_t signature_load = 0x64616F6C;
 
-/// How long a client waits for the answer to a request that stores something: 0x1010, 0x1011, LSS 'store
+/// Time for which a client waits for the answer to a request that stores something: 0x1010, 0x1011, LSS 'store
 /// configuration'. The module erases and programs flash before it answers. On the reference board that takes 0.5 s at
-/// most (DS8626), and the module answers that the flash has failed after 1 s.
+/// most (DS8626); after 1 s the module answers that the flash has failed.
 inline constexpr Microseconds storing_time_us = 1'500'000;
 
-/// 0x6064 if the module does not measure the angle.
+/// Value of 0x6064 if the module does not measure the angle.
 inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
 
 /// The mapping parameter of an entry: index, sub-index and length in bits (CiA 301, 7.5.2.36).
@@ -56,10 +57,10 @@ namespace object {
 
 inline constexpr Range full_angle{static_cast<std::uint32_t>(-quarter_turn), quarter_turn};
 inline constexpr UnitScale angle = scale_of(Unit::degree);
-/// Upper 16 bits of an angle.
+/// Unit of the upper 16 bits of an angle.
 inline constexpr UnitScale short_angle{angle.symbol, angle.numerator >> 16U, angle.denominator};
 
-// Communication (CiA 301, section 7.5.2).
+// Entries of the communication (CiA 301, section 7.5.2).
 
 inline constexpr Object device_type =
     constant({0x1000, 0}, "Device type", DataType::unsigned32, 0x00020192, "servo drive, CiA 402");
@@ -126,7 +127,7 @@ inline constexpr Object sdo_request_identifier =
 inline constexpr Object sdo_answer_identifier =
     node_identifier(sdo_server.at(2), "COB-ID server to client", identifier::sdo_answer);
 
-// Device.
+// Entries of the device.
 
 inline constexpr ObjectGroup device{0x2000, ObjectCode::record, "Device"};
 inline constexpr Object version =
@@ -251,7 +252,7 @@ inline constexpr ObjectArray user_algorithm{
               "with the id 95 + sub-index: the first 32 bits of their SHA-256; 0: the module does not have it"),
     max_user_algorithms};
 static_assert(first_user_id == 96);
-/// The entry of an algorithm. id: of a user's algorithm.
+/// Address of the entry of a user's algorithm. id: of the algorithm.
 [[nodiscard]] constexpr Address user_algorithm_address(std::uint8_t id) {
   return {user_algorithm.first.address.index, static_cast<std::uint8_t>(id - first_user_id + 1)};
 }
@@ -267,7 +268,7 @@ inline constexpr Object feedback_at_minus_90 =
 inline constexpr Object feedback_at_plus_90 =
     read_write(board.at(4), "Feedback at +90 degrees", DataType::unsigned16, 0, {0, 4095}, "as the ADC reads it");
 
-// State frames, by channel: 0 is the first broadcasting slot of a joint, 1 the second.
+// Entries of the state frames, by channel: 0 is the first broadcasting slot of a joint, 1 the second.
 
 inline constexpr std::array own_frames{
     ObjectGroup{0x2010, ObjectCode::array, "Own state frame"},
@@ -295,7 +296,7 @@ inline constexpr std::array<std::array<JointObjects, 2>, max_channels> received_
     {half_frame(1, 1, "Bytes 0-3"), half_frame(1, 2, "Bytes 4-7")},
 }};
 
-// Process data objects. Their contents are fixed; their senders are set.
+// Entries of the process data objects. Their contents are fixed; their senders are set.
 
 /// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).
 inline constexpr std::uint32_t at_every_sync = 1;
@@ -316,7 +317,7 @@ inline constexpr std::array frame_receptions{
   return {read_write(frame_receptions[channel].at(1), "COB-ID used by RPDO", DataType::unsigned32, pdo_off,
                      {base + min_node_id, base + max_node_id}, "0x80000000: off", pdo_off)};
 }
-/// Identifiers of the state frames that a module receives; off for its own joint.
+/// Identifiers of the state frames that a module receives. The entry of its own joint is off.
 inline constexpr std::array<JointObjects, max_channels> state_frame_identifier{
     frame_identifier(0),
     frame_identifier(1),
@@ -328,7 +329,7 @@ inline constexpr std::array<JointObjects, max_channels> state_frame_transmission
                           "acts at the next SYNC")},
 };
 
-// Drive (CiA 402).
+// Entries of the drive (CiA 402).
 
 inline constexpr std::uint32_t quick_stop_command = 3;
 inline constexpr Object abort_connection_option = read_write(
@@ -377,7 +378,7 @@ inline constexpr Object command_speed =
 inline constexpr Object supported_modes = constant({0x6502, 0}, "Supported drive modes", DataType::unsigned32,
                                                    0x00010080, "bit 7: cyclic synchronous position; bit 16: gait");
 
-// What is in the process data objects.
+// The contents of the process data objects.
 
 inline constexpr ObjectGroup command_mapping{0x1600, ObjectCode::record, "RPDO mapping parameter, command"};
 inline constexpr std::array command_mapped{
@@ -442,7 +443,7 @@ inline constexpr std::array monitoring_mapped{
 
 }  // namespace object
 
-/// How long a client waits for the answer to a write at least.
+/// Shortest time for which a client waits for the answer to a write.
 [[nodiscard]] constexpr Microseconds min_write_timeout_us(Address address) {
   return address == object::store_parameters.address || address == object::restore_parameters.address ? storing_time_us
                                                                                                       : 0;

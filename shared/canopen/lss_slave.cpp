@@ -5,7 +5,7 @@ namespace {
 
 using lss::Service;
 
-/// The position of a service in a range of services that begins with `first`.
+/// Position of a service in a range of services that begins with `first`.
 constexpr unsigned position_in(Service first, Service service) {
   return static_cast<unsigned>(service) - static_cast<unsigned>(first);
 }
@@ -59,7 +59,7 @@ std::optional<CanFrame> LssSlave::serve(const CanFrame& request, const LssAddres
   return state_ == lss::State::configuration ? configure(request, address, node, storage) : std::nullopt;
 }
 
-/// The services of a slave that is selected.
+/// Handles a service of a slave that is selected.
 std::optional<CanFrame> LssSlave::configure(const CanFrame& request, const LssAddress& address, std::uint8_t node,
                                             LssStorage& storage) {
   const Service service = lss::service_of(request);
@@ -86,7 +86,7 @@ std::optional<CanFrame> LssSlave::configure(const CanFrame& request, const LssAd
   return std::nullopt;
 }
 
-/// Whether the whole address was selected: the four numbers in their order.
+/// Handles a request that selects a number of the address. Returns whether all four numbers were selected in order.
 bool LssSlave::select(unsigned position, std::uint32_t number, const LssAddress& address) {
   if (state_ != lss::State::waiting) {
     return false;
@@ -104,8 +104,9 @@ bool LssSlave::select(unsigned position, std::uint32_t number, const LssAddress&
   return true;
 }
 
-/// Whether all conditions hold: vendor and product are equal, revision and serial are within their limits. They come in
-/// this order: vendor, product, lowest and highest revision, lowest and highest serial.
+/// Handles a condition. Returns whether all six hold: vendor and product are equal, revision and serial number are
+/// within their limits. They come in this order: vendor, product, lowest and highest revision, lowest and highest
+/// serial number.
 bool LssSlave::identify(unsigned position, std::uint32_t number, const LssAddress& address) {
   identified_ = position == 0 ? std::uint8_t{0} : identified_;
   constexpr unsigned first_limit = 2;
@@ -118,7 +119,7 @@ bool LssSlave::identify(unsigned position, std::uint32_t number, const LssAddres
     holds = holds && (position % 2 == 0 ? number <= own : own <= number);
   }
   if (!holds) {
-    identified_ = conditions;  // until the first one comes again
+    identified_ = conditions;  // until the first condition comes again
     return false;
   }
   ++identified_;

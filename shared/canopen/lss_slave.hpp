@@ -11,7 +11,7 @@ namespace proleg::canopen {
 /// Keeps the node id of the device behind an LSS slave.
 class LssStorage {
  public:
-  /// node: 0: none. Returns an error code of namespace `lss` and, for specific_error, the code that follows it.
+  /// Result of storing: an error code of namespace `lss`, and the code that follows specific_error.
   struct Result {
     std::uint8_t error = lss::ok;
     std::uint8_t specific = 0;
@@ -22,24 +22,24 @@ class LssStorage {
   ~LssStorage() = default;
 };
 
-/// Which services are answered depends on the slave's state: waiting, or selected for configuration.
+/// A slave. Its state decides which services it answers: waiting, or selected for configuration.
 class LssSlave {
  public:
-  /// After power on. node: the stored node id, 0: none.
+  /// Starts the slave after power-on. node: the stored node id; 0: none.
   void power_on(std::uint8_t node) {
     pending_node_ = node;
     reset();
   }
-  /// At every start of the communication: waiting.
+  /// Returns to the state `waiting`. Must be called at every start of the communication.
   void reset();
 
   /// Handles a frame on 0x7E5. address: the module's own; node: the node id in use, 0: none. Returns the answer;
-  /// nothing for a service that has none, a frame for other slaves or one that is not of LSS.
+  /// nothing for a service without an answer, a frame for other slaves or a frame that is not one of LSS.
   [[nodiscard]] std::optional<CanFrame> serve(const CanFrame& request, const LssAddress& address, std::uint8_t node,
                                               LssStorage& storage);
 
   [[nodiscard]] lss::State state() const { return state_; }
-  /// The node id that the next start of the communication puts into use; 0: none.
+  /// The node id that takes effect at the next start of the communication; 0: none.
   [[nodiscard]] std::uint8_t pending_node() const { return pending_node_; }
 
  private:
@@ -52,9 +52,9 @@ class LssSlave {
 
   lss::State state_ = lss::State::waiting;
   std::uint8_t pending_node_ = 0;
-  std::uint8_t selected_ = 0;    ///< numbers of the address that were selected in a row, from the first
-  std::uint8_t identified_ = 0;  ///< conditions that held in a row, from the first
-  std::uint8_t scanned_ = 0;     ///< the number that Fastscan asks for
+  std::uint8_t selected_ = 0;    ///< numbers of the address, from the first on, that were selected in a row
+  std::uint8_t identified_ = 0;  ///< conditions, from the first on, that held in a row
+  std::uint8_t scanned_ = 0;     ///< position of the number that Fastscan asks for
 };
 
 }  // namespace proleg::canopen

@@ -12,7 +12,7 @@ constexpr CanFrame make(unsigned identifier, std::uint8_t length) {
   return {static_cast<std::uint16_t>(identifier), length, {}};
 }
 
-/// The node of a frame on base + node with that length; nothing if it is no such frame.
+/// The node that sent a frame with the identifier base + node and this length; nothing for any other frame.
 std::optional<std::uint8_t> sender(const CanFrame& frame, std::uint16_t base, unsigned length, unsigned max_node) {
   const unsigned node = static_cast<unsigned>(frame.identifier) - base;
   if (frame.identifier < base || node < min_node_id || node > max_node || frame.length != length) {

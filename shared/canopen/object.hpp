@@ -1,6 +1,6 @@
 #pragma once
 
-// What an entry of the object dictionary is (CiA 301, section 7.4). The entries themselves: declared_objects.hpp.
+// The entries of the object dictionary in general (CiA 301, section 7.4). declared_objects.hpp declares them.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace proleg::canopen {
 
-/// CiA 301, table 44. Numbers fit into an expedited SDO; the last three are long types, of any number of bytes.
+/// Data types (CiA 301, table 44). Numbers fit into an expedited SDO; the last three are long types, with any number of
+/// bytes.
 enum class DataType : std::uint8_t {
   integer8 = 0x02,
   integer16 = 0x03,
@@ -19,15 +20,15 @@ enum class DataType : std::uint8_t {
   unsigned8 = 0x05,
   unsigned16 = 0x06,
   unsigned32 = 0x07,
-  visible_string = 0x09,  ///< ASCII, 0x20 to 0x7E
+  visible_string = 0x09,  ///< ASCII characters, 0x20 to 0x7E
   octet_string = 0x0A,
   domain = 0x0F,
 };
 
-/// Whether values of the type have any number of bytes.
+/// Whether values of the type may have any number of bytes.
 [[nodiscard]] constexpr bool is_long(DataType type) { return type > DataType::unsigned32; }
 
-/// 1, 2 or 4 bytes; 0 for a long type.
+/// Size of a type: 1, 2 or 4 bytes; 0 for a long type.
 [[nodiscard]] constexpr std::uint8_t size_of(DataType type) {
   switch (type) {
     case DataType::integer8:
@@ -48,8 +49,8 @@ enum class DataType : std::uint8_t {
   return type == DataType::integer8 || type == DataType::integer16 || type == DataType::integer32;
 }
 
-/// The low bytes of a number, as many as the type has, as 32 bits: signed types are sign-extended. For a long type the
-/// number is its size, all of it.
+/// The low bytes of a number, as many as the type has, as 32 bits; signed types are sign-extended. For a long type the
+/// number is its size, and all of it is returned.
 [[nodiscard]] constexpr std::uint32_t extend(DataType type, std::uint32_t value) {
   if (is_long(type)) {
     return value;
@@ -61,7 +62,7 @@ enum class DataType : std::uint8_t {
   return (value << unused) >> unused;
 }
 
-/// The range of a type; of a long one: of its number of bytes.
+/// Least value of a type; for a long type, its least number of bytes.
 [[nodiscard]] constexpr std::uint32_t min_value(DataType type) {
   return is_signed(type) ? extend(type, 1U << (8U * size_of(type) - 1U)) : 0;
 }
@@ -69,13 +70,13 @@ enum class DataType : std::uint8_t {
   return is_long(type) ? 0xFFFFFFFF : extend(type, ~min_value(type));
 }
 
-/// What SDO may do. `by_pdo`: SDO reads, and only a receive PDO writes.
+/// How SDO may access an entry. `by_pdo`: SDO reads it, and only a receive PDO writes it.
 enum class Access : std::uint8_t { read_only, read_write, constant, by_pdo, write_only };
 
-/// CiA 301, table 42.
+/// Object codes (CiA 301, table 42).
 enum class ObjectCode : std::uint8_t { variable = 0x07, array = 0x08, record = 0x09 };
 
-/// Where an entry is: index and sub-index.
+/// Address of an entry: index and sub-index.
 struct Address {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;
@@ -83,53 +84,53 @@ struct Address {
   friend constexpr bool operator==(Address, Address) = default;
 };
 
-/// An entry without its texts: what a device needs. Values travel as 32 bits; signed types are sign-extended.
+/// An entry without its texts, as a device needs it. Values are 32 bits; signed types are sign-extended.
 struct Entry {
   Address address;
   DataType type;
   Access access;
   bool adds_node_id;            ///< the value is always default_value + node id (CiA 306, "$NODEID+")
-  std::uint32_t default_value;  ///< of a constant: its value. The node id is added where adds_node_id.
-  std::uint32_t minimum;        ///< compared as signed for signed types; of a long type: number of bytes
+  std::uint32_t default_value;  ///< of a constant: its value, to which the node id is added if adds_node_id is set
+  std::uint32_t minimum;  ///< compared as signed numbers for signed types; for a long type it is a number of bytes
   std::uint32_t maximum;
-  std::optional<std::uint32_t> also_allowed;  ///< a value outside minimum to maximum, such as "off"
+  std::optional<std::uint32_t> also_allowed;  ///< an allowed value outside minimum to maximum, such as "off"
 };
 
-/// An entry with its texts, which only programs on a computer read: they are not in a module's image.
+/// An entry with its texts, which only programs on a computer read. A module's image does not contain the texts.
 struct Object : Entry {
   std::string_view name;
   std::string_view help;       ///< a short phrase: unit and meaning
-  std::string_view text = {};  ///< of a constant string: its value
+  std::string_view text = {};  ///< the value of a constant string
   UnitScale scale = scale_of(Unit::count);
 };
 
-/// The same entry with the unit of its value.
+/// The same object, with the unit of its value.
 [[nodiscard]] constexpr Object in_unit(UnitScale scale, Object object) {
   object.scale = scale;
   return object;
 }
-/// The same with a unit of which one step of the value is worth 1.
+/// The same object, with a unit whose scale is 1.
 [[nodiscard]] constexpr Object in_unit(const char* symbol, const Object& object) {
   return in_unit(UnitScale{symbol, 1, 1}, object);
 }
 
-/// An entry that never changes.
+/// Declares an entry that never changes.
 [[nodiscard]] constexpr Object constant(Address address, std::string_view name, DataType type, std::uint32_t value,
                                         std::string_view help = {}) {
   return {{address, type, Access::constant, false, value, min_value(type), max_value(type), {}}, name, help};
 }
-/// An entry that only the device changes; its default value has no meaning.
+/// Declares an entry that only the device changes; its default value has no meaning.
 [[nodiscard]] constexpr Object read_only(Address address, std::string_view name, DataType type,
                                          std::string_view help = {}) {
   return {{address, type, Access::read_only, false, 0, min_value(type), max_value(type), {}}, name, help};
 }
-/// The identifier `base` + node id of a message of the predefined connection set.
+/// Declares the identifier `base` + node id of a message of the predefined connection set.
 [[nodiscard]] constexpr Object node_identifier(Address address, std::string_view name, std::uint32_t base,
                                                std::string_view help = {}) {
   constexpr DataType type = DataType::unsigned32;
   return {{address, type, Access::read_only, true, base, min_value(type), max_value(type), {}}, name, help};
 }
-/// A string that never changes.
+/// Declares a string that never changes.
 [[nodiscard]] constexpr Object constant_text(Address address, std::string_view name, std::string_view text,
                                              std::string_view help = {}) {
   Object object = constant(address, name, DataType::visible_string, 0, help);
@@ -149,13 +150,13 @@ struct Range {
           help};
 }
 
-/// An index with sub-indices, or several equal ones. Sub-index 0, the highest sub-index supported, follows from the
-/// entries; it is declared only where it means something else.
+/// An index with sub-indices, or several such indices with equal entries. Sub-index 0, the highest sub-index supported,
+/// follows from the entries; it is declared only where it means something else.
 struct ObjectGroup {
   std::uint16_t index;
   ObjectCode code;  ///< array or record
   std::string_view name;
-  std::uint8_t count = 1;  ///< indices: `index` and those that follow it, one a joint
+  std::uint8_t count = 1;  ///< number of indices: `index` and those that follow it, one for each joint
 
   [[nodiscard]] constexpr Address at(std::uint8_t sub) const { return {index, sub}; }
 };
@@ -170,10 +171,10 @@ struct ObjectArray {
   }
 };
 
-/// Equal entries at 64 consecutive indices, one a joint.
+/// Equal entries at 64 consecutive indices, one for each joint.
 struct JointObjects {
   Object first;
-  std::uint32_t default_step = 0;  ///< default value of an entry minus that of the one before
+  std::uint32_t default_step = 0;  ///< default value of an entry minus that of the entry before
   static constexpr std::uint8_t count = max_joints;
 
   [[nodiscard]] constexpr Address address(unsigned joint) const {
@@ -186,7 +187,7 @@ struct JointObjects {
   return is_signed(type) ? static_cast<std::int32_t>(value) < static_cast<std::int32_t>(other) : value < other;
 }
 
-/// The number in an entry that can have only one; nothing if it depends on the device's state, or for a long type.
+/// The value of an entry that can have only one; nothing if it depends on the device's state, or for a long type.
 [[nodiscard]] constexpr std::optional<std::uint32_t> fixed_value(const Entry& entry, std::uint8_t node) {
   if (entry.adds_node_id) {
     return entry.default_value + node;
@@ -228,15 +229,15 @@ enum class AbortCode : std::uint32_t {
   general_error = 0x08000000,
   refused_by_application = 0x08000020,
   refused_by_local_control = 0x08000021,
-  refused_by_state = 0x08000022,  ///< "because of the present device state"
+  refused_by_state = 0x08000022,  ///< abort code "because of the present device state"
   no_dictionary = 0x08000023,
   no_data = 0x08000024,
 };
 
-/// One short phrase in English for messages; for an unknown code "unknown abort code".
+/// A short English phrase that describes the code, for messages; for an unknown code "unknown abort code".
 [[nodiscard]] std::string_view describe(AbortCode code);
 
-/// `none`, or why the value, as 32 bits, is not one of those that the declaration allows.
+/// `none` if the declaration allows the value, as 32 bits; else the reason.
 [[nodiscard]] constexpr AbortCode check_range(const Entry& entry, std::uint32_t value) {
   if (entry.also_allowed && value == *entry.also_allowed) {
     return AbortCode::none;

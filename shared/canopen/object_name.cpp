@@ -14,14 +14,14 @@ void append(ObjectName& name, std::string_view text) {
   }
 }
 
-/// " 12"; number: below 100.
+/// Appends a blank and a number, such as " 12"; the number is below 100.
 void append_number(ObjectName& name, unsigned number) {
   const std::array<char, 3> digits{' ', static_cast<char>('0' + number / 10U), static_cast<char>('0' + number % 10U)};
   append(name, {digits.data(), 1});
   append(name, number < 10 ? std::string_view(&digits[2], 1) : std::string_view(&digits[1], 2));
 }
 
-/// "amplitude"
+/// Name of the parameter or internal value, such as "amplitude".
 std::string_view short_name(const ValueAddress& value) {
   const Declaration& declaration = find_algorithm(value.algorithm)->declaration();
   return value.kind == ValueKind::internal_value ? declaration.internal_values[value.number].name
@@ -62,7 +62,7 @@ ObjectName index_name(std::uint16_t index) {
 ObjectName entry_name(Address address) {
   ObjectName name{};
   if (const std::optional<ValueAddress> value = value_address(address)) {
-    // Tools list entries without the name of their index: the slot alone would say nothing.
+    // Tools list entries without the name of their index, so the slot alone would not be clear.
     append(name, short_name(*value));
     append(name, value->kind == ValueKind::staged_parameter ? ", staged, of " : " of ");
     append_slot(name, *value);

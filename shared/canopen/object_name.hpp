@@ -1,6 +1,6 @@
 #pragma once
 
-// Names of entries for people: messages, the EDS, docs/objects.md.
+// Names of entries that people read, in messages, the EDS and docs/objects.md.
 
 #include <array>
 #include <cstddef>
@@ -18,12 +18,14 @@ struct ObjectName {
   [[nodiscard]] std::string_view view() const { return {characters.data(), size}; }
 };
 
-/// "Identity object", "Controlword", "PatternGenerator_sinusoidal amplitude, staged"; empty if there is no such index.
+/// Name of an index, such as "Identity object", "Controlword" or "PatternGenerator_sinusoidal amplitude, staged"; empty
+/// if the index is absent.
 [[nodiscard]] ObjectName index_name(std::uint16_t index);
-/// "Vendor-ID", "Controlword", "amplitude, staged, of slot 2"; empty if there is no such entry.
+/// Name of an entry within its index, such as "Vendor-ID", "Controlword" or "amplitude, staged, of slot 2"; empty if
+/// the entry is absent.
 [[nodiscard]] ObjectName entry_name(Address address);
-/// "Identity object: Vendor-ID", "Controlword", "PatternGenerator_sinusoidal amplitude, staged: slot 2"; empty if there
-/// is no such entry.
+/// Names of index and entry, such as "Identity object: Vendor-ID", "Controlword" or "PatternGenerator_sinusoidal
+/// amplitude, staged: slot 2"; empty if the entry is absent.
 [[nodiscard]] ObjectName full_name(Address address);
 
 }  // namespace proleg::canopen

@@ -170,12 +170,12 @@ constexpr const ObjectGroup* declared_groups[] = {
     &object::position_limits,
 };
 
-// The image of a module contains the following tables and nothing of the above.
+// The image of a module contains the following tables, and nothing that is above this line.
 
 struct Limits {
   std::uint32_t minimum;
   std::uint32_t maximum;
-  std::uint32_t also_allowed;  ///< the minimum: no other value is
+  std::uint32_t also_allowed;  ///< equal to the minimum if no other value is allowed
 
   friend constexpr bool operator==(const Limits&, const Limits&) = default;
 };
@@ -188,7 +188,7 @@ constexpr bool has_limits(const ObjectRow& row) {
   return object.minimum != min_value(object.type) || object.maximum != max_value(object.type) || object.also_allowed;
 }
 
-/// The ranges of the rows that have some, each once.
+/// The limits of all rows that have some; each pair is in the table once.
 struct LimitsTable {
   std::array<Limits, std::size(declared_rows)> ranges{};
   std::size_t count = 0;
@@ -260,7 +260,8 @@ constexpr bool covers(const AnyGroup& group, std::uint16_t index) {
   return index >= group.index && index - group.index < group.count;
 }
 
-/// Ascending, and sub-indices only where a group says what the index is. A group may declare its sub-index 0.
+/// Whether the table is ascending, and has sub-indices only where a group describes the index. A group may declare its
+/// sub-index 0.
 constexpr bool well_formed() {
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -283,7 +284,7 @@ static_assert(well_formed());
 
 constexpr DataType value_type = DataType::integer32;
 
-/// An entry of the ranges.
+/// An entry of one of the ranges that follow from the algorithms' declarations.
 Entry value_entry(Address address, const ValueAddress& value) {
   Range range = full_range(value_type);
   std::uint32_t default_value = 0;

@@ -1,12 +1,12 @@
 #pragma once
 
 // The object dictionary of a joint module, declared once: the module's SDO server, the host's names, the EDS and
-// docs/objects.md come from here.
+// docs/objects.md are made from it.
 //
 // The entries with fixed addresses are the constants of namespace `object` (declared_objects.hpp). Three ranges follow
-// from the algorithms' declarations (shared/gait): index 0x3000 + 32 * algorithm id + parameter number, sub-index =
-// slot 1 to 4, is the value in force; 0x4000 + ... the staged one; 0x5000 + 32 * algorithm id + internal value number
-// the same for internal values, where a write stages a distortion.
+// from the algorithms' declarations (shared/gait). Index 0x3000 + 32 * algorithm id + parameter number, sub-index =
+// slot 1 to 4, is the value of a parameter in force; 0x4000 + ... is the staged value. 0x5000 + 32 * algorithm id +
+// number is an internal value; a write stages a distortion.
 
 #include <optional>
 #include <span>
@@ -15,13 +15,13 @@
 
 namespace proleg::canopen {
 
-/// What the ranges hold.
+/// The kinds of values in these three ranges.
 enum class ValueKind : std::uint8_t { parameter, staged_parameter, internal_value };
 inline constexpr unsigned value_kinds = 3;
 struct ValueAddress {
   ValueKind kind;
-  std::uint8_t algorithm;  ///< id
-  std::uint8_t number;     ///< of the parameter or internal value
+  std::uint8_t algorithm;  ///< id of the algorithm
+  std::uint8_t number;     ///< number of the parameter or internal value
   std::uint8_t slot;       ///< 0 to 3
 
   friend constexpr bool operator==(const ValueAddress&, const ValueAddress&) = default;
@@ -31,16 +31,16 @@ struct ValueAddress {
   return {static_cast<std::uint16_t>(base + 32U * value.algorithm + value.number),
           static_cast<std::uint8_t>(value.slot + 1)};
 }
-/// The inverse; nothing for an address outside the ranges, of an algorithm that is not in the registry or a number that
-/// it does not declare, or for sub-index 0 or above 4.
+/// Finds the value at an address. Nothing for an address outside the ranges, of an algorithm that is not in the
+/// registry or a number that the algorithm does not declare, or for sub-index 0 or above 4.
 [[nodiscard]] std::optional<ValueAddress> value_address(Address address);
 
-/// The entry at an address, also of the ranges; nothing if there is none.
+/// The entry at an address, also in the ranges; nothing if it is absent.
 [[nodiscard]] std::optional<Entry> find_entry(Address address);
-/// The same; `no_such_object` or `no_such_sub_index` if there is none.
+/// Finds the entry at an address; `no_such_object` or `no_such_sub_index` if it is absent.
 [[nodiscard]] AbortCode find_entry(Address address, Entry& entry);
 
-/// What an index holds.
+/// Description of an index.
 struct IndexInfo {
   ObjectCode code;
   std::uint8_t max_sub;  ///< 0 for a variable; else all sub-indices up to it exist
@@ -49,8 +49,8 @@ struct IndexInfo {
 /// Whether any sub-index of the index exists.
 [[nodiscard]] inline bool index_exists(std::uint16_t index) { return find_index(index).has_value(); }
 
-/// Equal entries at `indices` consecutive indices and `subs` consecutive sub-indices, in the form in which a module's
-/// flash holds them: 16 bytes each. find_entry() unpacks them.
+/// Equal entries at `indices` consecutive indices and `subs` consecutive sub-indices. This is the form in a module's
+/// flash, with 16 bytes for each row. find_entry() unpacks them.
 struct EntryRow {
   Address first;
   DataType type;
@@ -58,7 +58,7 @@ struct EntryRow {
   bool adds_node_id;
   std::uint8_t indices;
   std::uint8_t subs;
-  std::uint8_t limits;         ///< position in the table of ranges that are not those of the type; `no_limits`
+  std::uint8_t limits;         ///< position in the table of limits; `no_limits`: the limits are those of the type
   std::uint16_t default_step;  ///< default value at an index minus that at the index before, in units of 0x10000
   std::uint32_t default_value;
 
@@ -69,12 +69,12 @@ struct EntryRow {
            address.sub - first.sub < subs;
   }
 };
-/// The row with the address; null if there is none, as for sub-indices 0 of groups and for the ranges.
+/// The row with the address; null if it is absent, as for sub-index 0 of a group and for the ranges.
 [[nodiscard]] const EntryRow* find_row(Address address);
 
-// With texts, for programs on a computer.
+// Entries with texts, for programs on a computer.
 
-/// The entries of namespace `object` as they are declared, ascending by index and sub-index of the first.
+/// Entries of namespace `object` as they are declared, in ascending order of their first index and sub-index.
 struct ObjectRow {
   const Object* first;
   std::uint8_t indices;
@@ -82,12 +82,12 @@ struct ObjectRow {
   std::uint32_t default_step;
 };
 [[nodiscard]] std::span<const ObjectRow> object_rows();
-/// The group with the index; null for a variable and for the ranges.
+/// The group with the index; null for a variable and in the ranges.
 [[nodiscard]] const ObjectGroup* find_group(std::uint16_t index);
-/// find_entry() with its texts.
+/// The entry at an address with its texts; nothing if it is absent.
 [[nodiscard]] std::optional<Object> find_object(Address address);
 
-/// The entry with the next higher address, sub-index before index; nothing after the last. It searches.
+/// The entry with the next address, in the order of index and sub-index; nothing after the last. It searches.
 [[nodiscard]] std::optional<Object> next_object(Address address);
 
 /// Calls visit(object) for every entry, ascending by index and sub-index.

@@ -14,7 +14,7 @@ constexpr unsigned fault_reset_bit = 1U << 7U;
 /// the module obeys the controlword (remote).
 constexpr unsigned always = 1U << 4U | 1U << 9U;
 
-/// Those of drive_state_bits.
+/// The bits of drive_state_bits that stand for a state.
 constexpr unsigned state_bits(PowerState state) {
   switch (state) {
     case PowerState::switch_on_disabled:
@@ -33,8 +33,8 @@ constexpr unsigned state_bits(PowerState state) {
   return 0x08;
 }
 
-/// CiA 402, command coding. Each command includes those before it: `enable` in Ready to switch on passes through
-/// Switched on.
+/// Commands of the controlword (CiA 402, command coding). Each command includes those before it: `enable` in Ready to
+/// switch on passes through Switched on.
 enum class PowerCommand : std::uint8_t { disable_voltage, quick_stop, shut_down, switch_on, enable };
 
 constexpr PowerCommand command_of(unsigned controlword) {
@@ -50,8 +50,8 @@ constexpr PowerCommand command_of(unsigned controlword) {
   return (controlword & enable_operation_bit) == 0 ? PowerCommand::switch_on : PowerCommand::enable;
 }
 
-/// Transitions 2 to 12 of CiA 402. Transition 16, from Quick stop active back to Operation enabled, is left out: hosts
-/// repeat the controlword, which would start the robot without a decision.
+/// The next state, by the transitions 2 to 12 of CiA 402. Transition 16, from Quick stop active back to Operation
+/// enabled, is left out: hosts repeat the controlword, which would start the robot without a decision.
 constexpr PowerState next(PowerState state, PowerCommand command) {
   switch (state) {
     case PowerState::fault:

@@ -4,6 +4,12 @@
 
 namespace proleg::canopen {
 
+// Values that a host writes to the controlword of a drive (0x6040; CiA 402, table 27).
+inline constexpr std::uint16_t shutdown_controlword = 0x0006;
+inline constexpr std::uint16_t switch_on_controlword = 0x0007;
+inline constexpr std::uint16_t enable_operation_controlword = 0x000F;
+inline constexpr std::uint16_t quick_stop_controlword = 0x0002;
+
 /// States of a drive (CiA 402, section 8.4; IEC 61800-7-201): only Operation enabled and Quick stop active give the
 /// servo pulses.
 enum class PowerState : std::uint8_t {
@@ -15,7 +21,7 @@ enum class PowerState : std::uint8_t {
   fault,
 };
 
-/// Bits 0-3, 5 and 6 of the statusword, which say in which state a drive is, and their values (CiA 402, state coding).
+/// Bits 0-3, 5 and 6 of the statusword, which are the state of a drive (CiA 402, state coding).
 inline constexpr std::uint16_t drive_state_bits = 0x6F;
 inline constexpr std::uint16_t drive_operation_enabled = 0x27;
 inline constexpr std::uint16_t drive_quick_stop_active = 0x07;
@@ -23,16 +29,17 @@ inline constexpr std::uint16_t drive_quick_stop_active = 0x07;
 /// The state machine behind controlword (0x6040) and statusword (0x6041).
 class PowerControl {
  public:
-  /// Commands by bits 0-3 and 7 of the controlword; a rising edge of bit 7 clears a fault and a quick
-  /// stop. Both need the decision of a person.
+  /// Executes the command in bits 0-3 and 7 of the controlword. A rising edge of bit 7 clears a fault and a quick stop,
+  /// which both need the decision of a person.
   void command(std::uint16_t controlword);
-  /// Lost SYNC, lost host, bus-off: Operation enabled becomes Quick stop active. Other states stay.
+  /// Must be called when SYNC or the host is lost, or at bus-off: Operation enabled becomes Quick stop active. Other
+  /// states stay.
   void quick_stop();
-  /// The servo's power is taken: Switch on disabled. A fault stays.
+  /// Must be called when the servo's power is taken away: the state becomes Switch on disabled. A fault stays.
   void disable_voltage();
-  /// Over-current and the like: pulses off until cleared.
+  /// Must be called at over-current and similar faults: the pulses are off until the fault is cleared.
   void fault();
-  /// As after switching on.
+  /// Returns to the state after switching on.
   void reset();
 
   [[nodiscard]] PowerState state() const { return state_; }

@@ -18,36 +18,36 @@ inline constexpr std::uint8_t answer_upload_segment = 0x00;
 inline constexpr std::uint8_t request_download_segment = 0x00;
 inline constexpr std::uint8_t answer_download_segment = 0x20;
 inline constexpr std::uint8_t abort = 0x80;
-inline constexpr std::uint8_t block_download = 0xC0;         ///< client; server of an upload
-inline constexpr std::uint8_t answer_block_download = 0xA0;  ///< server; client of an upload
-/// Lower bits of a transfer's first frame.
+inline constexpr std::uint8_t block_download = 0xC0;         ///< a block download's client, and a block upload's server
+inline constexpr std::uint8_t answer_block_download = 0xA0;  ///< a block download's server, and a block upload's client
+/// Lower bits of the command byte in the first frame of a transfer.
 inline constexpr std::uint8_t expedited = 0x02;
 inline constexpr std::uint8_t size_indicated = 0x01;
-/// Lower bits of a segment's frame.
+/// Lower bits of the command byte in a segment.
 inline constexpr std::uint8_t toggle = 0x10;
 inline constexpr std::uint8_t no_more_segments = 0x01;
-/// Lower bits of the frames of a block transfer.
+/// Lower bits of the command byte in the frames of a block transfer.
 inline constexpr std::uint8_t block_crc = 0x04;   ///< in the first frame: a checksum is supported
 inline constexpr std::uint8_t block_size = 0x02;  ///< in the first frame: the size is indicated
 inline constexpr std::uint8_t block_end = 0x01;
 inline constexpr std::uint8_t block_acknowledge = 0x02;
 inline constexpr std::uint8_t block_start = 0x03;
-/// Those that say which frame it is, in 0xA0.
+/// Bits of the command byte that distinguish the frames with specifier 0xA0.
 inline constexpr std::uint8_t block_command = 0x03;
 
-/// Bytes of the last segment that hold no data, in the end of a block transfer.
+/// Number of bytes of the last segment that hold no data, from the frame that ends a block transfer.
 [[nodiscard]] constexpr std::uint8_t unused_at_end(const CanFrame& frame) { return (frame.data[0] >> 2U) & 7U; }
-/// The same in a segment of a segmented transfer.
+/// Number of bytes of a segment that hold no data, in a segmented transfer.
 [[nodiscard]] constexpr std::uint8_t unused_in_segment(const CanFrame& frame) { return (frame.data[0] >> 1U) & 7U; }
 
-/// The command specifier.
+/// Command specifier of a frame.
 [[nodiscard]] constexpr std::uint8_t specifier(const CanFrame& frame) { return frame.data[0] & 0xE0U; }
 
-/// Command bits of an expedited transfer of 1 to 4 bytes.
+/// Adds the bits of an expedited transfer of 1 to 4 bytes to a command byte.
 [[nodiscard]] constexpr std::uint8_t with_size(std::uint8_t command, unsigned size) {
   return static_cast<std::uint8_t>(command | (4U - size) << 2U | expedited | size_indicated);
 }
-/// The number of bytes by a command byte with the expedited bit; 0 if it is not indicated.
+/// Number of bytes by a command byte with the expedited bit; 0 if it is not indicated.
 [[nodiscard]] constexpr std::uint8_t indicated_size(std::uint8_t command) {
   return (command & size_indicated) != 0 ? static_cast<std::uint8_t>(4U - ((command >> 2U) & 3U)) : std::uint8_t{0};
 }

@@ -4,7 +4,6 @@
 
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/sdo_frame.hpp"
-#include "shared/canopen/sdo_profile.hpp"
 
 namespace proleg::canopen {
 
@@ -17,7 +16,7 @@ std::optional<CanFrame> SdoServer::receive(Microseconds now, const CanFrame& fra
     reset();
     return std::nullopt;
   }
-  heard_at_ = now;
+  last_frame_at_ = now;
   silences_ = 0;
   if (state_ == State::block_download) {
     return download_block_segment(frame);
@@ -35,7 +34,7 @@ std::optional<CanFrame> SdoServer::receive(Microseconds now, const CanFrame& fra
       return (command & sdo::block_end) != 0 ? end_block_download(frame) : initiate_block_download(frame);
     case sdo::answer_block_download:
       break;
-    case sdo::abort:  // with other bits it is the last segment of a block download, once more
+    case sdo::abort:  // with other bits it is the repeated last segment of a block download
       return std::nullopt;
     default:
       return unexpected(frame);
@@ -199,7 +198,8 @@ std::optional<CanFrame> SdoServer::download_block_segment(const CanFrame& frame)
   return receiver_.has_ended() ? std::optional(acknowledge_block()) : std::nullopt;
 }
 
-/// An abort waits for the end of the sub-block: until then, segments are on their way that would be taken for requests.
+/// Acknowledges a sub-block. An abort waits for the end of the sub-block: until then, segments are on their way that
+/// would be taken for requests.
 CanFrame SdoServer::acknowledge_block() {
   if (failure_ != AbortCode::none) {
     return abort(failure_);
@@ -220,7 +220,7 @@ CanFrame SdoServer::acknowledge_block() {
 CanFrame SdoServer::end_block_download(const CanFrame& frame) {
   const CanFrame answer = make(sdo::answer_block_download | sdo::block_end);
   if (state_ == State::block_download_ended) {
-    return answer;  // the client has not received the first one
+    return answer;  // the client has not received the first answer
   }
   if (state_ != State::block_download_end) {
     return unexpected(frame);
@@ -275,7 +275,7 @@ std::optional<CanFrame> SdoServer::start_block_upload(const CanFrame& frame) {
 }
 
 CanFrame SdoServer::next_segment(Microseconds now) {
-  heard_at_ = now;
+  last_frame_at_ = now;
   const std::uint32_t offset = offset_ + std::uint32_t{segment_bytes} * sender_.sent();
   const std::uint8_t bytes = bytes_at(offset);
   CanFrame segment = make(0);
@@ -294,7 +294,7 @@ CanFrame SdoServer::next_segment(Microseconds now) {
 
 std::optional<CanFrame> SdoServer::acknowledge_block_upload(const CanFrame& frame) {
   if (state_ == State::block_upload_end) {
-    return end_block_upload();  // the client has not received the first one
+    return end_block_upload();  // the client has not received the first frame of this kind
   }
   if (state_ != State::block_upload) {
     return unexpected(frame);
@@ -327,7 +327,7 @@ CanFrame SdoServer::end_block_upload() const {
   return end;
 }
 
-// Time.
+// Time-outs.
 
 std::optional<CanFrame> SdoServer::poll(Microseconds now) {
   if (now < next_deadline()) {
@@ -337,7 +337,7 @@ std::optional<CanFrame> SdoServer::poll(Microseconds now) {
   if (!is_receiving_block() || ++silences_ >= max_silences) {
     return abort(AbortCode::timeout);
   }
-  heard_at_ = now;
+  last_frame_at_ = now;
   return acknowledge_block();
 }
 
@@ -345,7 +345,7 @@ Microseconds SdoServer::next_deadline() const {
   if (!is_active()) {
     return never;
   }
-  return heard_at_ + (is_receiving_block() ? silence_us : timeout_us);
+  return last_frame_at_ + (is_receiving_block() ? silence_us : timeout_us);
 }
 
 void SdoServer::reset() {
@@ -362,7 +362,7 @@ void SdoServer::reset() {
   failure_ = AbortCode::none;
 }
 
-// The value.
+// Access to the value.
 
 AbortCode SdoServer::find(const CanFrame& frame) {
   const Address address = sdo::address(frame);
@@ -483,7 +483,7 @@ CanFrame SdoServer::abort(AbortCode code) {
   return refuse(entry_.address, code);
 }
 
-/// A request that is none, or that does not fit the transfer.
+/// Answers a frame that is not a request, or does not fit the transfer.
 CanFrame SdoServer::unexpected(const CanFrame& frame) {
   if (is_active()) {
     return abort(AbortCode::unknown_command);

@@ -12,8 +12,8 @@
 
 namespace proleg {
 
-/// (value + half) >> bits: the nearest multiple of 2^bits, ties towards plus infinity. bits is 1..62; value must be
-/// further than 2^(bits-1) from the ends of int64_t.
+/// Nearest multiple of 2^bits, divided by 2^bits: (value + half) >> bits, ties towards plus infinity. bits is 1..62;
+/// value must be further than 2^(bits-1) from the ends of int64_t.
 [[nodiscard]] constexpr std::int64_t shift_right_rounding(std::int64_t value, unsigned bits) {
   return (value + (std::int64_t{1} << (bits - 1))) >> bits;
 }
@@ -33,7 +33,7 @@ namespace proleg {
   return saturate(std::int64_t{a} + b);
 }
 
-/// a * b from four products of halves: for processors whose multiplier gives 32 bits only.
+/// Computes a * b from four products of halves, for processors whose multiplier gives 32 bits only.
 [[nodiscard]] constexpr std::uint64_t multiply_by_halves(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t low = (a & 0xFFFFU) * (b & 0xFFFFU);
   const std::uint32_t middle_a = (a >> 16U) * (b & 0xFFFFU) + (low >> 16U);  // at most 2^32 - 2^16
@@ -42,7 +42,7 @@ namespace proleg {
   return (std::uint64_t{high} << 32U) | (middle_b << 16U) | (low & 0xFFFFU);
 }
 
-/// The whole product of two numbers.
+/// The 64-bit product of two 32-bit numbers.
 [[nodiscard]] constexpr std::uint64_t multiply_wide(std::uint32_t a, std::uint32_t b) {
 #ifdef __ARM_ARCH_6M__  // Cortex-M0: the compiler would call a routine for 64 by 64 bits
   return multiply_by_halves(a, b);
@@ -63,8 +63,8 @@ namespace proleg {
 #endif
 }
 
-/// Product of two fixed-point numbers of which one has `fraction_bits` fraction bits; the result has the format of the
-/// other. The caller keeps the result within int32_t.
+/// Product of two fixed-point numbers. One has `fraction_bits` fraction bits; the result has the format of the other.
+/// The caller keeps the result within int32_t.
 [[nodiscard]] constexpr std::int32_t multiply(std::int32_t a, std::int32_t b, unsigned fraction_bits) {
   return static_cast<std::int32_t>(shift_right_rounding(multiply_wide(a, b), fraction_bits));
 }
@@ -85,6 +85,21 @@ template <typename Integer>
 [[nodiscard]] constexpr Integer divide_nearest(Integer numerator, std::type_identity_t<Integer> denominator) {
   const Integer half = denominator / 2;
   return (numerator >= 0 ? numerator + half : numerator - half) / denominator;
+}
+
+/// The largest integer whose square is at most `value`. Use it for constants that are derived once, not in every tick.
+[[nodiscard]] constexpr std::uint32_t square_root(std::uint64_t value) {
+  std::uint64_t rest = value;
+  std::uint64_t root = 0;
+  for (std::uint64_t bit = std::uint64_t{1} << 62U; bit != 0; bit >>= 2U) {
+    if (rest >= root + bit) {
+      rest -= root + bit;
+      root = (root >> 1U) + bit;
+    } else {
+      root >>= 1U;
+    }
+  }
+  return static_cast<std::uint32_t>(root);
 }
 
 }  // namespace proleg

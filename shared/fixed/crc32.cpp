@@ -5,7 +5,8 @@
 namespace proleg {
 namespace {
 
-/// Remainders of all values of four bits: two look-ups a byte, and 64 bytes of flash instead of 1024.
+/// Remainders of all values of four bits. A byte needs two look-ups, and the table takes 64 bytes of flash instead of
+/// 1024.
 constexpr std::array<std::uint32_t, 16> make_table() {
   std::array<std::uint32_t, 16> table{};
   for (std::uint32_t i = 0; i < 16; ++i) {

@@ -11,10 +11,10 @@ class Crc32 {
  public:
   void add(std::uint8_t byte);
   void add(std::span<const std::uint8_t> bytes);
-  /// Adds the low `size` bytes of a value, lowest first.
+  /// Adds the low `size` bytes of a value, lowest byte first.
   void add_little_endian(std::uint64_t value, unsigned size);
 
-  /// Of all bytes added so far; 0 if there were none. More bytes may follow.
+  /// Checksum of all bytes added so far; 0 if there were none. More bytes may follow.
   [[nodiscard]] std::uint32_t value() const { return ~remainder_; }
 
  private:

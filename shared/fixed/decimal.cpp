@@ -7,7 +7,7 @@ namespace {
 
 constexpr int max_digits = 60;
 constexpr int max_exponent = 60;
-constexpr int max_places = 10;  ///< that format_decimal() writes
+constexpr int max_places = 10;  ///< greatest number of decimal places that format_decimal() writes
 constexpr unsigned quotient_bits = 48;
 constexpr std::uint64_t max_quotient = std::uint64_t{1} << quotient_bits;
 
@@ -86,7 +86,7 @@ std::uint64_t divide_half_even(Natural numerator, const Natural& denominator) {
   return quotient;
 }
 
-/// A decimal number as text gives it: sign, digits without the point, places after the point.
+/// A decimal number as it is written: sign, digits without the point, and number of places after the point.
 struct Decimal {
   bool negative = false;
   Natural digits{0};
@@ -169,7 +169,7 @@ class Scanner {
   std::size_t position_ = 0;
 };
 
-/// places: how many of the digits are after the point.
+/// Writes a number. places: how many of the digits are after the point.
 DecimalText text_of(bool negative, std::uint64_t digits, int places) {
   DecimalText text{{}, 0};
   std::array<char, 24> reversed{};
@@ -230,7 +230,8 @@ DecimalText format_decimal(std::int32_t raw, Unit unit) {
     const std::uint64_t remainder = rest * power % scale.numerator;
     const bool is_up = 2 * remainder > scale.numerator || (2 * remainder == scale.numerator && (digits & 1U) != 0);
     digits += is_up ? 1U : 0U;
-    // Read back, the digits are off by this part of a step; half a step is rounded to the even one.
+    // The digits differ from the value by this part of a step; parse_decimal() rounds half a step to the even raw
+    // value.
     const std::uint64_t twice_error = 2 * (is_up ? scale.numerator - remainder : remainder);
     const std::uint64_t step = scale.denominator * power;
     if (places == max_places || twice_error < step || (twice_error == step && magnitude % 2 == 0)) {

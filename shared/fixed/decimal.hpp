@@ -1,7 +1,7 @@
 #pragma once
 
-// The only conversion between text and fixed-point numbers. It uses integers only, so every machine reads the same bits
-// from the same file.
+// The only conversion between text and fixed-point numbers. It uses integers only, so every computer reads the same
+// bits from the same file.
 
 #include <array>
 #include <cstddef>
@@ -24,8 +24,8 @@ struct DecimalResult {
   std::int32_t raw;  ///< 0 unless error is none
 };
 
-/// The raw value nearest to the decimal number in `text`, ties to even. A wrapping unit takes any
-/// number of turns up to 2^16: 235 degrees is -125.
+/// The raw value nearest to the decimal number in `text`, ties to even. A wrapping unit accepts up to 2^16 turns: 235
+/// degrees is -125 degrees.
 [[nodiscard]] DecimalResult parse_decimal(std::string_view text, Unit unit);
 
 struct DecimalText {
@@ -35,7 +35,7 @@ struct DecimalText {
   [[nodiscard]] std::string_view view() const { return {characters.data(), size}; }
 };
 
-/// The shortest decimal number that parse_decimal reads back as the same raw value.
+/// The shortest decimal number that parse_decimal() reads back as the same raw value.
 [[nodiscard]] DecimalText format_decimal(std::int32_t raw, Unit unit);
 
 }  // namespace proleg

@@ -17,7 +17,7 @@ std::int32_t exponential_decay(std::int32_t x) {
   }
   const auto r = static_cast<std::int32_t>(shift_right_rounding(wide - halvings * ln2, 6));  // Q30, 0 <= r <= ln 2
 
-  // Horner form of 1 - r + r^2/2! - ... - r^11/11!; the first term left out is 3e-11 at r = ln 2.
+  // Horner form of 1 - r + r^2/2! - ... - r^11/11!; the next term of the series is 3e-11 at r = ln 2.
   std::int32_t sum = 1 << 30;
   for (std::int32_t n = 11; n >= 1; --n) {
     sum = (1 << 30) - divide_nearest(multiply(r, sum, 30), n);

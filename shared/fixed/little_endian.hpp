@@ -6,7 +6,7 @@
 
 namespace proleg {
 
-/// Reads `size` bytes from `position` on, 1 to 4, lowest first.
+/// Reads a number of `size` bytes, 1 to 4, from `position` on, lowest byte first.
 [[nodiscard]] constexpr std::uint32_t read_little_endian(std::span<const std::uint8_t> bytes, std::size_t position,
                                                          std::size_t size) {
   std::uint32_t value = 0;
@@ -16,7 +16,7 @@ namespace proleg {
   return value;
 }
 
-/// Writes the low `size` bytes of a value, 0 to 4, from `position` on, lowest first.
+/// Writes the low `size` bytes of a value, 0 to 4, from `position` on, lowest byte first.
 constexpr void write_little_endian(std::span<std::uint8_t> bytes, std::size_t position, std::size_t size,
                                    std::uint32_t value) {
   for (std::size_t i = 0; i < 4 && i < size; ++i) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int32_t arcs[] = {536870912, 316933406, 167458907, 85004756, 42667331, 21354465, 10679838,
                                  5340245,   2670163,   1335087,   667544,   333772,   166886,   83443,
                                  41722,     20861,     10430,     5215,     2608,     1304};
-/// The steps lengthen the vector by 1.64676; the inverse in Q30.
+/// Inverse of the factor by which all steps together lengthen the vector, 1.64676, in Q30.
 constexpr std::int32_t inverse_gain = 652032874;
 
 }  // namespace
@@ -21,7 +21,7 @@ Polar polar(std::int32_t x, std::int32_t y) {
   constexpr std::int32_t largest = 1 << 29;
   x = std::clamp(x, -largest, largest);
   y = std::clamp(y, -largest, largest);
-  // The steps turn by at most 99 degrees: turn the left half plane by half a turn first.
+  // The steps turn the vector by at most 99 degrees, so a vector in the left half plane is turned by half a turn first.
   std::uint32_t angle = 0;
   if (x < 0) {
     x = -x;

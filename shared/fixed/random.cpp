@@ -17,7 +17,7 @@ std::uint32_t Pcg32::next() {
 }
 
 std::uint32_t Pcg32::below(std::uint32_t bound) {
-  // Values below 2^32 mod bound would make small results more likely: draw again.
+  // Values below 2^32 mod bound would make small results more likely, so they are rejected.
   const std::uint32_t threshold = (0U - bound) % bound;
   for (;;) {
     const std::uint32_t value = next();

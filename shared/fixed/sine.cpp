@@ -15,7 +15,7 @@ constexpr std::uint32_t c5 = 684504745U;
 constexpr std::uint32_t c7 = 80228237U;
 constexpr std::uint32_t c9 = 5145016U;
 
-/// High word of the product, rounded half up; one UMLAL on Cortex-M4.
+/// High word of the product, rounded half up; the compiler makes one UMLAL of it on Cortex-M4.
 constexpr std::uint32_t multiply_high(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>((multiply_wide(a, b) + 0x80000000U) >> 32U);
 }
@@ -23,8 +23,8 @@ constexpr std::uint32_t multiply_high(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 std::int32_t sine(std::uint32_t phase) {
-  // Fold before rounding, so that the result is exactly odd. In the second and third quarter (bits 31 and 30 differ)
-  // the distance to half a turn has the same sine.
+  // The phase is folded before it is rounded, so that the result is exactly odd. In the second and third quarter (bits
+  // 31 and 30 differ) the distance to half a turn has the same sine.
   const bool beyond_crest = ((phase ^ (phase << 1U)) & 0x80000000U) != 0;
   const auto quarter = static_cast<std::int32_t>(beyond_crest ? 0x80000000U - phase : phase);
   const bool negative = quarter < 0;

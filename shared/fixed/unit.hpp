@@ -1,7 +1,7 @@
 #pragma once
 
 // The physical units of everything that has a name: parameters, internal values, joint angles. A value is an int32_t
-// ("raw") and its unit says what one step of it is worth.
+// ("raw"); its unit says how much one step of it is.
 
 #include <cstdint>
 
@@ -18,7 +18,7 @@ enum class Unit : std::uint8_t {
   count,         ///< whole numbers
 };
 
-/// raw = value * numerator / denominator.
+/// The scale of a unit: raw = value * numerator / denominator.
 struct UnitScale {
   const char* symbol;
   std::uint32_t numerator;
@@ -45,7 +45,8 @@ struct UnitScale {
 /// Whether values of the unit are taken modulo 2^32.
 [[nodiscard]] constexpr bool wraps(Unit unit) { return unit == Unit::phase_degree; }
 
-/// The raw value nearest to a quotient of whole numbers, for declarations: raw(Unit::hertz, 1, 2) is half a hertz.
+/// The raw value nearest to a quotient of whole numbers, for use in declarations: raw(Unit::hertz, 1, 2) is half a
+/// hertz.
 [[nodiscard]] constexpr std::int32_t raw(Unit unit, std::int32_t numerator, std::int32_t denominator = 1) {
   const UnitScale scale = scale_of(unit);
   return static_cast<std::int32_t>(

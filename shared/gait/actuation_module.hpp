@@ -5,10 +5,11 @@
 // arrays that the control kernel owns. So the kernel can read, change, log, distort and copy them without code in the
 // algorithm.
 
+#include <array>
 #include <cstdint>
+#include <span>
 
 #include "shared/fixed/random.hpp"
-#include "shared/gait/contacts.hpp"
 #include "shared/gait/declaration.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "shared/gait/joint_readings.hpp"
@@ -16,10 +17,43 @@
 
 namespace proleg {
 
+/// The two touch sensors under each link.
+enum class TouchSensor : std::uint8_t {
+  rear,   ///< nearer to the tail
+  front,  ///< nearer to the head
+};
+
+/// The contacts of all links at one tick, as the joints' state frames report them. Link 0 is the head; link j + 1 lies
+/// behind joint j. A link is not pressed until the first frame of its joint is received.
+class Contacts {
+ public:
+  /// frames: the latest state frame of every joint, in kernel order. If it is empty, nothing is pressed.
+  explicit Contacts(std::span<const StateFrame> frames) : frames_(frames) {}
+
+  [[nodiscard]] unsigned link_count() const { return static_cast<unsigned>(frames_.size()) + 1; }
+
+  [[nodiscard]] bool pressed(unsigned link, TouchSensor sensor) const {
+    if (link >= link_count() || frames_.empty()) {
+      return false;
+    }
+    const std::uint8_t flags = frames_[link == 0 ? 0 : link - 1].flags();
+    const unsigned first_bit = link == 0 ? 2 : 0;
+    return ((flags >> (first_bit + static_cast<unsigned>(sensor))) & 1U) != 0;
+  }
+
+  /// Whether either sensor of the link is pressed.
+  [[nodiscard]] bool pressed(unsigned link) const {
+    return pressed(link, TouchSensor::rear) || pressed(link, TouchSensor::front);
+  }
+
+ private:
+  std::span<const StateFrame> frames_;
+};
+
 /// The joint that an algorithm computes, and its robot.
 struct JointContext {
   std::uint8_t joint;        ///< kernel order: 0 is at the head
-  std::uint8_t joint_count;  ///< of the whole robot
+  std::uint8_t joint_count;  ///< number of joints of the whole robot
   JointMask group;           ///< joints that the slot drives
   std::uint32_t tick_period_us;
 };
@@ -37,10 +71,10 @@ class Neighbour {
   Neighbour(const Declaration& declaration, unsigned joint, const StateFrame& frame)
       : declaration_(&declaration), frame_(&frame), joint_(joint) {}
 
-  /// False at the ends of the group, and until the first frame of the neighbour is received.
+  /// Whether the neighbour's state is known: not at the ends of the group, and not until its first frame is received.
   [[nodiscard]] bool present() const { return frame_ != nullptr && (frame_->flags() & StateFrame::valid) != 0; }
   [[nodiscard]] unsigned joint() const { return joint_; }
-  /// Field of the declared frame; present() must hold.
+  /// A field of the declared frame; present() must hold.
   [[nodiscard]] std::int32_t value(std::size_t field) const { return unpack(*declaration_, field, *frame_); }
 
  private:
@@ -49,18 +83,18 @@ class Neighbour {
   unsigned joint_ = 0;
 };
 
-/// The inputs of a joint at SYNC k. All are of tick k.
+/// The inputs of a joint at SYNC k. All of them are of tick k.
 struct Surroundings {
   std::uint32_t tick;  ///< k; the step leads to state k + 1
   const JointContext& context;
   const Neighbour& ahead;   ///< nearest joint of the group towards the head
   const Neighbour& behind;  ///< nearest joint of the group towards the tail
   const Contacts& contacts;
-  std::int32_t setpoint;          ///< of the joint: the sum of all slots in state k, within the joint's limits
-  const JointReadings& readings;  ///< of the joint's own module; only those that senses_readings() names
+  std::int32_t setpoint;  ///< set-point of the joint: the sum of all slots in state k, within the joint's limits
+  const JointReadings& readings;  ///< readings of the joint's own module; only those that senses_readings() names
 };
 
-/// Basic interface: an algorithm that gives one joint an angle.
+/// The basic interface: an algorithm that gives one joint an angle.
 class ActuationModule {
  public:
   constexpr ActuationModule() = default;
@@ -69,18 +103,18 @@ class ActuationModule {
 
   [[nodiscard]] virtual const Declaration& declaration() const = 0;
 
-  /// Whether it reads the contacts of links. If not, it finds none pressed on every machine, so a module need not
-  /// receive the frames of joints that it does not depend on.
+  /// Whether the algorithm reads the contacts of links. If not, every computer shows it no contact, so a module need
+  /// not receive the frames of joints that the algorithm does not depend on.
   [[nodiscard]] virtual bool senses_contacts() const { return false; }
 
-  /// Which readings of its module it uses: bits of JointReadings::Sensor. The others are absent on every machine. A
-  /// host refuses to drive modules that do not have them.
+  /// The readings of its module that the algorithm uses: bits of JointReadings::Sensor. The others are absent on every
+  /// computer. A host refuses to drive modules that do not have them.
   [[nodiscard]] virtual std::uint8_t senses_readings() const { return 0; }
 
   /// Computes constants from the parameters. Called after each change of a parameter, never in a tick without one.
   virtual void derive(const JointContext& context, const std::int32_t* parameters, std::int32_t* derived) const;
 
-  /// Writes state 0. `noise` is seeded by the robot's seed and the joint. All values are 0 before.
+  /// Writes state 0, whose values are all 0 before. `noise` is seeded by the robot's seed and the joint.
   virtual void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const;
 
   /// Estimates state k for a joint that joins a moving robot. `surroundings` hold the neighbours' frames of tick k,
@@ -94,8 +128,8 @@ class ActuationModule {
   /// The joint angle of a state (90 degrees = 2^30).
   [[nodiscard]] virtual std::int32_t output(const Tuning& tuning, const std::int32_t* state) const = 0;
 
-  /// Turns the last state frame of a neighbour into the one expected a tick later; called when a frame was missed.
-  /// `state` is the joint's own. The default holds everything.
+  /// Turns the last state frame of a neighbour into the one expected a tick later. It is called when a frame was
+  /// missed. `state` is the joint's own. The default changes nothing.
   virtual void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const;
 
  protected:

@@ -55,7 +55,7 @@ class AsymmetricWave final : public SmoothWave {
     return travelled_phase(context.joint - joint, tuning.parameters[phase_step]);
   }
 
-  /// Half a turn of the sine, from trough to crest, lasts rising_fraction of the period, the other half the rest.
+  /// Half a turn of the sine, from trough to crest, lasts rising_fraction of the period; the other half lasts the rest.
   [[nodiscard]] std::uint32_t warped(const Tuning& tuning, std::uint32_t phase) const override {
     constexpr std::uint32_t quarter = 0x40000000U;
     return PhaseWarp(tuning.parameters[rising_fraction], tuning.derived + warp).angle_of(phase + quarter) - quarter;

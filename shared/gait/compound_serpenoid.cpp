@@ -35,7 +35,7 @@ constexpr Parameter phase_difference_of(std::string_view name, HostText help) {
   return {name, Unit::phase_degree, raw(Unit::phase_degree, 29), phase_minimum, phase_maximum, help};
 }
 
-// Defaults: the sidewinding gait of the modular snake robots of Carnegie Mellon University.
+// The defaults are the sidewinding gait of the modular snake robots of Carnegie Mellon University.
 constexpr Parameter parameters[] = {
     amplitude_of("pitch_amplitude", "amplitude of the joints that pitch"),
     frequency_of("pitch_frequency", "frequency of the joints that pitch"),

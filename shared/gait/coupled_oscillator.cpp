@@ -73,7 +73,7 @@ class CoupledOscillator final : public PatternGenerator {
   }
 
   void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
-    // The step of phase for a sine of 1: w dt / (2 pi) turns.
+    // The step of phase for a coupling sine of 1 is w dt / (2 pi) turns.
     constexpr std::int64_t inverse_of_two_pi = 170891319;  // Q30
     const std::int64_t weight =
         divide_nearest((std::int64_t{values[coupling]} * context.tick_period_us) << 6U, 1'000'000);

@@ -1,8 +1,8 @@
 #pragma once
 
 // Critically damped second-order filter with double pole at -a/2, r'' = a (a/4 (R - r) - r'), in its exact step over a
-// tick (no integration error, stable for every a). With e = r - R, h = a/2, q = exp(-h dt) and the rate kept as
-// u = r'/h, an angle like e:
+// tick (no integration error, stable for every a). With e = r - R, h = a/2, q = exp(-h dt) and the rate kept as u =
+// r'/h, an angle like e, the step is:
 //   step = h dt (e + u):  e <- (e + step) q,  u <- (u - step) q
 // A rate kept as r' dt would have too few steps in slow filters. With u, a change of a during a motion changes its
 // speed and never makes it overshoot. Source of the filter: A. J. Ijspeert et al., Science 315 (2007).
@@ -19,7 +19,7 @@ struct CriticalFilter {
 
   std::int32_t half_rate;  ///< h dt in Q30, at most 1
   std::int32_t decay;      ///< q in Q30
-  std::int32_t arrived;    ///< closer than this the roundings outweigh the motion
+  std::int32_t arrived;    ///< distance below which the roundings are greater than the motion
 
   /// Writes the filter into derived constants, from which load() reads it in the tick.
   void store(std::int32_t* derived) const {
@@ -30,12 +30,12 @@ struct CriticalFilter {
   [[nodiscard]] static CriticalFilter load(const std::int32_t* derived) { return {derived[0], derived[1], derived[2]}; }
 };
 
-/// rate: a in Q24 1/s, not negative. Rates above 2 / tick act as 2 / tick.
+/// Derives a filter. rate: a in Q24 1/s, not negative. Rates above 2 / tick act as 2 / tick.
 [[nodiscard]] CriticalFilter make_critical_filter(std::int32_t rate, std::uint32_t tick_period_us);
 
-/// One tick. distance: value - target, as the caller's quantity wraps or saturates. Returns the new distance.
-/// With distance and rate both below `arrived` (64 + 4 / (h dt) steps) the filter arrives, so that it ends exactly on
-/// the target.
+/// Computes one tick of the filter. distance: value - target, as the caller's quantity wraps or saturates. Returns the
+/// new distance. With distance and rate both below `arrived` (64 + 4 / (h dt) steps) the filter arrives, so that it
+/// ends exactly on the target.
 [[nodiscard]] inline std::int32_t advance(const CriticalFilter& filter, std::int32_t distance, std::int32_t& rate) {
   const std::int32_t step = multiply(filter.half_rate, add_saturating(distance, rate), 30);
   const std::int64_t decayed_step = multiply_wide(step, filter.decay);
@@ -50,11 +50,11 @@ struct CriticalFilter {
   return next_distance;
 }
 
-/// One tick of a value and its rate, which stand next to each other in a state, in that order. Not inline: most
-/// generators filter two or three values, and the image is small.
+/// Computes one tick of a value and its rate, which stand next to each other in a state, in that order. Not inline:
+/// most generators filter two or three values, and the image is small.
 void follow(const CriticalFilter& filter, std::int32_t target, const std::int32_t* state, std::int32_t* next);
 
-/// One tick of a filtered value that saturates.
+/// Computes one tick of a filtered value that saturates.
 [[nodiscard]] inline std::int32_t approach(const CriticalFilter& filter, std::int32_t target, std::int32_t value,
                                            std::int32_t& rate) {
   return add_saturating(target, advance(filter, saturate(std::int64_t{value} - target), rate));

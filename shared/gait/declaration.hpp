@@ -23,7 +23,7 @@ inline constexpr std::size_t max_internal_values = 20;
 /// small.
 #ifdef __arm__
 struct HostText {
-  constexpr HostText(const char* /*text*/) {}  // NOLINT(google-explicit-constructor): as std::string_view on the host
+  constexpr HostText(const char* /*text*/) {}                 // implicit, as it is in std::string_view on the host
   constexpr operator std::string_view() const { return {}; }  // NOLINT(google-explicit-constructor)
 };
 #else
@@ -50,14 +50,14 @@ struct InternalValue {
   HostText help;
 };
 
-/// A part of the state frame: the leading bytes of an internal value, little-endian. Values with unit `count` send
-/// their low bytes instead.
+/// A part of the state frame: the leading bytes of an internal value, little-endian. A value with unit `count` sends
+/// its low bytes instead.
 struct FrameField {
   std::uint8_t internal_value;  ///< index into Declaration::internal_values
   std::uint8_t bytes;           ///< 1 to 4
 };
 
-/// Ids of algorithms that are outside of this tree (docs/user-algorithms.md). The core uses none of them.
+/// The lowest id of algorithms outside of this tree (docs/user-algorithms.md). The core uses no id from here on.
 inline constexpr std::uint8_t first_user_id = 96;
 inline constexpr std::uint8_t last_user_id = 126;
 inline constexpr std::size_t max_user_algorithms = last_user_id - first_user_id + 1;
@@ -69,18 +69,18 @@ struct Declaration {
   std::span<const Parameter> parameters;
   std::span<const InternalValue> internal_values;
   std::span<const FrameField> frame;  ///< at most 6 bytes; empty if nothing is broadcast
-  /// Of a user's algorithm: the first 32 bits of the SHA-256 of its sources (tools/cmake/user_algorithm.cmake).
-  /// Programs with equal numbers compute with the same sources. 0 in the core, whose fingerprint says this.
+  /// The first 32 bits of the SHA-256 of the sources of a user's algorithm (tools/cmake/user_algorithm.cmake). Programs
+  /// with equal numbers compute with the same sources. 0 in the core, whose fingerprint identifies its sources.
   std::uint32_t sources = 0;
 };
 
 [[nodiscard]] constexpr bool is_user_algorithm(std::uint8_t id) { return id >= first_user_id && id <= last_user_id; }
 
-/// Position of a parameter or internal value of that name, or -1.
+/// Position of the parameter or internal value with this name, or -1.
 [[nodiscard]] int find_parameter(const Declaration& declaration, std::string_view name);
 [[nodiscard]] int find_internal_value(const Declaration& declaration, std::string_view name);
 
-/// Range of a phase: all of it.
+/// The ends of the range of a phase, which is all of int32_t.
 inline constexpr std::int32_t phase_minimum = std::numeric_limits<std::int32_t>::min();
 inline constexpr std::int32_t phase_maximum = std::numeric_limits<std::int32_t>::max();
 

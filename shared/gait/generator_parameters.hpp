@@ -1,7 +1,7 @@
 #pragma once
 
-// Parameters and internal values that several pattern generators have in common. Ranges: thesis, table 3.1; defaults:
-// the travelling wave of thesis section 6.1 at the 1 Hz that its servo allows.
+// Parameters and internal values that several pattern generators share. The ranges are those of thesis, table 3.1. The
+// defaults are the travelling wave of thesis section 6.1 at 1 Hz, which its servo allows.
 
 #include "shared/gait/declaration.hpp"
 
@@ -34,7 +34,7 @@ inline constexpr Parameter rate{"rate",
   return {frequency.name, frequency.unit, frequency.default_value, 0, raw(Unit::hertz, max_hertz), frequency.help};
 }
 
-/// Factor on the noise at reset; the default differs between algorithms.
+/// Factor for the noise at reset; the default differs between algorithms.
 [[nodiscard]] constexpr Parameter noise(std::int32_t default_value) {
   return {"noise", Unit::ratio, default_value, 0, raw(Unit::ratio, 4), "factor on the noise of the start state"};
 }
@@ -43,7 +43,7 @@ inline constexpr Parameter rate{"rate",
 
 namespace proleg::generator_values {
 
-/// An amplitude and an offset that follow their parameters, each with its rate behind it (critical_filter.hpp).
+/// An amplitude or an offset that follows its parameter; its rate is the next internal value (critical_filter.hpp).
 /// noise_scale: of the start state.
 [[nodiscard]] constexpr InternalValue current_amplitude(std::int32_t noise_scale = 0) {
   return {"current_amplitude", Unit::degree, noise_scale, "filtered amplitude"};

@@ -2,15 +2,14 @@
 
 #include "shared/fixed/arithmetic.hpp"
 #include "shared/gait/algorithms.hpp"
-#include "shared/gait/limited_step.hpp"
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
 namespace global_adaptive_touch {
 namespace {
 
-/// The constants of the thesis, first those that raise, then those that lower; in each four by the touch of the links
-/// at the joint.
+/// Number of constants of the thesis: first four that raise, then four that lower. In each four, the touch of the links
+/// at the joint selects one.
 constexpr unsigned constant_count = 8;
 constexpr unsigned touch_states = 4;
 
@@ -63,13 +62,13 @@ constexpr Declaration about{14,
                             internal_values,
                             {}};
 
-/// More ticks than any parameter asks for.
+/// A number of ticks greater than any parameter asks for.
 constexpr std::int32_t most_still_ticks = 1 << 20;
 
 /// The links around a joint.
 enum Around : std::uint8_t { second_in_front, in_front, behind, second_behind, link_count };
 
-/// A bit for each of them that touches.
+/// The set of links around a joint that touch, one bit for each.
 unsigned touch_around(const Contacts& contacts, unsigned joint) {
   unsigned touched = 0;
   for (unsigned place = joint == 0 ? 1 : 0; place < link_count; ++place) {
@@ -107,21 +106,21 @@ class GlobalAdaptiveTouch final : public SensingModule {
   enum Derived : std::uint8_t { threshold_ticks, give_up_ticks, tick_scale };
   static constexpr unsigned scale_bits = 24;
 
-  /// At least 1, at most 600,000.
+  /// Number of ticks in this time: at least 1, at most 600,000.
   static std::int32_t ticks_of(std::int32_t milliseconds, const JointContext& context) {
     const std::int64_t ticks = divide_nearest(std::int64_t{milliseconds} * 1'000, std::int64_t{context.tick_period_us});
     return static_cast<std::int32_t>(std::max<std::int64_t>(ticks, 1));
   }
 
-  /// A constant of 10 ms as the angle of a tick.
+  /// The constant, an angle per 10 ms, as an angle per tick.
   static std::int32_t step_of(const Tuning& tuning, unsigned parameter) {
     return saturate(
         shift_right_rounding(multiply_wide(tuning.parameters[parameter], tuning.derived[tick_scale]), scale_bits));
   }
 
-  /// Whether a stuck joint bends up. Its links look for the ground where the others have it: up if the outer links
-  /// touch more than those at the joint, down if they touch less. Without a difference the joint bends further to the
-  /// side to which the gait bends it, which lifts a wave that is blocked.
+  /// Whether a stuck joint bends up. The links at the joint search the ground where the others have it: up if the outer
+  /// links touch more than those at the joint, down if they touch less. Without a difference the joint bends further to
+  /// the side to which the gait bends it, which lifts a wave that is blocked.
   static bool bends_up(unsigned touched, const Surroundings& surroundings, std::int32_t gait) {
     const unsigned joint = surroundings.context.joint;
     const auto touches = [&](Around place) { return static_cast<int>((touched >> place) & 1U); };
@@ -130,7 +129,7 @@ class GlobalAdaptiveTouch final : public SensingModule {
     const bool has_last = joint + 1U < surroundings.context.joint_count;
     int outer = touches(second_in_front) + touches(second_behind);
     if (has_first != has_last) {
-      outer *= 2;  // the only one stands for both
+      outer *= 2;  // the only outer link counts for both
     }
     const int difference = has_first || has_last ? outer - inner : 0;
     return difference == 0 ? gait >= 0 : difference > 0;
@@ -140,7 +139,7 @@ class GlobalAdaptiveTouch final : public SensingModule {
                        const std::int32_t* state, std::int32_t* next) const override {
     const unsigned touched = touch_around(contacts, surroundings.context.joint);
     next[links_touched] = static_cast<std::int32_t>(touched);
-    // Limited, because a counter may have been overwritten.
+    // The value is limited, because a counter may have been overwritten.
     const std::int32_t before = std::clamp<std::int32_t>(state[still_ticks], 0, most_still_ticks - 1);
     next[still_ticks] = next[links_touched] == state[links_touched] ? before + 1 : 0;
 

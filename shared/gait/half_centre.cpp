@@ -66,7 +66,7 @@ class HalfCentre final : public PatternGenerator {
     state[current_offset] = tuning.parameters[offset];
     if (const auto phase = phase_beside_neighbour(surroundings, tuning.parameters[phase_step])) {
       state[current_phase] = *phase;
-      // Rises from a quarter of a turn before 0 to a quarter after it, in a straight line.
+      // The state rises from a quarter of a turn before 0 to a quarter after it, in a straight line.
       const bool rises = *phase >= -quarter_turn && *phase < quarter_turn;
       const std::int32_t since_middle = rises ? *phase : subtract_wrapping(phase_minimum, *phase);
       state[tiredness] = multiply(since_middle, tuning.derived[threshold], 30);
@@ -88,7 +88,7 @@ class HalfCentre final : public PatternGenerator {
     inverse_threshold,              ///< 1 / h in Q26
     approach_step,                  ///< part of the way to its end that the fatigue goes in a tick, Q30
     turn_back,                      ///< (1 + h) / (1 - h) in Q24
-    turns_per_excess,               ///< phase that passes while the fatigue grows by 1 at the threshold: Q26 turns
+    turns_per_excess,               ///< phase that passes while the fatigue grows by 1 at the threshold, Q26 turns
     filter_constants,
   };
   static_assert(filter_constants + CriticalFilter::derived_size <= max_derived);
@@ -102,7 +102,7 @@ class HalfCentre final : public PatternGenerator {
     make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
   }
 
-  /// Not inline: its variables would lie on the stack below those of the filter.
+  /// Not inline, because its variables would lie on the stack below those of the filter.
   [[gnu::noinline]] static void derive_fatigue(const JointContext& context, const std::int32_t* values,
                                                std::int32_t* derived) {
     // With L half a period in time constants: h = tanh(L / 2) = (1 - exp(-L)) / (1 + exp(-L)).
@@ -116,7 +116,7 @@ class HalfCentre final : public PatternGenerator {
         divide_nearest((std::int64_t{values[Parameters::frequency]} * context.tick_period_us) << 1U,
                        1'000'000);  // Q24
     const std::int64_t constants = std::min(shift_right_rounding(halves * values[fatigue], 28), std::int64_t{1} << 24U);
-    // exp(-x) takes Q24; in a slow gait that has too few steps, but there it is 1 - x + x^2 / 2.
+    // exp(-x) takes Q24. In a slow gait that has too few steps, so 1 - x + x^2 / 2 is used there.
     const auto time = static_cast<std::int32_t>(constants);
     const std::int64_t fine = shift_right_rounding(
         divide_nearest((std::int64_t{values[Parameters::frequency]} * context.tick_period_us) << 7U, 1'000'000) *
@@ -142,7 +142,7 @@ class HalfCentre final : public PatternGenerator {
                                pull(surroundings.behind, surroundings.context, tuning, state);
     const std::int32_t speed = std::clamp(saturate(one + pulls), one / 10, 2 * one);
 
-    // The fatigue approaches +-1, the side of the active half. It turns where it reaches the threshold.
+    // The fatigue approaches 1 or -1, by the active half. It reverses where it reaches the threshold.
     bool falls = state[active] != 0;
     const std::int32_t side = falls ? -one : one;
     const std::int32_t before = std::clamp(state[tiredness], -one, one);
@@ -152,7 +152,7 @@ class HalfCentre final : public PatternGenerator {
     std::uint32_t phase = static_cast<std::uint32_t>(state[current_phase]) +
                           static_cast<std::uint32_t>(multiply(derived[phase_increment], speed, 28));
     if (excess >= 0) {
-      // The rest of the tick leads back, in the other half's speed.
+      // For the rest of the tick the fatigue goes back with the speed of the other half.
       const std::int32_t back = saturate(shift_right_rounding(multiply_wide(excess, derived[turn_back]), 24));
       const std::int32_t level = std::max(saturate(std::int64_t{derived[threshold]} - back), -derived[threshold]);
       tired = falls ? -level : level;
@@ -169,7 +169,7 @@ class HalfCentre final : public PatternGenerator {
     follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
-  /// What a neighbour adds to the speed: more if it is further than the wanted phase.
+  /// What a neighbour adds to the speed: more if the neighbour is further ahead than the wanted phase.
   static std::int32_t pull(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning,
                            const std::int32_t* state) {
     if (!neighbour.present()) {

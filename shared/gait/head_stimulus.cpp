@@ -60,10 +60,10 @@ class HeadStimulus final : public PatternGenerator {
     return add_saturating(swing, tuning.parameters[offset]);
   }
 
-  /// The neighbour's wave runs in the direction of the joint's own.
+  /// The neighbour's wave is taken to run in the direction of the joint's own wave.
   void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& missed) const override {
     repack(about, phase_field, moved(unpack(about, phase_field, missed), state[retreat_ticks] > 0, tuning), missed);
-    repack(about, retreat_field, unpack(about, retreat_field, missed) - 1, missed);  // cut at 0
+    repack(about, retreat_field, unpack(about, retreat_field, missed) - 1, missed);  // repack() cuts it at 0
   }
 
  private:
@@ -80,12 +80,12 @@ class HeadStimulus final : public PatternGenerator {
     state[current_phase] = static_cast<std::int32_t>(travelled);
   }
 
-  /// A joint follows the one ahead of it, so that one that missed a touch, or was disturbed, is right again a tick
-  /// later.
+  /// A joint takes the state of the joint ahead of it. So a joint that missed a touch, or was disturbed, is right again
+  /// a tick later.
   void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const override {
     const bool follows = surroundings.ahead.present();
-    // Limited, because the parameter may have been lowered or the counter overwritten.
+    // The value is limited, because the parameter may have been lowered or the counter overwritten.
     const std::int32_t left = std::clamp<std::int32_t>(
         follows ? surroundings.ahead.value(retreat_field) : state[retreat_ticks], 0, tuning.parameters[retreat]);
     const bool is_touched = touches_head(surroundings.contacts, tuning.parameters[sensor]);
@@ -100,7 +100,7 @@ class HeadStimulus final : public PatternGenerator {
            ((sensors & 2) != 0 && contacts.pressed(0, TouchSensor::front));
   }
 
-  /// A phase a tick later.
+  /// The phase a tick later.
   static std::int32_t moved(std::int32_t phase, bool backwards, const Tuning& tuning) {
     const std::int32_t step = tuning.derived[phase_increment];
     return backwards ? subtract_wrapping(phase, step) : add_wrapping(phase, step);

@@ -116,7 +116,7 @@ class Hopf final : public PatternGenerator {
     make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
   }
 
-  /// A rate constant times the tick in Q30, at most `largest`.
+  /// A rate constant times the tick, in Q30, at most `largest`.
   static std::int32_t per_tick(std::int32_t rate_constant, std::uint32_t tick_period_us, std::int64_t largest) {
     return static_cast<std::int32_t>(
         std::min(divide_nearest((std::int64_t{rate_constant} * tick_period_us) << 6U, 1'000'000), largest));
@@ -129,19 +129,20 @@ class Hopf final : public PatternGenerator {
 
   void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const override {
-    // A circle four times as large as the limit cycle: from there the squares below fit into 64 bits.
+    // The largest state, a circle four times as large as the limit cycle: there the squares below fit into 64 bits.
     constexpr std::int32_t largest = 4 * one;
     const std::int32_t old_x = std::clamp(state[x], -largest, largest);
     const std::int32_t old_y = std::clamp(state[y], -largest, largest);
 
-    // Exact rotation, so that the frequency has no error of integration.
+    // The rotation is exact, so that the frequency has no error of integration.
     const std::uint32_t step = step_at(tuning, old_y);
     const std::int32_t sin = sine(step);
     const std::int32_t cos = cosine(step);
     std::int32_t new_x = saturate(shift_right_rounding(multiply_wide(cos, old_x) - multiply_wide(sin, old_y), 30));
     std::int32_t new_y = saturate(shift_right_rounding(multiply_wide(sin, old_x) + multiply_wide(cos, old_y), 30));
 
-    // alpha (1 - |z|^2), limited so that a state far outside the circle comes back and does not pass to the other side.
+    // alpha (1 - |z|^2) is limited, so that a state far outside the circle comes back and does not pass to the other
+    // side.
     const std::int64_t squares = shift_right_rounding(multiply_wide(new_x, new_x) + multiply_wide(new_y, new_y), 28);
     constexpr std::int32_t half = 1 << 29;
     const std::int32_t pull = std::clamp(
@@ -163,8 +164,8 @@ class Hopf final : public PatternGenerator {
     follow(filter, tuning.parameters[offset], state + current_offset, next + current_offset);
   }
 
-  /// Change of the phase in a tick. Between the half planes the speed changes over a band, as that of the logistic
-  /// function with b = 50.
+  /// Change of the phase in a tick. Between the half planes the speed changes over a band, like the logistic function
+  /// with b = 50.
   static std::uint32_t step_at(const Tuning& tuning, std::int32_t old_y) {
     const std::int32_t falling = tuning.derived[falling_step];
     const std::int32_t rising = tuning.derived[rising_step];
@@ -174,7 +175,7 @@ class Hopf final : public PatternGenerator {
     return static_cast<std::uint32_t>(rising) + static_cast<std::uint32_t>(multiply(difference, share, 28));
   }
 
-  /// The angle that the joint has beside a neighbour. The phase difference is one of time: with two speeds it is no
+  /// The angle that the joint has beside a neighbour. The phase difference is one of time; with two speeds it is not a
   /// constant difference of angles.
   static std::uint32_t angle_beside(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning) {
     const PhaseWarp two_speeds(tuning.parameters[falling_fraction], tuning.derived + warp);
@@ -183,8 +184,8 @@ class Hopf final : public PatternGenerator {
     return two_speeds.angle_of(two_speeds.phase_of(static_cast<std::uint32_t>(neighbour.value(phase_sent))) - wanted);
   }
 
-  /// Not inline, to need less stack. Adds k (R z_j - z_i), where R turns the neighbour's state by the phase that lies
-  /// between the two joints.
+  /// Adds k (R z_j - z_i), where R turns the neighbour's state by the phase that lies between the two joints. Not
+  /// inline, to need less stack.
   [[gnu::noinline]] static void couple(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning,
                                        std::int32_t old_x, std::int32_t old_y, std::int32_t& new_x,
                                        std::int32_t& new_y) {

@@ -6,7 +6,7 @@
 
 namespace proleg {
 
-/// Maximal number of joints of one robot; limited by the receive objects 0x1410 + j of the protocol.
+/// Greatest number of joints of one robot; the receive objects 0x1410 + j of the protocol limit it.
 inline constexpr unsigned max_joints = 64;
 
 /// A set of joints: bit j stands for kernel joint j, which is the j-th from the head.
@@ -31,7 +31,7 @@ class JointMask {
   explicit constexpr JointMask(std::uint64_t bits)
       : words_{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32U)} {}
 
-  /// The joints 0 to count - 1. count is at most 64.
+  /// The set of the joints 0 to count - 1. count is at most 64.
   [[nodiscard]] static constexpr JointMask first(unsigned count) {
     return JointMask(count >= max_joints ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1);
   }
@@ -46,17 +46,17 @@ class JointMask {
   [[nodiscard]] constexpr bool empty() const { return (words_[0] | words_[1]) == 0; }
   /// The member nearest to the head; the set must not be empty.
   [[nodiscard]] constexpr unsigned front() const { return *begin(); }
-  /// Number of members.
+  /// Number of joints in the set.
   [[nodiscard]] constexpr unsigned size() const { return static_cast<unsigned>(std::popcount(bits())); }
   [[nodiscard]] constexpr std::uint64_t bits() const { return std::uint64_t{words_[1]} << 32U | words_[0]; }
 
-  /// The nearest member towards the head, or -1.
+  /// The nearest member in front of a joint, towards the head, or -1.
   [[nodiscard]] constexpr int before(unsigned joint) const {
     const std::uint64_t ahead = bits() & first(joint).bits();
     return ahead == 0 ? -1 : 63 - std::countl_zero(ahead);
   }
 
-  /// The nearest member towards the tail, or -1.
+  /// The nearest member behind a joint, towards the tail, or -1.
   [[nodiscard]] constexpr int after(unsigned joint) const { return from(joint + 1); }
 
   /// The joint itself if it is a member, else the nearest member towards the tail, or -1.
@@ -74,7 +74,7 @@ class JointMask {
   friend constexpr JointMask operator&(JointMask a, JointMask b) {
     return {a.words_[0] & b.words_[0], a.words_[1] & b.words_[1]};
   }
-  /// The members of a that are not in b.
+  /// The members of `a` that are not in `b`.
   friend constexpr JointMask operator-(JointMask a, JointMask b) {
     return {a.words_[0] & ~b.words_[0], a.words_[1] & ~b.words_[1]};
   }
@@ -86,7 +86,7 @@ class JointMask {
  private:
   constexpr JointMask(std::uint32_t low, std::uint32_t high) : words_{low, high} {}
 
-  std::array<std::uint32_t, 2> words_{};  ///< 64-bit shifts are expensive on a 32-bit processor
+  std::array<std::uint32_t, 2> words_{};  ///< two words, because 64-bit shifts are expensive on a 32-bit processor
 };
 
 }  // namespace proleg

@@ -2,32 +2,33 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace proleg {
 
 /// What the sensors of a joint's module measure: its servo, and how the link behind the joint stands and moves. No
-/// module has all of them. The readings are those at the SYNC before, as the contacts are.
+/// module has all of the sensors. The readings are those at the SYNC before, as the contacts are.
 struct JointReadings {
-  /// Bits of `present`.
+  /// The bits of `present`.
   enum Sensor : std::uint8_t {
     servo_current = 1U << 0U,
     inclination = 1U << 1U,
     acceleration = 1U << 2U,
   };
 
-  std::uint8_t present = 0;  ///< what was measured; the rest is 0
-  /// mA, of the servo, 0 to 32,767.
+  std::uint8_t present = 0;  ///< sensors whose readings are known; the values of others are 0
+  /// Current of the servo [mA], 0 to 32,767.
   std::int32_t current_ma = 0;
-  /// Binary angles, 90 degrees = 2^30. pitch: the link's y axis (forwards) over the horizontal, within +-90 degrees;
-  /// roll: about that axis, positive with the right side down; it wraps at 180 degrees.
+  /// Binary angles of the link behind the joint, 90 degrees = 2^30. pitch: its y axis (forwards) over the horizontal,
+  /// within +-90 degrees; roll: about that axis, positive with the right side down; it wraps at 180 degrees.
   std::int32_t pitch = 0;
   std::int32_t roll = 0;
-  /// mm/s^2, in the axes of the link (x to the right, y forwards, z up), of its centre of mass, less gravity: at rest
-  /// (0, 0, 9810). Mean over the tick before.
+  /// Acceleration of the link's centre of mass, minus gravity [mm/s^2], in the axes of the link (x to the right, y
+  /// forwards, z up): at rest (0, 0, 9810). It is the mean over the tick before.
   std::array<std::int32_t, 3> acceleration_mm_s2{};
 
   [[nodiscard]] bool has(Sensor sensor) const { return (present & sensor) != 0; }
-  /// Only the sensors of these bits.
+  /// These readings with only the sensors of these bits.
   [[nodiscard]] JointReadings only(std::uint8_t sensors) const {
     JointReadings kept;
     kept.present = static_cast<std::uint8_t>(present & sensors);
@@ -45,6 +46,15 @@ struct JointReadings {
   }
 
   friend bool operator==(const JointReadings&, const JointReadings&) = default;
+};
+
+/// What the module of a joint reads from its servo and its own chip.
+struct ServoReadings {
+  std::uint16_t current_ma = 0;  ///< of the servo: the mean since the readings before
+  /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
+  std::optional<std::int32_t> angle;
+  std::int8_t temperature_c = 0;  ///< of the chip
+  bool are_new = true;            ///< measured since the readings before; else they are those of an earlier time
 };
 
 }  // namespace proleg

@@ -98,7 +98,7 @@ class Matsuoka final : public PatternGenerator {
  private:
   enum OwnDerived : std::uint8_t {
     steps = first_own_derived,
-    own_lag = steps + MatsuokaConstants::derived_size,  ///< by which y1 - y2 follows its input
+    own_lag = steps + MatsuokaConstants::derived_size,  ///< angle by which y1 - y2 follows its input
     inverse_x,                                          ///< 1 / x in Q27
     quadrature,                                         ///< (1 + x^2) / x in Q27
     filter_constants,
@@ -113,7 +113,7 @@ class Matsuoka final : public PatternGenerator {
     const MatsuokaConstants constants = make_matsuoka_constants(
         values[Parameters::frequency], values[time_ratio], values[fatigue], values[inhibition], context.tick_period_us);
     constants.store(derived + steps);
-    // At the natural frequency an input turns the pair only where it is ahead by arctan(omega tau).
+    // At the natural frequency an input changes the phase of the pair only where it is ahead by arctan(omega tau).
     derived[own_lag] = polar(values[time_ratio] / 8, constants.x * 2).angle;
     derived[inverse_x] = saturate(divide_nearest(std::int64_t{1} << 51U, std::int64_t{constants.x}));
     derived[quadrature] = saturate(derived[inverse_x] + (std::int64_t{constants.x} << 3U));
@@ -139,7 +139,7 @@ class Matsuoka final : public PatternGenerator {
     next[u2] = pair.u2;
     next[v1] = pair.v1;
     next[v2] = pair.v2;
-    // T v' = -v + y: of two sines, v1 - v2 has the quadrature of y1 - y2.
+    // T v' = -v + y: if both are sines, v1 - v2 is the quadrature component of y1 - y2.
     const std::int32_t along = difference(next);
     const std::int32_t behind = saturate(std::int64_t{pair.v1} - pair.v2);
     const std::int64_t across =
@@ -153,12 +153,12 @@ class Matsuoka final : public PatternGenerator {
     follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
-  /// y1 - y2
+  /// The difference y1 - y2.
   static std::int32_t difference(const std::int32_t* state) {
     return std::max(state[u1], std::int32_t{0}) - std::max(state[u2], std::int32_t{0});
   }
 
-  /// The neighbour's y1 - y2, turned by the phase that lies between the two joints, and by the pair's own lag.
+  /// The neighbour's y1 - y2, turned by the phase that lies between the two joints and by the pair's own lag.
   static std::int32_t input_from(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning) {
     if (!neighbour.present()) {
       return 0;

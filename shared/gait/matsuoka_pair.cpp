@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "shared/fixed/arithmetic.hpp"
-#include "shared/fixed/square_root.hpp"
 
 namespace proleg {
 namespace {
 
-/// u after a step. All products have Q56.
+/// The potential u of a neuron after a step. All products have Q56.
 std::int32_t potential(std::int32_t u, std::int32_t other_output, std::int32_t own_fatigue, std::int32_t fast_step,
                        std::int32_t fatigue, std::int32_t inhibition, std::int32_t input) {
   const std::int64_t inhibited = shift_right_rounding(multiply_wide(inhibition, other_output), 28);
@@ -35,8 +34,8 @@ MatsuokaConstants make_matsuoka_constants(std::int32_t frequency, std::int32_t t
   // step / tau = omega step (T / tau) / (omega T)
   constexpr std::int64_t half_pi = 843314857;  // Q29: 2 pi / steps_in_a_tick
   static_assert(MatsuokaConstants::steps_in_a_tick == 4);
-  const std::int64_t turns =
-      divide_nearest((std::int64_t{frequency} * tick_period_us) << 6U, 1'000'000);  // a tick, Q30
+  // Turns in a tick are in Q30.
+  const std::int64_t turns = divide_nearest((std::int64_t{frequency} * tick_period_us) << 6U, 1'000'000);
   const std::int64_t omega_step = shift_right_rounding(turns * half_pi, 29);
   const std::int64_t fast = divide_nearest(shift_right_rounding(omega_step * time_ratio, 4), std::int64_t{x});
   constexpr std::int64_t stable = 1 << 28;

@@ -7,9 +7,8 @@
 namespace proleg {
 
 /// Two neurons that inhibit each other and tire (K. Matsuoka, Biol. Cybern. 52, 1985, and 56, 1987):
-///   tau u1' = -u1 - w y2 - beta v1 + c + S1,   T v1' = -v1 + y1,   y1 = max(0, u1),   and the same with 1 and 2
-///   exchanged.
-/// All quantities are ratios in Q28.
+///   tau u1' = -u1 - w y2 - beta v1 + c + S1,   T v1' = -v1 + y1,   y1 = max(0, u1),
+/// and the same with 1 and 2 exchanged. All quantities are ratios in Q28.
 struct MatsuokaPair {
   std::int32_t u1;  ///< membrane potentials
   std::int32_t u2;
@@ -20,18 +19,18 @@ struct MatsuokaPair {
   [[nodiscard]] std::int32_t y2() const { return u2 > 0 ? u2 : 0; }
 };
 
-/// Constants of a pair, derived from people's parameters.
+/// Constants of a pair, derived from parameters that are easy to choose.
 struct MatsuokaConstants {
-  /// A tick has this many Euler steps. An input from outside is held over a tick.
+  /// Number of Euler steps in a tick. An input from outside is held over a tick.
   static constexpr unsigned steps_in_a_tick = 4;
-  /// Number of derived constants that the first two take up.
+  /// Number of derived constants that fast_step and slow_step take up.
   static constexpr unsigned derived_size = 2;
 
   std::int32_t fast_step;  ///< step / tau in Q30, at most 1/4
   std::int32_t slow_step;  ///< step / T in Q30
   std::int32_t x;          ///< omega T in Q24, omega: the natural frequency
 
-  /// Writes the two steps into derived constants; the pair's tick reads them there.
+  /// Writes fast_step and slow_step into derived constants, where advance() reads them.
   void store(std::int32_t* derived) const {
     derived[0] = fast_step;
     derived[1] = slow_step;
@@ -47,12 +46,12 @@ struct MatsuokaConstants {
                                                         std::int32_t fatigue, std::int32_t inhibition,
                                                         std::uint32_t tick_period_us);
 
-/// One tick. steps: where MatsuokaConstants::store wrote. input1, input2: c + S of each neuron in Q28. All values
-/// saturate at -8 and 8.
+/// Computes one tick. steps: where MatsuokaConstants::store has written. input1, input2: c + S of each neuron in Q28.
+/// All values saturate at -8 and 8.
 void advance(MatsuokaPair& pair, const std::int32_t* steps, std::int32_t fatigue, std::int32_t inhibition,
              std::int32_t input1, std::int32_t input2);
 
-/// Internal values of both generators that consist of such pairs.
+/// The internal values that both generators with such pairs have.
 namespace matsuoka_values {
 
 inline constexpr InternalValue u1{"u1", Unit::ratio, raw(Unit::ratio, 1, 20),
@@ -64,7 +63,7 @@ inline constexpr InternalValue v2{"v2", Unit::ratio, 0, "fatigue of the flexor n
 
 }  // namespace matsuoka_values
 
-/// Parameters of both generators that consist of such pairs.
+/// The parameters that both generators with such pairs have.
 namespace matsuoka_parameters {
 
 inline constexpr Parameter frequency{"frequency",         Unit::hertz,

@@ -106,7 +106,7 @@ class Mtran final : public PatternGenerator {
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
   void rejoin(const Surroundings& /*surroundings*/, const Tuning& tuning, std::int32_t* state) const override {
-    // The neighbours pull the new joint into the rhythm: how far it is behind them follows from the weights.
+    // The neighbours pull the new joint into the rhythm; the weights decide how far it is behind them.
     state[current_extensor_gain] = tuning.parameters[extensor_gain];
     state[current_flexor_gain] = tuning.parameters[flexor_gain];
     state[current_offset] = tuning.parameters[offset];
@@ -168,12 +168,12 @@ class Mtran final : public PatternGenerator {
     follow_parameters(tuning, state, next);
   }
 
-  // Parts of a tick that need no stack at the same time.
+  // Parts of a tick. They are separate functions, because they need no stack at the same time.
 
   [[gnu::noinline]] static void send(const MatsuokaPair& pair, const Tuning& tuning, std::int32_t* next) {
     next[y1_sent] = as_sent(pair.y1());
     next[y2_sent] = as_sent(pair.y2());
-    // T v' = -v + y: of two sines, v2 - v1 has the quadrature of y2 - y1.
+    // T v' = -v + y: if both are sines, v2 - v1 is the quadrature component of y2 - y1.
     const std::int32_t along = pair.y2() - pair.y1();
     const std::int32_t behind = saturate(std::int64_t{pair.v2} - pair.v1);
     const std::int64_t across =
@@ -189,7 +189,7 @@ class Mtran final : public PatternGenerator {
     follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
-  /// An output of Q28 in 128ths, which fit into a byte.
+  /// Shift by which an output in Q28 becomes 128ths, which fit into a byte.
   static constexpr unsigned sent_shift = 28 - 7;
   static std::int32_t as_sent(std::int32_t output_of_neuron) {
     constexpr std::int64_t most = 255;

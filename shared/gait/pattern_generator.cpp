@@ -5,7 +5,7 @@
 namespace proleg {
 
 std::int32_t phase_increment_of(std::int32_t frequency, std::uint32_t tick_period_us) {
-  // 2^32 / 2^24 = 2^8 steps of phase for a step of frequency and a second.
+  // 2^32 / 2^24 = 2^8 steps of phase for a step of frequency in a second.
   return static_cast<std::int32_t>(
       static_cast<std::uint32_t>(divide_nearest(std::int64_t{frequency} * tick_period_us * 256, 1'000'000)));
 }
@@ -41,7 +41,7 @@ void PatternGenerator::reset(const JointContext& context, const Tuning& tuning, 
 void PatternGenerator::advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                                std::int32_t* next) const {
   advance_pattern(surroundings, tuning, state, next);
-  // turns/tick in Q32 times ticks/s in Q16 is Q48; Q24 is wanted.
+  // The product of turns/tick in Q32 and ticks/s in Q16 is in Q48, and the frequency in Q24.
   next[measured_frequency] = saturate(shift_right_rounding(
       multiply_wide(subtract_wrapping(next[current_phase], state[current_phase]), tuning.derived[ticks_per_second]),
       24));

@@ -6,12 +6,12 @@
 
 namespace proleg {
 
-/// Everything that produces a periodic signal (thesis, section 5.2.1 and listing A.2). The base
-/// class measures frequency and phase difference to the next joint in each tick, adds seeded Gaussian noise to the
-/// internal values at reset, and extrapolates the phase of a neighbour whose frame is lost.
+/// An algorithm that produces a periodic signal (thesis, section 5.2.1 and listing A.2). The base class measures
+/// frequency and phase difference to the next joint in each tick, adds seeded Gaussian noise to the internal values at
+/// reset, and extrapolates the phase of a neighbour whose frame is lost.
 ///
-/// In return its declaration starts with the three internal values below, its frame starts with the phase on four
-/// bytes, and its first derived constant is the phase increment.
+/// Its declaration must start with the three internal values below, its frame with the phase on four bytes. Its first
+/// derived constant is the phase increment.
 class PatternGenerator : public ActuationModule {
  public:
   /// The first internal values of every pattern generator.
@@ -38,19 +38,19 @@ class PatternGenerator : public ActuationModule {
   void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const final;
   void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                std::int32_t* next) const final;
-  /// Moves the phase on by the increment.
+  /// Advances the phase by the increment.
   void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const override;
 
  protected:
   ~PatternGenerator() = default;
 
-  /// The phase that a joint has next to its neighbours, the one ahead first, when the phase grows by phase_difference
-  /// from joint to joint; nothing if no neighbour is present.
+  /// The phase that a joint has beside a neighbour when the phase grows by phase_difference from joint to joint. It is
+  /// computed from the neighbour ahead if that is present, else from the one behind; nothing if none is present.
   [[nodiscard]] static std::optional<std::int32_t> phase_beside_neighbour(const Surroundings& surroundings,
                                                                           std::int32_t phase_difference);
 
-  /// How far the phase of a neighbour, which must be present, is ahead of the one that belongs to the joint's own phase
-  /// when the phase grows by phase_difference from joint to joint.
+  /// How far a neighbour's phase is ahead of the phase that fits the joint's own phase, when the phase grows by
+  /// phase_difference from joint to joint. The neighbour must be present.
   [[nodiscard]] static std::uint32_t lead_of(const Neighbour& neighbour, const JointContext& context,
                                              std::int32_t phase_difference, std::int32_t own_phase) {
     const std::uint32_t distance = neighbour.joint() - context.joint;
@@ -65,16 +65,16 @@ class PatternGenerator : public ActuationModule {
   /// a generator whose phase runs at a multiple of it corrects it here.
   virtual void derive_pattern(const JointContext& context, const std::int32_t* parameters,
                               std::int32_t* derived) const = 0;
-  /// As ActuationModule::reset, without the noise.
+  /// Writes state 0, as ActuationModule::reset() does, without the noise.
   virtual void reset_pattern(const JointContext& context, const Tuning& tuning, std::int32_t* state) const = 0;
-  /// As ActuationModule::advance, for all values except the two measured ones.
+  /// Computes state k + 1, as ActuationModule::advance() does, for all values except the two measured ones.
   virtual void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                                std::int32_t* next) const = 0;
 };
 
-/// Phase increment of a tick: the integer nearest to 2^32 * frequency * tick. frequency: Q24 hertz.
-/// The rounding makes the phase drift by at most half a step a tick (0.0151 degrees an hour at 10 ms), equally in all
-/// modules and in the simulator.
+/// Phase increment of a tick: the integer nearest to 2^32 * frequency * tick. frequency: Q24 hertz. The rounding makes
+/// the phase drift by at most half a step a tick (0.0151 degrees an hour at 10 ms), equally in all modules and in the
+/// simulator.
 [[nodiscard]] std::int32_t phase_increment_of(std::int32_t frequency, std::uint32_t tick_period_us);
 
 }  // namespace proleg

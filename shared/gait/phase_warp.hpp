@@ -6,9 +6,9 @@
 
 namespace proleg {
 
-/// Two speeds of an oscillator: its first half turn lasts a fraction d of the period, the second the rest. Maps between
-/// the phase of the clock, which is uniform in time, and the angle of the oscillator. For d = 1/2 both are the same, to
-/// the last bit.
+/// The two speeds of an oscillator whose first half turn lasts a fraction d of the period, the second the rest. Maps
+/// between the phase of the clock, which is uniform in time, and the angle of the oscillator. For d = 1/2 both are the
+/// same, to the last bit.
 class PhaseWarp {
  public:
   /// Number of derived constants that a warp takes up.
@@ -38,7 +38,7 @@ class PhaseWarp {
  private:
   static constexpr std::uint32_t half_turn = 0x80000000U;
 
-  /// factor: Q28
+  /// Product of a phase and a factor in Q28.
   static std::uint32_t scaled(std::uint32_t phase, std::uint32_t factor) {
     return static_cast<std::uint32_t>((multiply_wide(phase, factor) + (1U << 27U)) >> 28U);
   }

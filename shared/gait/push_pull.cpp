@@ -100,14 +100,14 @@ constexpr Declaration about{11,
 
 constexpr std::int32_t one = raw(Unit::ratio, 1);
 
-/// Iterations for which a spike releases transmitter.
+/// Number of iterations for which a spike releases transmitter.
 constexpr std::uint32_t release_time = 5;
-/// The wave is this many iterations behind the joint that drives it, without a delay.
+/// Number of iterations by which the wave is behind the joint that drives it, without a delay.
 constexpr std::int64_t synaptic_delay = 20;
 constexpr unsigned history_bits = 64;
 
-/// mu times the period of the bursts in iterations, in Q20, for 0, 1, 2, ... bursts in 4096 iterations; of the default
-/// conductances. From a model in double precision.
+/// mu times the period of the bursts in iterations, in Q20, for 0, 1, 2, ... bursts in 4096 iterations, with the
+/// default conductances. The numbers are from a model in double precision.
 constexpr std::int32_t mu_times_period[] = {1174405, 1258825, 1331167, 1385169, 1407189,
                                             1420820, 1434452, 1432355, 1437073, 1444938};
 
@@ -122,7 +122,7 @@ class PushPull final : public PatternGenerator {
   }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
-    // The bursts of 1 Hz, with the pauses between them, have the amplitude 0.570 behind both filters.
+    // Bursts of 1 Hz, with the pauses between them, have the amplitude 0.570 behind both filters.
     constexpr std::int32_t inverse_gain = 470939397;  // 1 / 0.570 in Q28
     const std::int32_t share = saturate(shift_right_rounding(multiply_wide(state[output_level], inverse_gain), 28));
     const std::int64_t swing = shift_right_rounding(multiply_wide(state[current_amplitude], share), 28);
@@ -132,7 +132,7 @@ class PushPull final : public PatternGenerator {
  private:
   enum OwnDerived : std::uint8_t {
     mu = first_own_derived,  ///< Q31
-    iterations,              ///< in a tick
+    iterations,              ///< number of iterations in a tick
     filter_step,             ///< part of the way that a smoothing filter goes in a tick, Q30
     delay,                   ///< bit of the history; bit 8: promotor and remotor exchanged; bit 9: driven from behind
     history_period_mask,     ///< the history moves on at ticks of which these bits are 0
@@ -153,11 +153,11 @@ class PushPull final : public PatternGenerator {
 
   [[gnu::noinline]] static void derive_network(const JointContext& context, const std::int32_t* values,
                                                std::int32_t* derived) {
-    // About an iteration in 1.7 ms: as many as a tick of 10 ms has instructions for.
+    // One iteration takes about 1.7 ms: a tick of 10 ms has instructions for no more of them.
     const std::uint32_t count = std::clamp<std::uint32_t>((context.tick_period_us + 833U) / 1667U, 1U, 6U);
     derived[iterations] = static_cast<std::int32_t>(count);
 
-    // Bursts in an iteration, Q36: at most 9 / 4096.
+    // Bursts in an iteration are in Q36: at most 9 / 4096.
     constexpr std::int64_t most_bursts = std::int64_t{9} << 24U;
     const std::int64_t bursts =
         std::clamp(divide_nearest((std::int64_t{values[Parameters::frequency]} * context.tick_period_us) << 12U,
@@ -172,7 +172,7 @@ class PushPull final : public PatternGenerator {
 
     // The filters' time constant is 1 / (2 pi) of a period.
     constexpr std::int64_t two_pi = 411774;                                        // Q16
-    const std::int64_t angle = shift_right_rounding(bursts * count * two_pi, 28);  // of a tick, Q24
+    const std::int64_t angle = shift_right_rounding(bursts * count * two_pi, 28);  // angle of a tick, Q24
     derived[filter_step] = (1 << 30) - exponential_decay(saturate(angle));
 
     set_delay(context, values, bursts, count, derived);
@@ -192,7 +192,7 @@ class PushPull final : public PatternGenerator {
       lag -= 0x80000000U;
       flags |= exchanged;
     }
-    // Q32 turns over Q36 bursts in an iteration are iterations in Q-4.
+    // Q32 turns divided by bursts in an iteration in Q36 are iterations in Q-4.
     const std::int64_t late = (std::int64_t{lag} << 4U) / bursts - synaptic_delay;
     const std::int64_t ticks = divide_nearest(std::max(late, std::int64_t{0}), count);
     unsigned shift = 0;
@@ -204,14 +204,14 @@ class PushPull final : public PatternGenerator {
   }
 
   void reset_pattern(const JointContext& /*context*/, const Tuning& /*tuning*/, std::int32_t* state) const override {
-    // Between bursts, the promotor first to fire.
+    // The start is between bursts, and the promotor is the first to fire.
     state[promotor_x] = -rulkov::unit;
     state[promotor_y] = -7 * rulkov::unit - rulkov::unit / 2;
     state[remotor_x] = -rulkov::unit - rulkov::unit / 4;
     state[remotor_y] = -8 * rulkov::unit;
   }
 
-  /// Two receptors of 16 bits in a state value.
+  /// The shares of open receptors of two neurons, 16 bits each, in a state value.
   struct Receptors {
     explicit Receptors(std::int32_t packed)
         : promotor(static_cast<std::uint32_t>(packed) & 0xFFFFU), remotor(static_cast<std::uint32_t>(packed) >> 16U) {}
@@ -221,7 +221,7 @@ class PushPull final : public PatternGenerator {
     std::uint32_t remotor;
   };
 
-  /// A neuron and how long it still releases transmitter.
+  /// A neuron, and the number of iterations for which it still releases transmitter.
   struct Cell {
     rulkov::Neuron neuron;
     std::uint32_t release;
@@ -251,8 +251,8 @@ class PushPull final : public PatternGenerator {
     smooth(fire(surroundings, tuning, state, next), tuning, state, next);
   }
 
-  /// The iterations of a tick. Returns promotor's minus remotor's activity. Not inline: its variables would lie on the
-  /// stack below those of the filters.
+  /// Computes the iterations of a tick. Returns the promotor's minus the remotor's activity. Not inline, because its
+  /// variables would lie on the stack below those of the filters.
   [[gnu::noinline]] static std::int32_t fire(const Surroundings& surroundings, const Tuning& tuning,
                                              const std::int32_t* state, std::int32_t* next) {
     const std::int32_t* values = tuning.parameters;
@@ -270,7 +270,8 @@ class PushPull final : public PatternGenerator {
     const std::uint32_t next_inhibiting = conductance_of(values[next_inhibition]);
     const std::uint32_t next_exciting = conductance_of(values[next_excitation]);
     for (std::int32_t i = 0; i < derived[iterations]; ++i) {
-      // Mutual inhibition; from the driving joint, like excites like and inhibits its opponent.
+      // The two neurons inhibit each other. A neuron of the driving joint excites the like neuron and inhibits its
+      // opponent.
       const rulkov::Synapses to_promotor{conductance(mutual, own.remotor) + conductance(next_inhibiting, far.remotor),
                                          conductance(next_exciting, far.promotor)};
       const rulkov::Synapses to_remotor{conductance(mutual, own.promotor) + conductance(next_inhibiting, far.promotor),
@@ -293,14 +294,14 @@ class PushPull final : public PatternGenerator {
     return (promotor.was_active ? one : 0) - (remotor.was_active ? one : 0);
   }
 
-  /// Of a parameter in Q28, in Q12: its product with a share of receptors has 32 bits.
+  /// The largest conductance in Q12, from a parameter in Q28: its product with a share of receptors has 32 bits.
   static std::uint32_t conductance_of(std::int32_t parameter) { return static_cast<std::uint32_t>(parameter) >> 16U; }
-  /// Q28
+  /// The conductance of open receptors in Q28.
   static std::int32_t conductance(std::uint32_t largest_conductance, std::uint32_t share) {
     return static_cast<std::int32_t>(largest_conductance * share);
   }
 
-  /// Moves the driving joint's history on. Returns its activity the delay ago, as in `activity`.
+  /// Advances the history of the driving joint. Returns the joint's activity before the delay, as in `activity`.
   static std::uint32_t listen(const Surroundings& surroundings, const std::int32_t* derived, const std::int32_t* state,
                               std::int32_t* next) {
     const auto flags = static_cast<std::uint32_t>(derived[delay]);
@@ -333,7 +334,7 @@ class PushPull final : public PatternGenerator {
         add_saturating(state[smoothed], multiply(saturate(std::int64_t{level} - state[smoothed]), step, 30));
     next[output_level] = add_saturating(
         state[output_level], multiply(saturate(std::int64_t{next[smoothed]} - state[output_level]), step, 30));
-    // With a time constant of 1 / omega the input of a filter minus its output is a quarter of a period ahead.
+    // With a time constant of 1 / omega, the input of a filter minus its output is a quarter of a period ahead.
     const std::int32_t ahead = saturate((std::int64_t{next[smoothed]} - next[output_level]) / 2);
     next[current_phase] = polar(ahead, next[output_level] / 2).angle;
 

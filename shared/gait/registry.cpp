@@ -7,7 +7,7 @@
 namespace proleg {
 namespace {
 
-// Functions and not objects, so that the table is a constant in flash and nothing has to run before main.
+// The table has functions and not objects, so that it is a constant in flash and no code has to run before main().
 constexpr const ActuationModule& (*algorithms[])() = {direct_joint_access,
                                                       pattern_generator_sinusoidal,
                                                       pattern_generator_sinusoidal_extended,
@@ -23,12 +23,12 @@ constexpr const ActuationModule& (*algorithms[])() = {direct_joint_access,
                                                       pattern_generator_asymmetric_wave,
                                                       sensing_module_global_adaptive_touch,
                                                       pattern_generator_head_stimulus,
-#ifdef PROLEG_USER_ALGORITHMS  // by tools/cmake/user_algorithm.cmake: their functions, each with a comma
+#ifdef PROLEG_USER_ALGORITHMS  // functions of users' algorithms, each with a comma
                                                       PROLEG_USER_ALGORITHMS
 #endif
 };
 
-/// None in a module: there nothing calls set_loaded_algorithms().
+/// The list of set_loaded_algorithms(). It is empty in a module, where nothing calls that function.
 std::span<const ActuationModule* const> loaded_algorithms;
 
 }  // namespace

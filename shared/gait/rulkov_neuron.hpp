@@ -23,7 +23,8 @@ struct Neuron {
 inline constexpr std::int32_t unit = 1 << 26;
 inline constexpr std::int32_t largest = 16 * unit - 1;
 
-/// alpha / (1 - x) for x <= 0, to 2e-5 of its value. Two divisions of 32 bits: 64 bits would need a library call.
+/// alpha / (1 - x) for x <= 0, exact to 2e-5 of its value. It takes two divisions of 32 bits; 64 bits would need a
+/// library call.
 [[nodiscard]] constexpr std::int32_t recovery(std::int32_t x) {
   constexpr std::uint32_t alpha = 15U * unit;
   const std::uint32_t divisor = (static_cast<std::uint32_t>(unit - x) + 1024U) >> 11U;  // Q15, at least 1
@@ -32,20 +33,20 @@ inline constexpr std::int32_t largest = 16 * unit - 1;
   return static_cast<std::int32_t>(((coarse << 11U) + fine) << 4U);
 }
 
-/// Synapses that reach a neuron, as conductances g in Q28, at most 3 and 1: I = inhibition (-7 - x) + excitation (1 -
-/// x).
+/// Synapses that reach a neuron, as conductances g in Q28, at most 3 (inhibition) and 1 (excitation): I = inhibition
+/// (-7 - x) + excitation (1 - x).
 struct Synapses {
   std::int32_t inhibition;
   std::int32_t excitation;
 };
 
-/// I in Q24, at most 85 in size.
+/// The current I through open synapses, in Q24, at most 85 in size.
 [[nodiscard]] inline std::int32_t current_through(const Synapses& open, std::int32_t x) {
   const std::int32_t reversal = (open.excitation >> 4U) - 7 * (open.inhibition >> 4U);
   return reversal - multiply(open.inhibition + open.excitation, x, 30);
 }
 
-/// One iteration. mu: Q31.
+/// Computes one iteration. mu: Q31.
 [[nodiscard]] inline Neuron iterate(Neuron old, const Synapses& open, std::int32_t mu) {
   constexpr std::int32_t alpha = 15 * unit;
   constexpr std::int32_t four_tenths = 429496730;     // Q30: 0.1 for a current with two fraction bits less

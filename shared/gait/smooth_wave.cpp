@@ -30,7 +30,7 @@ void SmoothWave::rejoin(const Surroundings& surroundings, const Tuning& tuning, 
       state[current_phase] = add_wrapping(neighbour.value(phase_field), *lead);
     }
   }
-  // Which of the turns of the harmonic it is makes no difference to the joint.
+  // Several values of the clock give this phase. The angle of the joint is the same for all of them.
   const std::int32_t harmonic = multiple(tuning);
   state[clock] = subtract_wrapping(state[current_phase], state[current_shift]) / harmonic;
   state[current_phase] = add_wrapping(state[clock] * harmonic, state[current_shift]);

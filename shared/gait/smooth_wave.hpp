@@ -13,7 +13,7 @@ namespace proleg {
 /// changes. Amplitude, shift and offset approach their targets through critically damped filters; amplitude and offset
 /// start at 0. So no change of a parameter makes the joint jump.
 ///
-/// In return the internal values of its declaration are `wave_values`, and its frame is `wave_frame`.
+/// Its declaration must have the internal values `wave_values`, and its frame must be `wave_frame`.
 class SmoothWave : public PatternGenerator {
  public:
   enum Value : std::uint8_t {
@@ -32,7 +32,7 @@ class SmoothWave : public PatternGenerator {
  protected:
   ~SmoothWave() = default;
 
-  /// Constants that the class derives for itself. An algorithm writes its own from first_wave_derived on.
+  /// The constants that the class derives for itself. An algorithm writes its own from first_wave_derived on.
   enum Derived : std::uint8_t {
     clock_increment = first_own_derived,
     filter_constants,
@@ -53,7 +53,7 @@ class SmoothWave : public PatternGenerator {
   };
   static constexpr FrameField wave_frame[] = {FrameField{current_phase, 4}};
 
-  /// What the joint moves towards.
+  /// The values that the joint's wave approaches.
   struct Target {
     std::int32_t amplitude;  ///< 90 degrees = 2^30; negative: the wave is upside down
     std::int32_t shift;      ///< phase of the joint at tick 0
@@ -61,7 +61,7 @@ class SmoothWave : public PatternGenerator {
   };
 
   /// Derives the class's constants. rate: of the filters, in Q24 1/s. A generator calls it at the end of
-  /// derive_pattern, when derived[phase_increment] is the increment of the clock.
+  /// derive_pattern(), when derived[phase_increment] is the increment of the clock.
   static void derive_wave(const JointContext& context, std::int32_t rate, std::int32_t harmonic, std::int32_t* derived);
 
   /// The phase that phase_difference adds up to over a number of joints, which may be negative modulo 2^32.

@@ -16,7 +16,7 @@ std::size_t position_of(const Declaration& declaration, std::size_t field) {
   return position;
 }
 
-/// The bits of a value that go on the wire, right-aligned.
+/// The bits of a value that are sent, right-aligned.
 std::uint32_t to_wire(Unit unit, unsigned bits, std::int32_t value) {
   const unsigned dropped = 32U - bits;
   if (unit == Unit::count) {

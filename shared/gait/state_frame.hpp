@@ -13,7 +13,7 @@ namespace proleg {
 ///
 /// bytes 0-5: what the algorithm declares as its frame, in that order; byte 6: contacts and flags; byte 7: label, the
 /// tick of the state modulo 256.
-struct alignas(4) StateFrame {  // copied as two words, where bytes would need a library call
+struct alignas(4) StateFrame {  // copied as two words; single bytes would need a library call
   static constexpr std::size_t payload_size = 6;
 
   std::array<std::uint8_t, 8> bytes{};
@@ -22,7 +22,7 @@ struct alignas(4) StateFrame {  // copied as two words, where bytes would need a
     contact_rear_link_rear = 1U << 0U,   ///< link behind the joint, sensor nearer to the tail
     contact_rear_link_front = 1U << 1U,  ///< link behind the joint, sensor nearer to the head
     contact_far_link_rear = 1U << 2U,    ///< link in front of joint 0 (head module only), sensor nearer to the tail
-    contact_far_link_front = 1U << 3U,   ///< the same link, sensor nearer to the head
+    contact_far_link_front = 1U << 3U,   ///< link in front of joint 0 (head module only), sensor nearer to the head
     fault = 1U << 4U,
     holdover = 1U << 5U,  ///< the joint computes without receiving SYNC
     limited = 1U << 6U,   ///< the sum of the slots was cut to the joint's limits
@@ -44,7 +44,7 @@ void pack(const Declaration& declaration, const std::int32_t* internal_values, S
 /// Reads one declared field, as an internal value with its low bits 0. field: index into declaration.frame.
 [[nodiscard]] std::int32_t unpack(const Declaration& declaration, std::size_t field, const StateFrame& frame);
 
-/// Overwrites one declared field.
+/// Overwrites one declared field. field: index into declaration.frame.
 void repack(const Declaration& declaration, std::size_t field, std::int32_t value, StateFrame& frame);
 
 }  // namespace proleg

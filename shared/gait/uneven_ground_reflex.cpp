@@ -2,7 +2,6 @@
 
 #include "shared/fixed/arithmetic.hpp"
 #include "shared/gait/algorithms.hpp"
-#include "shared/gait/limited_step.hpp"
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
@@ -40,7 +39,7 @@ constexpr Declaration about{5,
 
 /// Whether two links touch that are at most `reach` links apart.
 bool ground_is_uneven(const Contacts& contacts, std::int32_t reach) {
-  std::int32_t distance = reach;  // from the last link that touches; none yet
+  std::int32_t distance = reach;  // distance from the last link that touches; at the start there is none
   for (unsigned link = 0; link < contacts.link_count(); ++link) {
     ++distance;
     if (contacts.pressed(link)) {
@@ -67,16 +66,16 @@ class UnevenGroundReflex final : public SensingModule {
   }
 
  private:
-  enum Derived : std::uint8_t { rise_step, fall_step };  // in a tick
+  enum Derived : std::uint8_t { rise_step, fall_step };  // angle of a tick, for both
 
-  /// At least 11 steps of the angle, at 1 degree in a second and ticks of 1 ms.
+  /// Angle of a tick at this rate, 90 degrees = 2^30: at least 11930, at 1 degree in a second and ticks of 1 ms.
   static std::int32_t step_of(std::int32_t rate, const JointContext& context) {
     return static_cast<std::int32_t>(divide_nearest(std::int64_t{rate} * context.tick_period_us, 1'000'000));
   }
 
   void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& tuning,
                        const std::int32_t* state, std::int32_t* next) const override {
-    // Limited, because a parameter may have been lowered or a counter overwritten.
+    // The value is limited, because a parameter may have been lowered or a counter overwritten.
     const std::int32_t before = std::clamp<std::int32_t>(state[sign_ticks], 0, tuning.parameters[confirm] - 1);
     next[sign_ticks] = ground_is_uneven(contacts, tuning.parameters[reach]) ? before + 1 : 0;
     const bool sign = next[sign_ticks] == tuning.parameters[confirm];

@@ -1,7 +1,7 @@
 #pragma once
 
-// Where the fields of a header are (image_header.hpp). For the image that is being linked, too, whose header the
-// compiler writes.
+// Positions of the fields of a header (image_header.hpp). The image that is being linked uses them, too: the compiler
+// writes its header.
 
 #include "shared/fixed/little_endian.hpp"
 #include "shared/image/image_header.hpp"

@@ -4,7 +4,6 @@
 
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"
-#include "shared/image/header_layout.hpp"
 
 namespace proleg::image {
 namespace {

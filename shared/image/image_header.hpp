@@ -1,7 +1,7 @@
 #pragma once
 
 // An image is the program of a module as it is sent over the bus and written into flash: a header of 512 bytes, then
-// the body, which begins with the vector table. The header says for which boards the body is, and what it contains.
+// the body, which begins with the vector table. The header describes the body and the boards that it is for.
 //
 // Header, format 1 (little-endian; what is not listed is 0):
 //   0  u32  magic, the characters PIMG
@@ -30,6 +30,7 @@
 #include <span>
 #include <string_view>
 
+#include "shared/fixed/little_endian.hpp"
 #include "shared/image/sha256.hpp"
 
 namespace proleg::image {
@@ -43,7 +44,7 @@ struct Version {
   std::uint16_t patch = 0;
 
   friend constexpr bool operator==(const Version&, const Version&) = default;
-  /// Whether it is the older one.
+  /// Whether `one` is the older version.
   friend constexpr bool operator<(const Version& one, const Version& other) {
     return one.major != other.major   ? one.major < other.major
            : one.minor != other.minor ? one.minor < other.minor
@@ -51,12 +52,12 @@ struct Version {
   }
 };
 
-/// What decides whether an image runs. A bootloader has no room to read more.
+/// The part of a header that decides whether an image runs. A bootloader has no room to read more.
 struct Summary {
   std::uint16_t board_id = 0;
   std::uint8_t lowest_revision = 0;
   std::uint8_t highest_revision = 0;  ///< at least the lowest
-  std::uint32_t address = 0;          ///< of the body
+  std::uint32_t address = 0;          ///< address of the body
   std::uint32_t length = 0;           ///< bytes of the body: a multiple of 4, not 0
   std::uint32_t crc = 0;              ///< CRC-32 of the body
 
@@ -77,55 +78,120 @@ struct Header : Summary {
   friend bool operator==(const Header&, const Header&) = default;
 };
 
-/// Where and on which board an image would run.
+/// The board, and the place on it, at which an image would run.
 struct Place {
   std::uint16_t board_id = 0;
-  std::uint8_t revision = 0;  ///< of the board's hardware
-  std::uint32_t address = 0;  ///< where bodies begin
-  std::uint32_t room = 0;     ///< bytes for a body
+  std::uint8_t revision = 0;  ///< hardware revision of the board
+  std::uint32_t address = 0;  ///< address at which bodies begin
+  std::uint32_t room = 0;     ///< number of bytes that a body may have
 };
 
 enum class Error : std::uint8_t {
   none,
   too_short,         ///< fewer bytes than a header has
-  not_an_image,      ///< another magic
+  not_an_image,      ///< the magic is wrong
   unknown_format,    ///< a format or a header size of a later version
-  damaged_header,    ///< its CRC is wrong
+  damaged_header,    ///< the CRC of the header is wrong
   impossible_value,  ///< the CRC is right, but a value is out of its range
   other_board,
   other_revision,
-  other_address,  ///< it is linked for another place
+  other_address,  ///< it is linked for another address
   too_large,
   wrong_length,  ///< there are more or fewer bytes than the header says
-  damaged_body,  ///< its CRC or its SHA-256 is wrong
+  damaged_body,  ///< the CRC or the SHA-256 of the body is wrong
 };
 
-/// For a person, without a full stop.
+/// A phrase for people that describes the error, without a full stop.
 [[nodiscard]] std::string_view describe(Error error);
 
-/// The bytes of a header; its CRC is computed.
+/// Bytes of a header, with its CRC, which is computed.
 [[nodiscard]] HeaderBytes encode(const Header& header);
 
 struct HeaderResult {
-  Header header;  ///< of use if error is `none`
+  Header header;  ///< valid if error is `none`
   Error error = Error::none;
 };
 
-/// The header at the beginning of some bytes. The body is not looked at.
+/// Decodes the header at the beginning of some bytes. The body is not checked.
 [[nodiscard]] HeaderResult decode(std::span<const std::uint8_t> bytes);
-/// The same for the summary, which is of use if the error is `none`.
+/// Decodes the summary at the beginning of some bytes. It is valid if the error is `none`.
 [[nodiscard]] Error decode(std::span<const std::uint8_t> bytes, Summary& summary);
 
-/// Whether an image with this header can run there: `other_board` to `too_large`, or `none`.
+/// Whether an image with this header can run at this place: `other_board` to `too_large`, or `none`.
 [[nodiscard]] Error check_place(const Summary& header, const Place& place);
 
-/// All of this for a whole image: header, place and body.
+/// Checks a whole image: header, place and body.
 [[nodiscard]] Error check_image(std::span<const std::uint8_t> image, const Place& place);
 
 /// Whether a body is the one that the header describes: `wrong_length`, `damaged_body`, or `none`.
 [[nodiscard]] Error check_body(const Header& header, std::span<const std::uint8_t> body);
 
-/// Enters length, CRC and SHA-256 of a body.
+/// Sets the length, CRC and SHA-256 of the header from a body.
 void describe_body(Header& header, std::span<const std::uint8_t> body);
 
+/// Where the fields of a header are. For the image that is being linked, too, whose header the compiler writes.
+namespace layout {
+
+inline constexpr std::uint32_t magic = 0x474D4950;  // "PIMG"
+inline constexpr std::uint16_t format = 1;
+
+inline constexpr std::size_t magic_at = 0;
+inline constexpr std::size_t format_at = 4;
+inline constexpr std::size_t size_at = 6;
+inline constexpr std::size_t board_at = 8;
+inline constexpr std::size_t lowest_revision_at = 10;
+inline constexpr std::size_t highest_revision_at = 11;
+inline constexpr std::size_t major_at = 12;
+inline constexpr std::size_t minor_at = 14;
+inline constexpr std::size_t patch_at = 16;
+inline constexpr std::size_t protocol_at = 18;
+inline constexpr std::size_t fingerprint_at = 20;
+inline constexpr std::size_t schema_at = 24;
+inline constexpr std::size_t flags_at = 25;
+inline constexpr std::size_t address_at = 28;
+inline constexpr std::size_t length_at = 32;
+inline constexpr std::size_t body_crc_at = 36;
+inline constexpr std::size_t commit_at = 40;
+inline constexpr std::size_t key_at = 60;
+inline constexpr std::size_t hash_at = 64;
+inline constexpr std::size_t signature_at = 96;
+inline constexpr std::size_t signature_end = 160;
+inline constexpr std::size_t header_crc_at = header_size - 4;
+
+inline constexpr std::uint8_t flag_changed_sources = 1;
+
+template <std::size_t Size>
+constexpr void write_bytes(HeaderBytes& bytes, std::size_t at, const std::array<std::uint8_t, Size>& value) {
+  for (std::size_t i = 0; i < Size; ++i) {
+    bytes[at + i] = value[i];
+  }
+}
+
+/// The bytes of a header without its CRC, which is 0.
+constexpr HeaderBytes encode_fields(const Header& header) {
+  HeaderBytes bytes{};
+  write_little_endian(bytes, magic_at, 4, magic);
+  write_little_endian(bytes, format_at, 2, format);
+  write_little_endian(bytes, size_at, 2, header_size);
+  write_little_endian(bytes, board_at, 2, header.board_id);
+  bytes[lowest_revision_at] = header.lowest_revision;
+  bytes[highest_revision_at] = header.highest_revision;
+  write_little_endian(bytes, major_at, 2, header.version.major);
+  write_little_endian(bytes, minor_at, 2, header.version.minor);
+  write_little_endian(bytes, patch_at, 2, header.version.patch);
+  write_little_endian(bytes, protocol_at, 2, header.protocol);
+  write_little_endian(bytes, fingerprint_at, 4, header.core_fingerprint);
+  bytes[schema_at] = header.settings_schema;
+  bytes[flags_at] = header.has_changed_sources ? flag_changed_sources : 0;
+  write_little_endian(bytes, address_at, 4, header.address);
+  write_little_endian(bytes, length_at, 4, header.length);
+  write_little_endian(bytes, body_crc_at, 4, header.crc);
+  write_bytes(bytes, commit_at, header.commit);
+  write_little_endian(bytes, key_at, 4, header.key_id);
+  write_bytes(bytes, hash_at, header.hash);
+  write_bytes(bytes, signature_at, header.signature);
+  return bytes;
+}
+
+}  // namespace layout
 }  // namespace proleg::image

@@ -1,6 +1,6 @@
 #include "shared/kernel/kernel.hpp"
 
-// Parameters and internal values from outside: checked, staged, and in force from the tick of their commit.
+// Changes of parameters and internal values: they are checked, staged, and take effect at the tick of their commit.
 
 namespace proleg {
 
@@ -73,7 +73,8 @@ bool Kernel::staged_value(unsigned slot, unsigned joint, unsigned number, bool i
 
 void Kernel::apply_commits() {
   while (const std::optional<Staging::Due> due = staging_.next_due(tick_)) {
-    // Only join() leaves commits for earlier ticks. The states that their internal values belong to are in the past.
+    // Only join() leaves commits for earlier ticks. Their internal values belong to states that are not computed any
+    // more.
     const bool with_internal_values = due->tick == tick_;
     for (JointMemory& joint : memory_) {
       std::uint32_t changed_slots = 0;

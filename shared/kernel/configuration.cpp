@@ -1,7 +1,7 @@
 #include "shared/gait/declaration.hpp"
 #include "shared/kernel/kernel.hpp"
 
-// What the kernel computes before the first tick.
+// The part of the kernel that runs before the first tick.
 
 namespace proleg {
 
@@ -46,7 +46,7 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   beside_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
-    // Beside set_up() and not part of it: the two need no stack at the same time.
+    // This loop is not part of set_up(), so that the two do not need stack at the same time.
     for (unsigned s = 0; s < slots_in_use; ++s) {
       SlotMemory& slot_memory = memory_[i].slots[s];
       if (slot_memory.active) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a kernel keeps for each of its joints.
+// The values that a kernel keeps for each of its joints.
 
 #include <array>
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace proleg {
 
-/// Values of one joint that are staged at the same time, over all transactions.
+/// Greatest number of values of one joint that are staged at the same time, in all transactions together.
 inline constexpr std::size_t max_staged_values = 64;
 
-/// A change of one value of a joint that waits for its transaction.
+/// A change of one value of a joint that waits for its transaction to take effect.
 struct StagedValue {
   std::int32_t value;
   std::uint8_t transaction;  ///< position in the list of Staging
   std::uint8_t slot;
-  std::uint8_t number;  ///< of the parameter or internal value
+  std::uint8_t number;  ///< number of the parameter or internal value
   bool internal;
 };
 
@@ -27,15 +27,16 @@ struct StagedValues {
   std::uint8_t count;
 };
 
-/// A slot on a joint.
+/// The values of one slot on one joint.
 struct SlotMemory {
   JointContext context;
   Neighbour ahead;
   Neighbour behind;
   std::array<std::int32_t, max_parameters> parameters;
   std::array<std::int32_t, max_derived> derived;
-  std::array<std::array<std::int32_t, max_internal_values>, 2> values;  ///< two buffers, never in place
-  const Declaration* broadcast;                                         ///< null if the slot sends nothing
+  std::array<std::array<std::int32_t, max_internal_values>, 2>
+      values;                    ///< two buffers: advance() reads one and writes the other
+  const Declaration* broadcast;  ///< null if the slot sends nothing
   std::uint8_t channel;
   bool active;
   std::uint8_t sensed_joints;  ///< number of joints whose contacts the algorithm receives: all, or 0
@@ -50,7 +51,7 @@ struct JointMemory {
   std::int32_t setpoint;
   std::uint8_t contacts;
   bool limited;
-  std::uint8_t needed_readings;  ///< of all slots
+  std::uint8_t needed_readings;  ///< bits of JointReadings::Sensor, for all slots of the joint together
   JointReadings readings;
 };
 

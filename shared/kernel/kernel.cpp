@@ -4,7 +4,7 @@
 
 #include "shared/fixed/arithmetic.hpp"
 
-// The tick.
+// The part of the kernel that computes a tick.
 
 namespace proleg {
 
@@ -38,7 +38,7 @@ void Kernel::reset() {
       SlotMemory& slot = memory.slots[s];
       slot.values = {};
       if (slot.active) {
-        // The slots of one joint draw from different streams too.
+        // Slots of the same joint draw from different streams, too.
         Pcg32 noise(configuration_.seed, joint * max_slots + s);
         configuration_.slots[s].algorithm->reset(slot.context, tuning(slot), noise, current(slot).data());
       }
@@ -185,7 +185,7 @@ void Kernel::fill_missed_frames() {
     }
     const JointMask second = second_channel_[s];
     const JointMask arrived = (arrived_[0] - second) | (arrived_[1] & second);
-    const JointMask missing = beside_[s] - arrived;  // the slot needs no other frames
+    const JointMask missing = beside_[s] - arrived;  // a slot without sensing needs no frames but these
     // The local joints of a slot share the frame of a neighbour, so only the first of them extrapolates it.
     const int local = slot.group.from(first_joint_);
     if (missing.empty() || local < 0 || !drives(s, static_cast<unsigned>(local))) {

@@ -28,37 +28,36 @@ class Kernel {
   Kernel& operator=(const Kernel&) = delete;
 
   /// Takes a configuration, sets all parameters to their defaults and all limits to +-90 degrees, drops all staged
-  /// values, and resets.
-  /// The kernel computes the joints first_joint .. first_joint + size of the memory - 1.
+  /// values, and resets. The kernel computes the joints first_joint .. first_joint + size of the memory - 1.
   Status configure(const KernelConfiguration& configuration, unsigned first_joint);
 
-  /// The sum of the slots is cut to these limits (90 degrees = 2^30).
+  /// Sets the limits to which the sum of a joint's slots is cut (90 degrees = 2^30).
   Status set_limits(unsigned joint, std::int32_t lower, std::int32_t upper);
 
   /// Sets a parameter at once, for use before the first tick. The start state follows with the next reset().
   Status set_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
 
-  /// Back to tick 0 and state 0. Parameters and staged values stay.
+  /// Returns to tick 0 and state 0. Parameters and staged values stay.
   void reset();
 
-  /// Opens a transaction under which values can be staged, even if there is none for the local joints. Drops the values
-  /// of another transaction that is open; opening the open one again changes nothing.
+  /// Opens a transaction under which values can be staged, even if it has none for the local joints. Drops the values
+  /// of another transaction that is open. Opening the open transaction again changes nothing.
   Status open(std::uint16_t transaction) { return staging_.open(memory_, transaction); }
-  /// Stages a parameter, in force from the commit's tick on. Opens the transaction if necessary.
+  /// Stages a parameter that takes effect at the commit's tick. Opens the transaction if necessary.
   Status stage(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
-  /// Stages an internal value (thesis listing A.2, setDistortion), overwritten before the commit's tick is computed;
-  /// neighbours receive it one tick later.
+  /// Stages an internal value (thesis listing A.2, setDistortion). It is overwritten before the commit's tick is
+  /// computed; neighbours receive it one tick later.
   Status stage_internal(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned internal_value,
                         std::int32_t value);
   /// Commits the open transaction for a tick that is not computed yet. Repeating a commit, also the last one that took
   /// effect, is ok.
   Status commit(std::uint16_t transaction, std::uint32_t tick);
   [[nodiscard]] bool has_open_transaction() const { return staging_.has_open_transaction(); }
-  /// 0 if none is open.
+  /// Number of the open transaction; 0 if none is open.
   [[nodiscard]] std::uint16_t open_transaction() const { return staging_.open_transaction(); }
-  /// Values staged under the open transaction.
+  /// Number of values that are staged under the open transaction.
   [[nodiscard]] unsigned staged_count() const { return staging_.open_count(memory_); }
-  /// A staged parameter or internal value of the open transaction; false if there is none.
+  /// Reads a staged parameter or internal value of the open transaction; false if it is not staged.
   [[nodiscard]] bool staged_value(unsigned slot, unsigned joint, unsigned number, bool internal,
                                   std::int32_t& value) const;
 
@@ -71,12 +70,12 @@ class Kernel {
   /// Sets the flags `fault` and `holdover` in the frames to come; other bits are ignored.
   void set_flags(std::uint8_t flags);
 
-  /// Contacts of a local joint as of the coming SYNC: bits 0-1 the link behind the joint, bits 2-3 the link before
-  /// joint 0, as in the state frame.
+  /// Sets the contacts of a local joint as of the coming SYNC, with the bits of the state frame: bits 0-1 are the link
+  /// behind the joint, bits 2-3 the link in front of joint 0.
   void set_contacts(unsigned joint, std::uint8_t contacts);
 
-  /// What the module of a local joint measured, as of the SYNC before the coming one. Sensors that no slot of the joint
-  /// uses are left out.
+  /// Sets what the module of a local joint measured at the SYNC before the coming one. Sensors that no slot of the
+  /// joint uses are left out.
   void set_readings(unsigned joint, const JointReadings& readings);
   /// The sensors that the slots of a local joint use: bits of JointReadings::Sensor.
   [[nodiscard]] std::uint8_t needed_readings(unsigned joint) const { return joint_memory(joint).needed_readings; }
@@ -84,9 +83,8 @@ class Kernel {
   /// Computes state tick() + 1 of all local joints.
   void advance();
 
-  /// A frame of another joint. Ignored, and so counted as missed, unless it is labelled with the coming tick and holds
-  /// a valid state.
-  /// Returns whether it was accepted.
+  /// Takes a frame of another joint, and returns whether it was accepted. A frame that is not labelled with the coming
+  /// tick, or does not hold a valid state, is ignored and so counted as missed.
   bool receive(unsigned joint, unsigned channel, const StateFrame& frame);
 
   /// The coming tick: number of times that advance() was called since the reset.
@@ -98,16 +96,16 @@ class Kernel {
     return joint >= first_joint_ && joint - first_joint_ < memory_.size();
   }
 
-  // Readings of a local joint.
+  // Values of a local joint that can be read.
   /// out(tick()), towards which the servo moves until the coming SYNC.
   [[nodiscard]] std::int32_t setpoint(unsigned joint) const { return joint_memory(joint).setpoint; }
-  /// out(tick() - 1), from which it moves.
+  /// out(tick() - 1), from which the servo moves.
   [[nodiscard]] std::int32_t previous_setpoint(unsigned joint) const { return joint_memory(joint).previous_setpoint; }
   [[nodiscard]] bool drives(unsigned slot, unsigned joint) const;
   [[nodiscard]] std::int32_t parameter(unsigned slot, unsigned joint, unsigned parameter) const;
   [[nodiscard]] std::int32_t internal_value(unsigned slot, unsigned joint, unsigned internal_value) const;
-  /// Whether a local joint depends on this state frame of another joint: that of the next joint in a slot, or of any
-  /// joint if a slot senses contacts. Other frames need not be received.
+  /// Whether a local joint depends on this state frame of another joint: the other one is next to it in a slot, or a
+  /// slot senses contacts. Other frames need not be received.
   [[nodiscard]] bool needs_frame(unsigned joint, unsigned channel) const {
     return needed_[channel].contains(joint) && !is_local(joint);
   }
@@ -116,11 +114,11 @@ class Kernel {
   /// The frame of a local joint labelled tick(), or the last one received from another joint.
   [[nodiscard]] const StateFrame& frame(unsigned joint, unsigned channel) const { return frames_[channel][joint]; }
 
-  /// Needed state frames of other joints that were missing when their tick was computed, since the reset.
+  /// Number of needed state frames of other joints that were missing when their tick was computed, since the reset.
   [[nodiscard]] std::uint32_t missed_frames() const { return missed_frames_; }
 
  private:
-  friend class KernelSnapshot;  // of the tests
+  friend class KernelSnapshot;  // it belongs to the tests
 
   [[nodiscard]] JointMemory& joint_memory(unsigned joint) { return memory_[joint - first_joint_]; }
   [[nodiscard]] const JointMemory& joint_memory(unsigned joint) const { return memory_[joint - first_joint_]; }
@@ -154,13 +152,13 @@ class Kernel {
   bool joining_ = false;
   std::uint8_t flags_ = 0;
   std::array<JointMask, max_channels> senders_;  ///< all joints on the first channel, some on the second
-  /// For each slot the joints of which it uses the second channel.
+  /// For each slot, the joints that send its state on the second channel.
   std::array<JointMask, max_slots> second_channel_;
-  std::array<JointMask, max_channels> needed_;   ///< joints on whose frames a local joint depends
-  std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in frames_
+  std::array<JointMask, max_channels> needed_;   ///< joints whose frames a local joint depends on
+  std::array<JointMask, max_channels> arrived_;  ///< joints whose frames with the label tick_ are in frames_
   Staging staging_;
   std::array<std::array<StateFrame, max_joints>, max_channels> frames_;
-  /// For each slot the joints of other modules that are next to a local one.
+  /// For each slot, the joints of other modules that are next to a local one.
   std::array<JointMask, max_slots> beside_;
 };
 

@@ -9,7 +9,7 @@
 namespace proleg {
 
 inline constexpr std::size_t max_slots = 4;
-/// State frames that a joint sends in a tick: one for its first broadcasting slot, one for its second.
+/// Greatest number of state frames that a joint sends in a tick: one for each of its two broadcasting slots.
 inline constexpr std::size_t max_channels = 2;
 
 /// An algorithm on a group of joints.
@@ -19,22 +19,22 @@ struct Slot {
 
   /// Whether neighbours receive the algorithm's state.
   [[nodiscard]] bool broadcasts() const { return algorithm != nullptr && !algorithm->declaration().frame.empty(); }
-  /// 0 if the slot is empty.
+  /// Id of the algorithm; 0 if the slot is empty.
   [[nodiscard]] std::uint8_t algorithm_id() const {
     return algorithm == nullptr ? std::uint8_t{0} : algorithm->declaration().id;
   }
-  /// The group; no joints if the slot is empty.
+  /// Joints that the slot drives: its group, or no joints if the slot is empty.
   [[nodiscard]] JointMask driven_joints() const { return algorithm == nullptr ? JointMask() : group; }
 };
 
-/// What the kernels of all joints must agree on.
+/// The configuration that the kernels of all joints must agree on.
 struct KernelConfiguration {
   std::uint8_t joint_count = 0;
   std::uint32_t tick_period_us = 10'000;
-  std::uint64_t seed = 1;  ///< of the noise at reset
+  std::uint64_t seed = 1;  ///< seed of the noise at reset
   std::array<Slot, max_slots> slots;
 
-  /// Joints that send their state in this slot in their second frame, because an earlier slot of theirs broadcasts.
+  /// Joints that send the state of this slot in their second frame, because an earlier slot of theirs broadcasts, too.
   [[nodiscard]] JointMask second_channel(unsigned slot) const;
   /// Joints that send two state frames in a tick.
   [[nodiscard]] JointMask second_channel_senders() const;

@@ -1,6 +1,6 @@
 #pragma once
 
-// From set-points to servo pulses, in integers: the last step that simulator, emulated module and robot share.
+// From set-points to servo pulses, in integers: the last step, which simulator, emulated module and robot share.
 
 #include <algorithm>
 #include <cstdint>
@@ -9,15 +9,16 @@
 
 namespace proleg {
 
-/// A servo command is a pulse width in twelfths of a microsecond: every STM32 timer clock in question divides down to
-/// 12 MHz (84/7, 72/6, 48/4). One step is 0.0075 degrees.
+/// Unit of servo commands: a pulse width in twelfths of a microsecond, because the timer clocks of the STM32 divide
+/// down to 12 MHz (84/7, 72/6, 48/4). One step is 0.0075 degrees.
 inline constexpr std::int32_t servo_counts_per_us = 12;
-/// Pulse at 0 degrees: 1.5 ms.
+/// Pulse width at 0 degrees: 1.5 ms.
 inline constexpr std::int32_t servo_center = 1500 * servo_counts_per_us;
-/// Change of the pulse for +90 degrees: 1 ms.
+/// Change of the pulse width for +90 degrees: 1 ms.
 inline constexpr std::int32_t servo_quarter_turn = 1000 * servo_counts_per_us;
 
-/// Pulse width for a joint angle (90 degrees = 2^30), nearest, ties up; angles beyond +-90 degrees count as +-90.
+/// Pulse width for a joint angle (90 degrees = 2^30), rounded to the nearest step, ties up. Angles beyond +-90 degrees
+/// count as +-90.
 [[nodiscard]] constexpr std::int32_t servo_command(std::int32_t angle) {
   constexpr std::int32_t right_angle = 1 << 30;
   return servo_center + multiply(std::clamp(angle, -right_angle, right_angle), servo_quarter_turn, 30);
@@ -29,9 +30,9 @@ inline constexpr std::int32_t servo_quarter_turn = 1000 * servo_counts_per_us;
   return static_cast<std::int32_t>(from + shift_right_rounding(difference * fraction, 16));
 }
 
-/// Where between two ticks a servo samples the line: in the middle of its interval, so that latency and crystal error
-/// cannot move a sample across a tick. elapsed_us: time since the tick at the start of the interval.
-/// Q16, rounded down to an even number, at most 65536. tick_period_us is below 131072.
+/// Position between two ticks at which a servo samples the line: the middle of its interval, so that latency and
+/// crystal error cannot move a sample across a tick. elapsed_us: time since the tick at the start of the interval.
+/// tick_period_us: below 131072. Result: Q16, rounded down to an even number, at most 65536.
 [[nodiscard]] constexpr std::int32_t sample_fraction(std::uint32_t elapsed_us, std::uint32_t servo_period_us,
                                                      std::uint32_t tick_period_us) {
   const std::uint32_t middle = elapsed_us + servo_period_us / 2;

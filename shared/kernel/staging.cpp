@@ -66,7 +66,7 @@ Status Staging::add(Joints joints, std::uint16_t transaction, unsigned joint, co
       return Status::ok;
     }
   }
-  // Checked before open() drops the open transaction, so that a rejected value changes nothing.
+  // This check comes before open() drops the open transaction, so that a rejected value changes nothing.
   if (staged.count == max_staged_values) {
     return Status::staging_full;
   }
@@ -80,7 +80,7 @@ Status Staging::add(Joints joints, std::uint16_t transaction, unsigned joint, co
 }
 
 Status Staging::commit(std::uint16_t transaction, std::uint32_t tick, std::uint32_t now) {
-  // A commit is broadcast several times; repeating an accepted one is fine.
+  // A commit is broadcast several times, so repeating an accepted one is no error.
   if (const Commit* commit = find_commit(transaction)) {
     return commit->tick == tick ? Status::ok : Status::staging_closed;
   }

@@ -15,11 +15,11 @@
 
 namespace proleg {
 
-/// Transactions that are committed and wait for their ticks. A ramp is a series of transactions, each sent 20 ticks
-/// ahead.
+/// Greatest number of transactions that are committed and wait for their ticks. A ramp is a series of transactions,
+/// each sent 20 ticks ahead.
 inline constexpr std::size_t max_transactions = 32;
 
-/// The staged values are in the memory of the joints, which the kernel passes to each function.
+/// Keeps the transactions. The staged values are in the memory of the joints, which the kernel passes to each function.
 class Staging {
  public:
   using Joints = std::span<JointMemory>;
@@ -27,7 +27,7 @@ class Staging {
   /// Drops all values and transactions.
   void clear(Joints joints);
 
-  /// Opens a transaction and drops the one that was open; opening the open one again changes nothing.
+  /// Opens a transaction and drops the one that was open. Opening the open transaction again changes nothing.
   Status open(Joints joints, std::uint16_t transaction);
   /// Adds a value of a joint, and opens the transaction if it is not open. A second value for the same parameter or
   /// internal value replaces the first. joint: position in the memory.
@@ -37,11 +37,11 @@ class Staging {
   Status commit(std::uint16_t transaction, std::uint32_t tick, std::uint32_t now);
 
   [[nodiscard]] bool has_open_transaction() const { return has_open_; }
-  /// 0 if none is open.
+  /// Number of the open transaction; 0 if none is open.
   [[nodiscard]] std::uint16_t open_transaction() const { return open_; }
-  /// Values of the open transaction.
+  /// Number of values of the open transaction.
   [[nodiscard]] unsigned open_count(std::span<const JointMemory> joints) const;
-  /// A value of the open transaction; null if it has none for this parameter or internal value.
+  /// The value of the open transaction for this parameter or internal value; null if it has none.
   [[nodiscard]] const StagedValue* find_open(const JointMemory& joint, unsigned slot, unsigned number,
                                              bool internal) const;
 
@@ -61,7 +61,7 @@ class Staging {
   void finish(const Due& due);
 
  private:
-  friend class KernelSnapshot;  // of the tests
+  friend class KernelSnapshot;  // it belongs to the tests
 
   struct Commit {
     std::uint16_t transaction;
@@ -69,17 +69,17 @@ class Staging {
   };
 
   [[nodiscard]] const Commit* find_commit(std::uint16_t transaction) const;
-  /// The position of a value of the open transaction; staged.count if it has none.
+  /// Position of a value of the open transaction; staged.count if it has none.
   [[nodiscard]] unsigned find_value(const StagedValues& staged, unsigned slot, unsigned number, bool internal) const;
   void drop_open_transaction(Joints joints);
 
-  /// In the order of the commits. A StagedValue refers to a position in this list; the open transaction has the
-  /// position committed_count_.
+  /// The committed transactions in the order of their commits. A StagedValue refers to a position in this list; the
+  /// open transaction has the position committed_count_.
   std::array<Commit, max_transactions> transactions_{};
   std::uint8_t committed_count_ = 0;
   bool has_open_ = false;
   std::uint16_t open_ = 0;
-  Commit last_effective_{};  ///< so that its repeats are recognised
+  Commit last_effective_{};  ///< kept so that repeats of this commit are recognised
   bool has_last_effective_ = false;
 };
 

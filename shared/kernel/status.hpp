@@ -26,7 +26,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     commit_in_the_past,  ///< commit for a tick that was already computed
 };
 
-/// One short phrase, for messages.
+/// A short phrase that describes the status, for messages.
 [[nodiscard]] std::string_view describe(Status status);
 
 }  // namespace proleg

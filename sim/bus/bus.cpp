@@ -46,7 +46,8 @@ Bus::Bus(std::uint32_t bit_rate) : bit_rate_(bit_rate), waits_(bit_rate) {
 }
 
 Controller& Bus::attach(BusListener& listener) {
-  controllers_.push_back(std::make_unique<Controller>(*this, listener, controllers_.size()));
+  controllers_.push_back(
+      std::make_unique<Controller>(static_cast<ControllerBus&>(*this), listener, controllers_.size()));
   controllers_.back()->part_since_ = now_;
   senders_.reserve(controllers_.size());
   return *controllers_.back();
@@ -115,6 +116,11 @@ void Bus::candidates_changed(bool had_one, bool has_one) {
   if (!sending_) {
     schedule_arbitration();
   }
+}
+
+void Bus::watch_changed(bool watched, bool watches) {
+  watchers_ += watches ? 1U : 0U;
+  watchers_ -= watched ? 1U : 0U;
 }
 
 void Bus::schedule_arbitration() {
@@ -416,7 +422,7 @@ void Bus::hold_dominant(bool dominant) {
 void Bus::count_dominant_errors() {
   counting_ = true;
   if (sending_) {
-    destroy_current();
+    destroy_frame();
     finish();
     for (Controller* sender : senders_) {
       while (sender->takes_part_) {
@@ -440,7 +446,10 @@ void Bus::count_dominant_errors() {
   report_states();
 }
 
-void Bus::destroy_current() {
+void Bus::destroy_frame() {
+  if (!sending_) {
+    return;
+  }
   failure_ = CanError::bit_recessive;
   current_.end = std::max(now_, current_.start + 1);
   free_at_ = current_.end + duration(interframe_bits);

@@ -47,7 +47,7 @@ struct BusStatistics {
   }
 };
 
-class Bus {
+class Bus final : private ControllerBus {
  public:
   static constexpr std::uint32_t max_bit_rate = 1'000'000;
 
@@ -63,7 +63,7 @@ class Bus {
   [[nodiscard]] Controller& controller(std::size_t index) { return *controllers_.at(index); }
 
   /// The time up to which the bus has been simulated.
-  [[nodiscard]] BusTime now() const { return now_; }
+  [[nodiscard]] BusTime now() const override { return now_; }
 
   [[nodiscard]] std::uint32_t bit_rate() const { return static_cast<std::uint32_t>(bit_rate_); }
 
@@ -132,7 +132,14 @@ class Bus {
   void start_statistics();
 
  private:
-  friend class Controller;
+  // What controllers use.
+  void candidates_changed(bool had_one, bool has_one) override;
+  void begin_wait(Controller& controller, unsigned sequences) override { waits_.add(controller, sequences, now_); }
+  void end_wait(const Controller& controller) override { waits_.remove(controller); }
+  void destroy_frame() override;
+  void begin_counting() override { counting_ = true; }
+  void report_states() override;
+  void watch_changed(bool watched, bool watches) override;
 
   /// A frame that a receiver gets after its end.
   struct Delayed {
@@ -141,8 +148,6 @@ class Bus {
     CanFrame frame;
   };
 
-  /// The frame on the wire ends here, with an error.
-  void destroy_current();
   [[nodiscard]] BusTime next_delivery() const;
   [[nodiscard]] BusTime next_end_of_wait() const;
   /// The next event without delayed deliveries.
@@ -150,7 +155,6 @@ class Bus {
   void deliver_delayed(BusTime time);
   void count_dominant_errors();
 
-  void candidates_changed(bool had_one, bool has_one);
   void schedule_arbitration();
   void end_waits(BusTime time);
 
@@ -169,7 +173,6 @@ class Bus {
   void suspend_passive_senders();
   void report();
   void report_error();
-  void report_states();
   [[nodiscard]] BusStatistics statistics_since_time_0() const;
 
   std::uint64_t bit_rate_;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/bus/bus.hpp"
+#include "sim/bus/frame_bits.hpp"
 
 namespace proleg::sim {
 
@@ -57,14 +57,14 @@ bool Controller::abort(std::size_t mailbox) {
 
 void Controller::switch_off() {
   presence_ = Presence::off;
-  bus_->waits_.remove(*this);
+  bus_->end_wait(*this);
   update_part();
   abort_all();
 }
 
 void Controller::switch_on() {
   if (presence_ != Presence::on) {
-    bus_->waits_.remove(*this);
+    bus_->end_wait(*this);
     presence_ = Presence::on;
     reset_errors();
     update_part();
@@ -74,7 +74,7 @@ void Controller::switch_on() {
 void Controller::join() {
   if (presence_ == Presence::off) {
     presence_ = Presence::joining;
-    bus_->waits_.add(*this, 1, bus_->now());
+    bus_->begin_wait(*this, 1);
   }
 }
 
@@ -82,8 +82,8 @@ void Controller::unplug() {
   if (!plugged_in_) {
     return;
   }
-  if (is_sending() && bus_->sending_) {
-    bus_->destroy_current();
+  if (is_sending()) {
+    bus_->destroy_frame();
   }
   plugged_in_ = false;
   update_part();
@@ -101,7 +101,7 @@ void Controller::plug_in() {
       errors_.transmitter_error();
     }
     last_error_ = CanError::acknowledgement;
-    bus_->counting_ = true;
+    bus_->begin_counting();
   }
   update_part();
   choose_candidate();
@@ -110,7 +110,7 @@ void Controller::plug_in() {
 
 void Controller::recover() {
   if (presence_ == Presence::on && error_state() == ErrorState::bus_off) {
-    bus_->waits_.add(*this, 128, bus_->now());
+    bus_->begin_wait(*this, 128);
   }
 }
 
@@ -133,8 +133,7 @@ void Controller::set_role(Role role) {
 }
 
 void Controller::watch(bool watch) {
-  bus_->watchers_ += watch && !watches_ ? 1U : 0U;
-  bus_->watchers_ -= !watch && watches_ ? 1U : 0U;
+  bus_->watch_changed(watches_, watch);
   watches_ = watch;
 }
 

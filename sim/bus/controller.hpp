@@ -36,7 +36,29 @@ class BusListener {
   ~BusListener() = default;
 };
 
-class Bus;
+class Controller;
+
+/// What a controller uses of its bus.
+class ControllerBus {
+ public:
+  /// The time up to which the bus has been simulated.
+  [[nodiscard]] virtual BusTime now() const = 0;
+  /// A controller has a frame to send, or has none any more.
+  virtual void candidates_changed(bool had_one, bool has_one) = 0;
+  /// A controller waits for sequences of 11 recessive bits; then the bus lets it join or leave bus-off.
+  virtual void begin_wait(Controller& controller, unsigned sequences) = 0;
+  virtual void end_wait(const Controller& controller) = 0;
+  /// The frame on the wire, if there is one, ends here with an error.
+  virtual void destroy_frame() = 0;
+  /// From now on error counters may differ from 0.
+  virtual void begin_counting() = 0;
+  /// Calls the listeners of all controllers whose error state has changed.
+  virtual void report_states() = 0;
+  virtual void watch_changed(bool watched, bool watches) = 0;
+
+ protected:
+  ~ControllerBus() = default;
+};
 
 /// The CAN controller of a node: three transmit mailboxes, as bxCAN has; received frames go to the listener at once.
 ///
@@ -60,7 +82,8 @@ class Controller final : public CanPort {
     loop_back,  ///< sends and needs no acknowledgement; receives and acknowledges nothing
   };
 
-  Controller(Bus& bus, BusListener& listener, std::size_t index) : listener_(&listener), bus_(&bus), index_(index) {}
+  Controller(ControllerBus& bus, BusListener& listener, std::size_t index)
+      : listener_(&listener), bus_(&bus), index_(index) {}
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
 
@@ -164,7 +187,7 @@ class Controller final : public CanPort {
   Presence presence_ = Presence::on;
   Role role_ = Role::normal;
   Order order_ = Order::identifier_then_request;
-  Bus* bus_;
+  ControllerBus* bus_;
   std::size_t index_;
   std::array<Mailbox, mailbox_count> mailboxes_;
   std::uint64_t requests_ = 0;

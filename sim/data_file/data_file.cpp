@@ -11,10 +11,8 @@
 #include <utility>
 
 #include "shared/computer/errors/file_error.hpp"
-#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output_check.hpp"
-#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {
@@ -78,7 +76,7 @@ DataFile::DataFile(std::string name, const Open& open) : name_(std::move(name)) 
 void DataFile::name_columns() {
   columns_ = {"tick", "time_s", "realtime_ms"};
   std::set<std::string> used(columns_.begin(), columns_.end());
-  std::map<std::string, std::size_t> last_number;  // of columns with the same name, from 2
+  std::map<std::string, std::size_t> last_number;  // last number of columns with the same name, from 2
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     const DataModule& module = modules_[m];
     const std::vector<std::size_t>& counts = frames_[m].counts();

@@ -22,13 +22,13 @@ namespace {
 /// ascend.
 class ModuleOutput {
  public:
-  /// recording: must outlive this object.
+  /// recording must outlive this object.
   ModuleOutput(const Recording& recording, const RecordedSlot& slot);
 
-  /// False if this program's core has no such algorithm, or one with other internal values.
+  /// Whether this program's core has the algorithm, with the same internal values.
   [[nodiscard]] bool is_known() const { return algorithm_ != nullptr; }
   /// The output that belongs to the recorded state of `tick` (90 degrees = 2^30), without the limits of the joint.
-  /// state: the internal values of the joint in their order. is_known() must hold, and the joint must be of the slot.
+  /// state: the internal values of the joint in their order. is_known() must be true, and the slot must have the joint.
   [[nodiscard]] std::int32_t at(std::uint32_t tick, std::uint32_t joint, const std::int32_t* state);
 
  private:
@@ -43,9 +43,9 @@ class ModuleOutput {
   const Recording& recording_;
   const RecordedSlot& slot_;
   const ActuationModule* algorithm_ = nullptr;
-  std::vector<RecordedSetting> settings_;  ///< of the slot; those of the start first
+  std::vector<RecordedSetting> settings_;  ///< settings of the slot, first those of the start
   std::size_t next_setting_ = 0;
-  std::vector<JointTuning> tunings_;  ///< by joint
+  std::vector<JointTuning> tunings_;  ///< tunings by joint
 };
 
 bool has_recorded_values(const Declaration& declaration, const Recording& recording, std::uint32_t slot) {
@@ -115,11 +115,11 @@ std::int32_t ModuleOutput::at(std::uint32_t tick, std::uint32_t joint, const std
 
 constexpr std::uint32_t frames_in_round = 100;
 
-/// What a type of an actuation module shows.
+/// The source of a type of an actuation module.
 struct TypeSource {
   enum class Kind : std::uint8_t { output, time, internal_value };
   Kind kind = Kind::internal_value;
-  std::uint32_t number = 0;  ///< of the internal value
+  std::uint32_t number = 0;  ///< number of the internal value
   Unit unit = Unit::degree;
 };
 
@@ -138,7 +138,7 @@ class ActuationFrames {
         joints_.push_back(joint);
       }
     }
-    std::vector<const RecordedInternalValue*> values;  // of one joint
+    std::vector<const RecordedInternalValue*> values;  // values of one joint
     for (std::size_t i = 0; i < recording.internal_values().size(); ++i) {
       const RecordedInternalValue& value = recording.internal_values()[i];
       if (value.slot != slot.slot) {
@@ -159,7 +159,7 @@ class ActuationFrames {
     text_ = std::make_unique<DataModuleText>(name, type_names_, names);
   }
 
-  /// False for a module of which a data file has nothing.
+  /// Whether a data file has data of the module.
   [[nodiscard]] bool has_data() const { return !joints_.empty() && !sources_.empty(); }
   [[nodiscard]] DataModuleText& text() { return *text_; }
 
@@ -218,14 +218,14 @@ class ActuationFrames {
   }
 
   ModuleOutput output_;
-  std::vector<std::size_t> first_value_;  ///< by joint: its first one in RecordedTick::internal_values
-  std::vector<std::uint32_t> joints_;     ///< of the group, in the order of the file
+  std::vector<std::size_t> first_value_;  ///< index of each joint's first value in RecordedTick::internal_values
+  std::vector<std::uint32_t> joints_;     ///< joints of the group, in the order of the file
   std::vector<std::string> type_names_;
   std::vector<TypeSource> sources_;
   std::unique_ptr<DataModuleText> text_;
 };
 
-/// A second slot with an algorithm has its number in its name, from 1 as on the command line.
+/// Name of a slot's module. A second slot with an algorithm has its number in its name, from 1 as on the command line.
 std::string module_name(const Recording& recording, const RecordedSlot& slot) {
   const std::string name = thesis_module_name(slot.algorithm);
   const auto first = std::ranges::find(recording.slots(), slot.algorithm, &RecordedSlot::algorithm);

@@ -15,11 +15,11 @@ namespace proleg::sim {
 /// differs from the print. Joints and links are in the order of the robot's file, as in the thesis's actuation files.
 /// Numbers have nine significant digits.
 ///
-/// scenario: of the recording, for masses and gravity; without it energies are "nan".
+/// scenario: the recording's, for masses and gravity; without it energies are "nan".
 void write_data_file(const Recording& recording, const std::optional<Scenario>& scenario,
                      const std::function<void(std::string_view)>& write);
 
-/// What the thesis calls an algorithm in its data files; an algorithm that it does not have keeps its name.
+/// The thesis's name of an algorithm in its data files; an algorithm that it does not have keeps its name.
 [[nodiscard]] std::string thesis_module_name(std::string_view algorithm);
 
 }  // namespace proleg::sim

@@ -73,7 +73,7 @@ std::string DataModuleText::header() const {
 }
 
 void DataModuleText::begin_frame(std::uint32_t index, double realtime_ms, double simtime_ms) {
-  constexpr int microseconds = 3;  // decimals
+  constexpr int microseconds = 3;  // number of decimals
   frames_ += "      <frame index=\"" + std::to_string(index) + "\" realtime=\"" +
              plain_number(realtime_ms, microseconds) + "\" simtime=\"" + plain_number(simtime_ms, microseconds) +
              "\">\n";

@@ -1,6 +1,6 @@
 #pragma once
 
-// The text of a data file, module by module, while its frames come tick by tick.
+// Makes the text of a data file, module by module, while its frames come tick by tick.
 
 #include <cstdint>
 #include <functional>
@@ -14,19 +14,20 @@ namespace proleg::sim {
 /// A module of the header, and its frames since the last round.
 class DataModuleText {
  public:
-  /// names: of the parts. joint_names: for types with a number for each joint; empty if no type has such.
+  /// names: names of the parts. joint_names: names for types with a number for each joint; empty if there is no such
+  /// type.
   DataModuleText(const std::string& name, std::vector<std::string> types, const std::vector<std::string>& names,
                  const std::vector<std::string>& joint_names = {});
 
-  /// Its element in <header>.
+  /// The module's element in <header>.
   [[nodiscard]] std::string header() const;
 
   void begin_frame(std::uint32_t index, double realtime_ms, double simtime_ms);
-  /// The numbers of the next type, in the order of the types.
+  /// Adds the numbers of the next type, in the order of the types.
   void add(std::span<const double> numbers);
   void end_frame() { frames_ += "      </frame>\n"; }
 
-  /// Its element in <round>; then the frames are empty.
+  /// Returns the module's element in <round> and removes the frames.
   [[nodiscard]] std::string finish_round();
 
  private:
@@ -39,7 +40,7 @@ class DataModuleText {
   std::string frames_;
 };
 
-/// A text as a tag or as a name in a list: what neither can hold becomes '_'.
+/// A text as a tag or as a name in a list: characters that these cannot contain become '_'.
 [[nodiscard]] std::string tag_name(std::string_view text);
 [[nodiscard]] std::string list_name(std::string_view text);
 

@@ -11,7 +11,7 @@ namespace proleg::sim {
 namespace {
 
 constexpr std::size_t buffer_size = 65'536;
-// Bounds of what is kept in memory.
+// Bounds of the text kept in memory.
 constexpr std::size_t max_text = 1'000'000;
 constexpr std::size_t max_name = 200;
 constexpr std::size_t max_attributes = 32;
@@ -28,7 +28,7 @@ bool is_of_name(int c) {
 
 MarkupScanner::MarkupScanner(std::string file, std::unique_ptr<std::istream> stream)
     : file_(std::move(file)), stream_(std::move(stream)), buffer_(buffer_size) {
-  static_cast<void>(peek());  // fills the buffer
+  static_cast<void>(peek());  // this fills the buffer
   position_ = size_ - without_byte_order_mark({buffer_.data(), size_}).size();
 }
 
@@ -132,7 +132,7 @@ void MarkupScanner::read_attributes() {
 }
 
 const MarkupScanner::Item& MarkupScanner::read_end_tag() {
-  get();  // the slash
+  get();  // takes the slash
   item_.kind = Kind::end;
   item_.text = read_name();
   skip_blanks();
@@ -161,7 +161,7 @@ const MarkupScanner::Item& MarkupScanner::read_start_tag() {
   }
   const int last = get();
   if (last == end) {
-    open_.push_back(item_.text);  // so that it counts as cut
+    open_.push_back(item_.text);  // the element counts as cut
     return at_end_of_file();
   }
   if (last != '>') {

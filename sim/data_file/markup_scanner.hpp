@@ -14,9 +14,9 @@
 
 namespace proleg::sim {
 
-/// One item after the other: start tags with their attributes, end tags, and text that is not blank. <a/> gives a start
-/// and an end. Comments and <?...?> are skipped; entities stay as they are written. A file that ends inside an element
-/// is cut, which is no error here.
+/// Returns one item after the other: start tags with their attributes, end tags, and text that is not blank. <a/> gives
+/// a start and an end. Comments and <?...?> are skipped; entities stay unchanged. A file that ends inside an element is
+/// cut, which is no error here.
 class MarkupScanner {
  public:
   enum class Kind : std::uint8_t { start, end, text, end_of_file, cut };
@@ -26,20 +26,20 @@ class MarkupScanner {
   };
   struct Item {
     Kind kind = Kind::end_of_file;
-    int line = 0;                       ///< where it begins; of a cut: the last line
+    int line = 0;                       ///< line where the item begins; of a cut: the last line
     std::string text;                   ///< name of the tag, or the text without blanks at its ends
-    std::vector<Attribute> attributes;  ///< of a start tag
+    std::vector<Attribute> attributes;  ///< attributes of a start tag
   };
 
-  /// file: for messages.
+  /// file: name for messages.
   MarkupScanner(std::string file, std::unique_ptr<std::istream> stream);
 
-  /// Throws InputError for text that is no such XML, and for end tags without their start tag; FileError if the stream
-  /// cannot be read. The next call overwrites the item.
+  /// Reads the next item, which the next call overwrites. Throws InputError for text that is no such XML, and for end
+  /// tags without their start tag; FileError if the stream cannot be read.
   const Item& next();
 
-  /// After a start tag: moves behind its end tag, without a look at what is in between. At the end of the file next()
-  /// returns the cut.
+  /// Moves behind the end tag of the start tag just read, without parsing the text in between. At the end of the file
+  /// next() returns the cut.
   void skip_element();
 
   [[nodiscard]] int line() const { return line_; }
@@ -52,7 +52,7 @@ class MarkupScanner {
   [[nodiscard]] int peek();
   int get();
   void skip_blanks();
-  /// Up to a character that belongs to no name.
+  /// Reads up to a character that belongs to no name.
   [[nodiscard]] std::string read_name();
   /// Skips a comment or declaration up to and with its last characters.
   void skip_past(std::string_view last);
@@ -67,8 +67,8 @@ class MarkupScanner {
   std::size_t position_ = 0;
   std::size_t size_ = 0;
   int line_ = 1;
-  std::vector<std::string> open_;  ///< elements, the outermost first
-  bool has_pending_end_ = false;   ///< of <a/>
+  std::vector<std::string> open_;  ///< open elements, the outermost first
+  bool has_pending_end_ = false;   ///< the end tag of <a/> is the next item
   Item item_;
 };
 

@@ -16,12 +16,12 @@ namespace {
 using Item = MarkupScanner::Item;
 using Kind = MarkupScanner::Kind;
 
-// Bounds of the memory that a header can ask for.
+// Bounds of the memory that a header can require.
 constexpr std::size_t max_modules = 64;
 constexpr std::size_t max_types = 64;
 constexpr std::size_t max_parts = 4096;
 
-/// Declared as types, but attributes of the frame.
+/// Whether a declared type is an attribute of the frame.
 bool is_stamp(std::string_view type) { return type == "realtime" || type == "simtime" || type == "stepcount"; }
 
 std::string label(const Item& item) {
@@ -46,7 +46,7 @@ void expect(const MarkupScanner& scanner, const Item& item, Kind kind, std::stri
   }
 }
 
-/// The value of an attribute; empty if there is none.
+/// The value of an attribute; empty if the tag has no such attribute.
 std::string value_of(const Item& tag, std::string_view name) {
   const auto attribute = std::ranges::find(tag.attributes, name, &MarkupScanner::Attribute::name);
   return attribute == tag.attributes.end() ? std::string() : attribute->value;
@@ -66,7 +66,7 @@ std::vector<std::string> names_of(std::string_view text) {
   return {found.begin(), found.end()};
 }
 
-/// As a program in C++ writes numbers: also inf and nan.
+/// Parses a number as a program in C++ writes it, also inf and nan.
 std::optional<double> parse_value(std::string_view word) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

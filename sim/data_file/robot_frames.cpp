@@ -43,7 +43,7 @@ std::vector<std::string> joint_names_of(const Recording& recording, const FileOr
   return names;
 }
 
-/// Angles about x, then y, then z of the world, in degrees, as in the comment Pose of an environment file.
+/// Angles about x, then y, then z of the world, in degrees; an environment file's Pose has the same angles.
 Eigen::Vector3d angles_of(const Eigen::Quaterniond& orientation) {
   const Eigen::Matrix3d turn = orientation.normalized().toRotationMatrix();
   return deg_per_rad * Eigen::Vector3d(std::atan2(turn(2, 1), turn(2, 2)),
@@ -74,7 +74,7 @@ TactileFrames::TactileFrames(const Recording& recording, const FileOrder& order)
 void TactileFrames::add(const RecordedTick& tick) {
   std::array<std::vector<double>, 3> normals;
   for (const std::uint32_t link : order_.links) {
-    // Recordings have no normals of these: the ground pushes along the upward axis of a link.
+    // Recordings have no normals of these sensors: the ground pushes along the upward axis of a link.
     const Eigen::Vector3d up = tick.link_poses[link].orientation * Eigen::Vector3d::UnitZ();
     for (const unsigned sensor : {1U, 2U}) {
       const bool is_pressed = (tick.latched_contacts[link] & sensor) != 0;
@@ -85,7 +85,7 @@ void TactileFrames::add(const RecordedTick& tick) {
   }
   for (const std::size_t first : attached_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      normals[axis].push_back(tick.sensor_values[first + 1 + axis]);  // behind `pressed`
+      normals[axis].push_back(tick.sensor_values[first + 1 + axis]);  // the normal is behind `pressed`
     }
   }
   for (const std::vector<double>& of_axis : normals) {

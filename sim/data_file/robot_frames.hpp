@@ -1,6 +1,6 @@
 #pragma once
 
-// The touch sensors and the motion of a robot as a data file has them.
+// The frames of a data file with the touch sensors and the motion of a robot.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace proleg::sim {
 struct FileOrder {
   explicit FileOrder(const Recording& recording);
   std::vector<std::uint32_t> joints;
-  /// From the tail if the file lists the joint at the tail before that at the head.
+  /// The links, from the tail if the file lists the joint at the tail before that at the head.
   std::vector<std::uint32_t> links;
 };
 
@@ -33,7 +33,7 @@ class TactileFrames {
 
  private:
   const FileOrder& order_;
-  std::vector<std::size_t> attached_;  ///< first values of the attached ones, in RecordedTick::sensor_values
+  std::vector<std::size_t> attached_;  ///< indices of the attached sensors' first values in RecordedTick::sensor_values
   DataModuleText text_;
 };
 
@@ -52,7 +52,7 @@ class RobotFrames {
   const std::optional<Scenario>& scenario_;
   double tick_s_;
   DataModuleText text_;
-  // Of the tick before; empty before the first.
+  // State at the tick before; empty before the first tick.
   std::vector<Eigen::Vector3d> centers_;
   std::vector<double> angles_;
   Eigen::Vector3d first_center_ = Eigen::Vector3d::Zero();

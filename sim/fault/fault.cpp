@@ -146,7 +146,7 @@ bool acts_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us) {
 }
 
 bool act_at_ticks(const FaultSchedule& schedule, std::uint32_t tick_period_us) {
-  constexpr std::uint32_t max_reset_threshold_mv = 1'720;  // below it the chip starts again, which takes its time
+  constexpr std::uint32_t max_reset_threshold_mv = 1'720;  // below it the chip restarts, and ends this at no tick
   return std::ranges::all_of(schedule, [tick_period_us](const Fault& fault) {
     return declaration_of(fault.kind).acts_at_ticks &&
            (fault.kind != FaultKind::supply || fault.amount > max_reset_threshold_mv) &&

@@ -1,6 +1,6 @@
 #pragma once
 
-// What can be made to fail in a run with hardware in the loop, as data. docs/faults.md comes from the declarations.
+// The faults of a run with hardware in the loop, as data. docs/faults.md comes from the declarations.
 
 #include <cstdint>
 #include <optional>
@@ -34,38 +34,39 @@ enum class FaultKind : std::uint8_t {
   host_dies,
 };
 
-/// How touch sensors fail.
+/// Faults of touch sensors.
 enum class TouchFault : std::uint8_t { none, pressed, open, bouncing };
 
 /// One fault. Times are microseconds after SYNC 0 of the run.
 struct Fault {
   FaultKind kind{};
   std::uint64_t start_us = 0;
-  std::optional<std::uint64_t> duration_us;  ///< nothing: once, or to the end of the run
-  std::optional<unsigned> joint;             ///< whose module it befalls, in kernel order
-  /// By kind: mV (supply), mA (jam), probability times 2^32 (corrupt, lose), microseconds (delay); else 0.
+  std::optional<std::uint64_t> duration_us;  ///< nothing: the fault occurs once, or lasts to the end of the run
+  std::optional<unsigned> joint;             ///< joint of the faulty module, in kernel order
+  /// Amount in a unit that depends on the kind: mV (supply), mA (jam), probability times 2^32 (corrupt, lose),
+  /// microseconds (delay); else 0.
   std::uint32_t amount = 0;
-  TouchFault touch = TouchFault::none;  ///< of the kind touch
-  CanFrame frame;                       ///< of the kinds send and babble
-  std::uint64_t repeat_us = 0;          ///< of the kind send: again after this time; 0: once
+  TouchFault touch = TouchFault::none;  ///< fault of the kind touch
+  CanFrame frame;                       ///< frame of the kinds send and babble
+  std::uint64_t repeat_us = 0;          ///< period of the kind send; 0: it sends once
 
   friend bool operator==(const Fault&, const Fault&) = default;
 };
 
-using FaultSchedule = std::vector<Fault>;  ///< by ascending start
+using FaultSchedule = std::vector<Fault>;  ///< in the order of their starts
 
-/// How a kind of fault is written, and what it is.
+/// The text form and the meaning of a kind of fault.
 struct FaultDeclaration {
   enum class Argument : std::uint8_t { none, voltage, current, rate, time, touch, frame, identifier };
   enum class Duration : std::uint8_t { none, needed, optional };
 
   FaultKind kind;
-  std::string_view name;  ///< as in files
+  std::string_view name;  ///< name in files
   bool has_joint;
   Argument argument;
   Duration duration;
   bool needs_chip;     ///< only a virtual chip can play it
-  bool acts_at_ticks;  ///< its effect is the same whatever microseconds a program needs
+  bool acts_at_ticks;  ///< its effect does not depend on the microseconds that a program needs
   std::string_view help;
 };
 
@@ -77,21 +78,21 @@ struct FaultDeclaration {
 [[nodiscard]] std::string form_of(const FaultDeclaration& declaration);
 
 /// Whether all faults act at ticks: then native modules and virtual chips have the same set-points and pulses. With
-/// other faults that is so in most cases, but microseconds may decide which frame a fault hits, or which of two events
-/// comes first. So a fault also must not begin or end around a SYNC, while programs read their sensors:
+/// other faults they mostly have them, but microseconds may decide which frame a fault hits, or which of two events
+/// comes first. For this reason a fault also must not begin or end around a SYNC, while programs read their sensors:
 /// acts_between_syncs().
 [[nodiscard]] bool act_at_ticks(const FaultSchedule& schedule, std::uint32_t tick_period_us);
 
 /// Whether a time since SYNC 0 is not around a SYNC: a millisecond after it, or a fifth of one before it; both are
 /// shorter if a tick is shorter than 4 ms.
 [[nodiscard]] bool acts_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us);
-/// The time that is nearest to such a one, in the same tick.
+/// The time between SYNCs that is nearest to a time, in the same tick.
 [[nodiscard]] std::uint64_t moved_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us);
 
-/// A fault as a file has it: "at 1.2s unplug J3 for 400ms".
+/// Text of a fault as in a file: "at 1.2s unplug J3 for 400ms".
 [[nodiscard]] std::string describe(const Fault& fault, const RobotModel& robot);
 
-/// "1.2s", "400ms", "50us": the shortest of them.
+/// Shortest text of a time: "1.2s", "400ms", "50us".
 [[nodiscard]] std::string time_word(std::uint64_t us);
 
 }  // namespace proleg::sim

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/computer/errors/file_kind.hpp"
+#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/names.hpp"
@@ -24,7 +24,7 @@ using Duration = FaultDeclaration::Duration;
 constexpr std::size_t max_faults = 10'000;
 constexpr std::uint64_t max_time_us = 1'000'000'000'000;
 
-/// A number with a unit: "2.5V". Nothing for another unit, or a number outside of the range.
+/// Parses a number with a unit: "2.5V". Nothing for another unit, or a number outside of the range.
 std::optional<std::uint32_t> scaled(std::string_view word, std::string_view unit, double scale, double max) {
   if (!word.ends_with(unit)) {
     return std::nullopt;
@@ -36,7 +36,7 @@ std::optional<std::uint32_t> scaled(std::string_view word, std::string_view unit
   return static_cast<std::uint32_t>(std::lround(*number * scale));
 }
 
-/// "1.2s", "400ms" or "50us" in microseconds.
+/// Parses "1.2s", "400ms" or "50us"; in microseconds.
 std::optional<std::uint64_t> parse_time(std::string_view word) {
   double scale = 1e6;
   std::size_t unit = 1;
@@ -254,7 +254,8 @@ const Fault* find_overlap(const FaultSchedule& schedule, const Fault& fault) {
   return other == schedule.end() ? nullptr : &*other;
 }
 
-/// Without a comment: "#" at the start or after a blank. (A frame has one in its middle.)
+/// The line without its comment, which begins with "#" at the start or after a blank. (A frame has a "#" in its
+/// middle.)
 std::string without_comment(const std::string& line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '#' && (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t')) {

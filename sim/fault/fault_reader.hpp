@@ -14,14 +14,15 @@ namespace proleg::sim {
 /// a time at or after the end of the run, and for two faults of one kind at one place at the same time.
 [[nodiscard]] FaultSchedule read_faults(const std::string& path, const RobotModel& robot, std::uint64_t run_us);
 
-/// The same from text. path: for messages.
+/// Reads a fault schedule from text. path: name for messages.
 [[nodiscard]] FaultSchedule parse_faults(const std::string& text, const std::string& path, const RobotModel& robot,
                                          std::uint64_t run_us);
 
-/// A frame as for cansend of can-utils: "080#05", three hexadecimal digits up to 7FF, up to 8 bytes in hexadecimal.
+/// Parses a frame as cansend of can-utils does: "080#05", three hexadecimal digits up to 7FF, up to 8 bytes in
+/// hexadecimal.
 [[nodiscard]] std::optional<CanFrame> parse_frame(std::string_view word);
 
-/// The faults as a file that read_faults() reads.
+/// Text of a file with the faults, which read_faults() reads.
 [[nodiscard]] std::string faults_text(const FaultSchedule& schedule, const RobotModel& robot);
 
 }  // namespace proleg::sim

@@ -26,13 +26,13 @@ class Dice {
     const unsigned count = 1 + noise_.below(max_count);
     while (schedule.size() < count) {
       Fault fault = one();
-      // The end of one fault of a kind would end another one of it.
+      // The end of a fault would end another fault of its kind.
       const bool is_new = std::ranges::none_of(
           schedule, [&](const Fault& other) { return other.kind == fault.kind && other.joint == fault.joint; });
       if (is_new) {
         schedule.push_back(fault);
       }
-      // A crystal that does not start: it stops while the module has no power.
+      // A crystal does not start if it stops while the module has no power.
       if (is_new && fault.kind == FaultKind::crystal && noise_.below(2) == 0 && !has_supply_fault(schedule, fault)) {
         Fault off;
         off.kind = FaultKind::supply;
@@ -138,7 +138,7 @@ class Dice {
     }
   }
 
-  /// A foreign SYNC, TICK or NMT command, a frame of a module or host, or anything.
+  /// Chooses a foreign SYNC, TICK or NMT command, a frame of a module or host, or any frame.
   void choose_frame(Fault& fault) {
     namespace identifier = canopen::identifier;
     const auto node = static_cast<std::uint8_t>(
@@ -189,7 +189,8 @@ class Dice {
     return low + noise_.below(static_cast<std::uint32_t>(high - low + 1));
   }
 
-  /// Short times are as likely as long ones. In powers of two with a linear part, so that all machines draw the same.
+  /// Draws a time; short times are as likely as long ones. It uses powers of two with a linear part, so that all
+  /// computers draw the same.
   std::uint64_t uniform_in_logarithm(std::uint64_t low, std::uint64_t high) {
     unsigned doublings = 0;
     while ((low << (doublings + 1)) <= high) {

@@ -8,22 +8,21 @@
 
 namespace proleg::sim {
 
-/// What random schedules may contain.
+/// Settings for random schedules.
 struct RandomFaults {
   std::uint64_t seed = 0;
   std::uint64_t run_us = 5'000'000;  ///< at least min_random_run_us
-  bool has_chips = false;            ///< also faults that only a virtual chip can play
-  bool only_at_ticks = false;        ///< only such that act_at_ticks() holds
+  bool has_chips = false;            ///< whether to draw faults that only a virtual chip can play
+  bool only_at_ticks = false;        ///< whether act_at_ticks() must be true
 };
 
-/// All random faults are over this long before the end of a run, so that each module has come to rest in a safe state
-/// by then.
+/// Time between the end of all random faults and the end of a run, so that each module comes to rest in a safe state.
 inline constexpr std::uint64_t rest_after_faults_us = 2'000'000;
-/// Shorter runs have no room for random faults.
+/// Shortest run with random faults.
 inline constexpr std::uint64_t min_random_run_us = rest_after_faults_us + 500'000;
 
-/// A schedule of one to four faults of any kind, that follows from the seed alone (and the robot). Times, durations and
-/// places are random; of each kind, mild and severe cases come.
+/// Draws one to four faults of any kind, which depend only on the seed and the robot. Times, durations and places are
+/// random; each kind has mild and severe cases.
 [[nodiscard]] FaultSchedule random_faults(const RandomFaults& settings, const Scenario& scenario);
 
 }  // namespace proleg::sim

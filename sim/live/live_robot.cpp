@@ -67,7 +67,7 @@ bool LiveRobot::run_events(BusTime time, bool ends_with_frame) {
       plant_ticks_.end(next);
       begin_tick(tick_begin_ + tick_period(), false);
     }
-    // What a program sends from outside is on the bus after `time`, and so not delivered before that either.
+    // A frame from an outside program is on the bus after `time`, so it is delivered after `time` too.
     rack_.advance_to(next, bus_.earliest_delivery());
     if (ends_with_frame && has_had_frame_) {
       return false;
@@ -103,7 +103,7 @@ void LiveRobot::on_frame(const Transmission& transmission) {
 
 void LiveRobot::take_sync(BusTime now) {
   if (!follows_sync_ && now < tick_begin_ + tick_period() / 4) {
-    // It belongs to the tick that has just begun without it.
+    // The SYNC belongs to the tick that has just begun without it.
     follows_sync_ = true;
     tick_begin_ = now;
     return;

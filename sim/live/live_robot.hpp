@@ -1,8 +1,7 @@
 #pragma once
 
 // A simulated robot on a simulated bus that other programs reach: the modules, their servos and the world, without a
-// master and without a comparison. Time goes on as the caller says, whether the robot is set up, moves, or was left by
-// its host.
+// master and without a comparison. The caller advances the time, in all states of the robot, with or without a host.
 //
 // The world makes its steps tick by tick. While a module produces SYNC, a tick of the world begins with it, as in
 // HardwareLoop; without SYNC a tick follows the one before after the tick period. So the world moves on in a quick stop
@@ -17,54 +16,54 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/loop/hardware_options.hpp"
-#include "sim/loop/module_rack.hpp"
+#include "sim/hardware_loop/hardware_options.hpp"
+#include "sim/hardware_loop/module_rack.hpp"
+#include "sim/hardware_loop/plant_ticks.hpp"
 #include "sim/loop/plant.hpp"
-#include "sim/loop/plant_ticks.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 
 struct LiveRobotOptions {
-  /// As HardwareOptions has them.
+  /// Makes the modules (HardwareOptions::make_module).
   std::function<std::unique_ptr<JointModule>(const ModuleParts&)> make_module;
   std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;
   std::uint32_t crystal_error_ppm = 100;
-  /// The same; its host sends what comes from outside not before LiveRobot::now() plus 200 us, since the program of a
-  /// module may run ahead of the bus.
+  /// The host of a gateway (HardwareOptions). It sends characters from outside not before LiveRobot::now() plus 200 us,
+  /// because the program of a module may run ahead of the bus.
   std::optional<HardwareOptions::GatewayHost> gateway;
   /// Called for each frame that ends on the bus, before any node receives it. own: LiveRobot::send() was its source.
   std::function<void(const Transmission& transmission, bool own)> on_frame;
-  /// Called when a frame that send() took was on the bus, in the order of send().
+  /// Called when a frame of send() was on the bus, in the order of send().
   std::function<void(BusTime time, const CanFrame& frame, std::uint32_t source)> on_sent;
   /// Called when the adapter's controller has another error state.
   std::function<void(const Controller& adapter)> on_state;
-  /// Called for what modules report of themselves: a fault of the program, a reset. One line each.
+  /// Called with each report of a module, one line: a fault of its program, a reset.
   std::function<void(const std::string&)> notice;
 };
 
 class LiveRobot final : private BusListener {
  public:
-  /// Frames from outside that wait for the bus at most.
+  /// Largest number of frames from outside that wait for the bus.
   static constexpr std::size_t max_waiting = 1'024;
 
-  /// Switches the modules on at time 0. scenario: must outlive the robot. Throws InputError for a scenario without
-  /// modules that CAN can carry.
+  /// Switches the modules on at time 0. scenario must outlive the robot. Throws InputError for a scenario whose modules
+  /// CAN cannot carry.
   LiveRobot(const Scenario& scenario, LiveRobotOptions options);
   LiveRobot(const LiveRobot&) = delete;
   LiveRobot& operator=(const LiveRobot&) = delete;
 
-  /// The time up to which everything happened, since the modules were switched on.
+  /// Present time since the modules were switched on: all events up to it have happened.
   [[nodiscard]] BusTime now() const { return bus_.now(); }
-  /// When something happens next, if nothing is sent before.
+  /// Time of the next event, if no frame is sent before.
   [[nodiscard]] BusTime next_event() const;
-  /// Lets everything happen that is due up to this time. Throws PhysicsError as Simulation does.
+  /// Processes all events up to a time. Throws PhysicsError as Simulation does.
   void advance_to(BusTime time);
-  /// The same, but returns after an event at which options.on_frame or options.on_sent were called.
+  /// Processes events up to a time, or up to one at which options.on_frame or options.on_sent were called.
   void advance_to_frame(BusTime time);
 
-  /// Sends a frame of an outside program now(), by the controller of the adapter between it and the bus. source: comes
-  /// back with on_sent. False if max_waiting frames wait already.
+  /// Sends a frame of an outside program at now(), by the controller of the adapter between it and the bus. on_sent
+  /// returns `source`. Returns false if max_waiting frames wait already.
   [[nodiscard]] bool send(const CanFrame& frame, std::uint32_t source = 0);
   [[nodiscard]] std::size_t waiting() const { return waiting_.size() + in_mailboxes_.size(); }
   /// The controller of the adapter.
@@ -74,7 +73,7 @@ class LiveRobot final : private BusListener {
   [[nodiscard]] unsigned joint_count() const { return rack_.size(); }
   [[nodiscard]] Plant& plant() { return plant_; }
   [[nodiscard]] Bus& bus() { return bus_; }
-  /// Ticks of the world that are complete.
+  /// Number of complete ticks of the world.
   [[nodiscard]] std::uint32_t ticks() const { return ticks_; }
 
  private:
@@ -82,7 +81,7 @@ class LiveRobot final : private BusListener {
   void transmitted(BusTime time, const CanFrame& frame) override;
   void error_state_changed(BusTime time) override;
 
-  /// Lets everything happen that is due up to this time, or up to a frame. Whether the time is reached.
+  /// Processes all events up to a time, or up to a frame. Returns whether it reached the time.
   bool run_events(BusTime time, bool ends_with_frame);
   void on_frame(const Transmission& transmission);
   void fill_mailboxes();
@@ -94,11 +93,11 @@ class LiveRobot final : private BusListener {
 
   const Scenario& scenario_;
   LiveRobotOptions options_;
-  HardwareOptions rack_options_;  ///< what the rack needs of the options
+  HardwareOptions rack_options_;  ///< options for the rack
   Plant plant_;
   PlantTicks plant_ticks_;
   Bus bus_;
-  ModuleRack rack_;  ///< the first to attach to the bus
+  ModuleRack rack_;  ///< it attaches to the bus first
   Controller& adapter_;
   struct Request {
     CanFrame frame;
@@ -106,10 +105,10 @@ class LiveRobot final : private BusListener {
   };
   std::deque<Request> waiting_;
   std::deque<Request> in_mailboxes_;
-  bool has_had_frame_ = false;  ///< at the last event
+  bool has_had_frame_ = false;  ///< the last event had a frame
   std::uint32_t ticks_ = 0;
   std::uint32_t begun_ticks_ = 0;
-  BusTime tick_begin_ = 0;     ///< of the last one
+  BusTime tick_begin_ = 0;     ///< begin of the last tick
   bool follows_sync_ = false;  ///< the last tick began with a SYNC
 };
 

@@ -1,5 +1,7 @@
 #include "sim/loop/kernel_chain.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 
 namespace proleg::sim {
@@ -17,11 +19,13 @@ KernelChain::KernelChain(const KernelConfiguration& configuration, std::span<con
                          std::span<const Setting> settings)
     : configuration_(configuration),
       limits_(limits.begin(), limits.end()),
-      settings_(settings.begin(), settings.end()),
       running_(JointMask::first(configuration.joint_count)),
       sent_(running_),
       setpoints_(configuration.joint_count),
       clipped_ticks_(configuration.joint_count) {
+  for (const Setting& setting : settings) {
+    keep(setting);
+  }
   for (unsigned joint = 0; joint < configuration.joint_count; ++joint) {
     kernels_.push_back(std::make_unique<KernelOf<1>>());
     configure(joint);
@@ -41,8 +45,24 @@ void KernelChain::configure(unsigned joint) {
   kernel.reset();
 }
 
+std::uint16_t KernelChain::next_transaction() {
+  transaction_ = transaction_ == std::numeric_limits<std::uint16_t>::max() ? 1 : transaction_ + 1;
+  return transaction_;
+}
+
+void KernelChain::keep(const Setting& setting) {
+  const auto same = std::ranges::find_if(settings_, [&setting](const Setting& kept) {
+    return kept.slot == setting.slot && kept.joint == setting.joint && kept.index == setting.index;
+  });
+  if (same == settings_.end()) {
+    settings_.push_back(setting);
+  } else {
+    same->value = setting.value;
+  }
+}
+
 void KernelChain::apply(const Change& change) {
-  const auto transaction = static_cast<std::uint16_t>(tick_);
+  const std::uint16_t transaction = next_transaction();
   for (unsigned joint = 0; joint < joint_count(); ++joint) {
     if (running_.contains(joint)) {
       expect_ok(kernels_[joint]->open(transaction));
@@ -50,7 +70,7 @@ void KernelChain::apply(const Change& change) {
   }
   for (const Setting& setting : change.settings) {
     if (!setting.internal) {
-      settings_.push_back(setting);
+      keep(setting);
     }
     if (running_.contains(setting.joint)) {
       Kernel& kernel = *kernels_[setting.joint];

@@ -31,7 +31,7 @@ class KernelChain {
   /// Withholds state frames from now on. losses: must outlive the chain; null for none.
   void set_losses(const Losses* losses) { losses_ = losses; }
 
-  /// A change for the coming tick.
+  /// A change for the coming tick. Of several changes for one tick, the later one counts.
   void apply(const Change& change);
 
   /// The module of a joint restarts: from the coming tick on it computes nothing. The other joints still receive the
@@ -40,6 +40,8 @@ class KernelChain {
   /// The joint computes again from the coming tick on, with the parameters of the settings and of all changes so far.
   void join(unsigned joint);
   [[nodiscard]] bool is_running(unsigned joint) const { return running_.contains(joint); }
+  /// The parameters that a joint gets when it joins: each once, with its start value or that of the last change.
+  [[nodiscard]] std::span<const Setting> settings() const { return settings_; }
 
   /// What the module of a joint measured, for the coming tick (Kernel::set_readings).
   void set_readings(unsigned joint, const JointReadings& readings) {
@@ -70,11 +72,15 @@ class KernelChain {
 
  private:
   void configure(unsigned joint);
+  void keep(const Setting& setting);
+  /// A number that no change waits under: 1 to 65,535.
+  [[nodiscard]] std::uint16_t next_transaction();
   void exchange_frames();
 
   KernelConfiguration configuration_;
   std::vector<JointLimits> limits_;
-  std::vector<Setting> settings_;  ///< start values, then those of the changes so far
+  std::vector<Setting> settings_;
+  std::uint16_t transaction_ = 0;  ///< of the last change; 0 before the first one
   std::vector<std::unique_ptr<KernelOf<1>>> kernels_;
   const Losses* losses_ = nullptr;
   JointMask running_;

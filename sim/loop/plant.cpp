@@ -300,7 +300,19 @@ void Plant::add_contact_noise() {
   }
 }
 
-firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
+void Plant::add_to(TickSample& sample) const {
+  sample.servo_commands = servo_commands_;
+  sample.link_poses = link_poses_;
+  sample.joint_angles = joint_angles_;
+  sample.motor_torques = motor_torques_;
+  sample.servo_currents = servo_currents_;
+  sample.contact_forces = contact_forces_;
+  sample.object_poses = object_poses_;
+  sample.sensor_values = sensors_.values();
+  sample.measured_sensors = sensors_.measured();
+}
+
+ServoReadings Plant::servo_readings(std::size_t joint) const {
   constexpr std::int8_t chip_temperature_c = 25;
   constexpr ServoCurrent model;
   const Servo& servo = servos_[joint];

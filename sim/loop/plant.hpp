@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "firmware/module/ports.hpp"
 #include "shared/fixed/random.hpp"
+#include "shared/gait/joint_readings.hpp"
 #include "sim/loop/module_readings.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/physics/world.hpp"
+#include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/sensor/attached_sensors.hpp"
 
@@ -78,9 +79,12 @@ class Plant {
   /// scenario's contact noise.
   [[nodiscard]] std::span<const std::uint8_t> link_contacts() const { return link_contacts_; }
 
+  /// Adds what a recorder takes of the servos and the world. Valid until the next step.
+  void add_to(TickSample& sample) const;
+
   /// What the module of a joint measures now: the current that its servo drew in the last step (an estimate,
   /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.
-  [[nodiscard]] firmware::ServoReadings servo_readings(std::size_t joint) const;
+  [[nodiscard]] ServoReadings servo_readings(std::size_t joint) const;
 
   /// What an algorithm on a joint can read of its module now (shared/gait/joint_readings.hpp), with sensors that no
   /// real module has. Those that no algorithm of the scenario reads are absent.

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "sim/loop/robot_placement.hpp"
-#include "sim/record/internal_values.hpp"
 
 namespace proleg::sim {
 
@@ -14,15 +13,13 @@ Simulation::Simulation(const Scenario& scenario, std::unique_ptr<World> world)
 
 Simulation::Simulation(const Scenario& scenario, const Losses* losses, std::unique_ptr<World> world)
     : scenario_(scenario),
-      chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
+      gait_(scenario),
       plant_(scenario, std::move(world)),
       touch_(scenario.robot.joints.size()),
-      pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
-                    scenario.robot.servo.command_speed),
-      pulse_player_(plant_, pulse_source_.schedule()),
+      pulse_player_(plant_, gait_.schedule()),
       latched_contacts_(scenario.robot.links.size()),
-      needs_readings_(chain_.needs_readings()) {
-  chain_.set_losses(losses);
+      needs_readings_(gait_.chain().needs_readings()) {
+  gait_.chain().set_losses(losses);
   if (needs_readings_) {
     read_modules();
   }
@@ -30,7 +27,7 @@ Simulation::Simulation(const Scenario& scenario, const Losses* losses, std::uniq
 
 void Simulation::read_modules() {
   readings_.clear();
-  for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
+  for (unsigned joint = 0; joint < chain().joint_count(); ++joint) {
     readings_.push_back(plant_.joint_readings(joint));
   }
 }
@@ -56,31 +53,28 @@ const Change* Simulation::advance() {
 const Change* Simulation::begin_tick() {
   apply_moves();
   last_first_move_ = std::exchange(first_move_, next_move_);
-  const Change* change = apply_changes();
-  for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
+  const Change* const change = gait_.apply_due_changes();
+  for (unsigned joint = 0; joint < chain().joint_count(); ++joint) {
     touch_.sample(plant_.link_contacts(), joint);
   }
   touch_.write_links(latched_contacts_);
   if (needs_readings_) {
-    for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
-      readings_[joint] = readings_[joint].only(chain_.kernel(joint).needed_readings(joint));
-      chain_.set_readings(joint, readings_[joint]);
+    for (unsigned joint = 0; joint < chain().joint_count(); ++joint) {
+      readings_[joint] = readings_[joint].only(chain().kernel(joint).needed_readings(joint));
+      gait_.chain().set_readings(joint, readings_[joint]);
     }
     latched_readings_.swap(readings_);
     read_modules();
   }
   const std::uint32_t present = tick();
-  chain_.advance(touch_.contacts());
-
-  servo_pulses_.clear();
-  pulse_source_.append(chain_, servo_pulses_);
+  gait_.advance(touch_.contacts());
   if (has_hashes_) {
-    setpoint_hash_.append(chain_.setpoints());
-    for (const ServoPulse& pulse : servo_pulses_) {
+    setpoint_hash_.append(setpoints());
+    for (const ServoPulse& pulse : servo_pulses()) {
       servo_hash_.append(pulse.command);
     }
   }
-  pulse_player_.begin_tick(present, servo_pulses_);
+  pulse_player_.begin_tick(present, servo_pulses());
   return change;
 }
 
@@ -91,36 +85,13 @@ void Simulation::end_tick() {
   }
 }
 
-const Change* Simulation::apply_changes() {
-  if (next_change_ >= scenario_.changes.size() || scenario_.changes[next_change_].tick != tick()) {
-    return nullptr;
-  }
-  chain_.apply(scenario_.changes[next_change_]);
-  return &scenario_.changes[next_change_++];
-}
-
 TickSample Simulation::sample() {
-  internal_values_.clear();
-  for_each_internal_value(scenario_.kernel, [&](unsigned slot, unsigned joint, unsigned number) {
-    internal_values_.push_back(chain_.kernel(joint).internal_value(slot, joint, number));
-  });
-  return {tick() - 1,
-          latched_contacts_,
-          chain_.setpoints(),
-          internal_values_,
-          servo_pulses_,
-          plant_.servo_commands(),
-          plant_.link_poses(),
-          plant_.joint_angles(),
-          plant_.motor_torques(),
-          plant_.servo_currents(),
-          plant_.contact_forces(),
-          chain_.lost(),
-          std::span(scenario_.moves).subspan(last_first_move_, first_move_ - last_first_move_),
-          plant_.object_poses(),
-          plant_.sensors().values(),
-          plant_.sensors().measured(),
-          latched_readings_};
+  TickSample sample = gait_.sample();
+  plant_.add_to(sample);
+  sample.latched_contacts = latched_contacts_;
+  sample.moves = std::span(scenario_.moves).subspan(last_first_move_, first_move_ - last_first_move_);
+  sample.readings = latched_readings_;
+  return sample;
 }
 
 }  // namespace proleg::sim

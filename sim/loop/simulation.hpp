@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/pulse_player.hpp"
-#include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/loop/world_hash.hpp"
 #include "sim/measure/gait_meter.hpp"
@@ -52,9 +51,9 @@ class Simulation {
   void finish_step() { plant_.finish_step(); }
   void end_tick();
 
-  [[nodiscard]] std::uint32_t tick() const { return chain_.tick(); }
+  [[nodiscard]] std::uint32_t tick() const { return gait_.tick(); }
   [[nodiscard]] double time_s() const;
-  [[nodiscard]] const KernelChain& chain() const { return chain_; }
+  [[nodiscard]] const KernelChain& chain() const { return gait_.chain(); }
   [[nodiscard]] const Plant& plant() const { return plant_; }
 
   /// The measures of the run so far; before the first tick none is defined. heading_deg: direction of the measure
@@ -68,9 +67,9 @@ class Simulation {
   /// labelled k + 1 carry them.
   [[nodiscard]] std::span<const std::uint8_t> latched_contacts() const { return latched_contacts_; }
   /// out(k + 1) of each joint.
-  [[nodiscard]] std::span<const std::int32_t> setpoints() const { return chain_.setpoints(); }
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const { return chain().setpoints(); }
   /// The pulses of the servo intervals that start in the tick, in the order of time, then of joints.
-  [[nodiscard]] std::span<const ServoPulse> servo_pulses() const { return servo_pulses_; }
+  [[nodiscard]] std::span<const ServoPulse> servo_pulses() const { return gait_.pulses(); }
   /// The last tick, as a recorder takes it. Only after a tick; valid until the next advance().
   [[nodiscard]] TickSample sample();
 
@@ -81,17 +80,14 @@ class Simulation {
   [[nodiscard]] std::optional<std::string> world_hash() const { return world_hash_.hex(); }
 
  private:
-  const Change* apply_changes();
   void read_modules();
   Simulation(const Scenario& scenario, const Losses* losses, std::unique_ptr<World> world);
 
   const Scenario& scenario_;
-  KernelChain chain_;
+  Gait gait_;
   Plant plant_;
   TouchInputs touch_;
-  ServoPulses pulse_source_;
   PulsePlayer pulse_player_;
-  std::size_t next_change_ = 0;
   std::size_t next_move_ = 0;
   std::size_t first_move_ = 0;       ///< of the present tick
   std::size_t last_first_move_ = 0;  ///< of the tick before
@@ -99,8 +95,6 @@ class Simulation {
   bool needs_readings_;
   std::vector<JointReadings> readings_;          ///< by joint, at the SYNC of this tick, for the next
   std::vector<JointReadings> latched_readings_;  ///< those that the kernels got
-  std::vector<std::int32_t> internal_values_;
-  std::vector<ServoPulse> servo_pulses_;
   bool has_hashes_ = true;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;

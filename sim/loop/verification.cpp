@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
-#include "sim/loop/kernel_chain.hpp"
-#include "sim/loop/servo_pulses.hpp"
+#include "sim/loop/gait.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/record/internal_values.hpp"
 
@@ -201,14 +200,19 @@ class LossesByTick {
   Losses taken_;
 };
 
-Verification recompute(const Recording& recording, const RecordedGait& gait,
+Verification recompute(const Recording& recording, const RecordedGait& recorded,
                        const std::function<void(std::uint32_t tick)>& progress) {
-  ServoPulses pulse_source({gait.servo_period_us, gait.configuration.tick_period_us}, gait.limits, gait.command_speed);
   LossesByTick losses(recording);
   const std::vector<RecordedRestart> restarts = recording.restarts();
   PulsesByTick pulses(recording);
 
-  KernelChain chain(gait.configuration, gait.limits, gait.settings);
+  Gait gait({.kernel = recorded.configuration,
+             .limits = recorded.limits,
+             .settings = recorded.settings,
+             .changes = recorded.changes,
+             .servo_period_us = recorded.servo_period_us,
+             .command_speed = recorded.command_speed});
+  KernelChain& chain = gait.chain();
   chain.set_losses(&losses.taken());
   Verification result;
   const auto note = [&result](const Difference& difference) {
@@ -220,9 +224,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
   ValueHash setpoint_hash;
   ValueHash servo_hash;
   std::vector<std::uint8_t> contacts(chain.joint_count());
-  std::vector<ServoPulse> expected_pulses;
   std::vector<std::int32_t> last_commands(chain.joint_count(), servo_center);
-  auto change = gait.changes.begin();
   auto restart = restarts.begin();
   const std::optional<std::uint32_t> first_fault = recording.first_fault_tick();
   if (first_fault == 0U) {
@@ -234,9 +236,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
     for (; restart != restarts.end() && restart->tick <= tick.tick; ++restart) {
       restart->joined ? chain.join(restart->joint) : chain.stop(restart->joint);
     }
-    if (change != gait.changes.end() && change->tick == tick.tick) {
-      chain.apply(*change++);
-    }
+    gait.apply_due_changes();
     for (std::size_t joint = 0; joint < contacts.size(); ++joint) {
       contacts[joint] = joint_contacts(tick.latched_contacts, joint);
     }
@@ -244,12 +244,12 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
       chain.set_readings(joint, tick.readings[joint]);
     }
     losses.take(tick.tick);
-    chain.advance(contacts);
+    gait.advance(contacts);
     setpoint_hash.append(chain.setpoints());
     compare_setpoints(tick.tick, tick.setpoints, chain.setpoints(), note);
     result.setpoints += contacts.size();
     auto value = tick.internal_values.begin();
-    for_each_internal_value(gait.configuration, [&](unsigned slot, unsigned joint, unsigned number) {
+    for_each_internal_value(recorded.configuration, [&](unsigned slot, unsigned joint, unsigned number) {
       const std::int32_t expected = chain.kernel(joint).internal_value(slot, joint, number);
       if (*value != expected) {
         note({Difference::Kind::internal_value, tick.tick, joint, *value, expected});
@@ -258,9 +258,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
       ++result.internal_values;
     });
 
-    expected_pulses.clear();
-    pulse_source.append(chain, expected_pulses);
-    for (const ServoPulse& expected : expected_pulses) {
+    for (const ServoPulse& expected : gait.pulses()) {
       servo_hash.append(expected.command);
       last_commands[expected.joint] = expected.command;
     }
@@ -270,9 +268,9 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
             {Difference::Kind::last_servo_command, tick.tick, joint, tick.servo_commands[joint], last_commands[joint]});
       }
     }
-    const std::uint64_t end_us = (tick.tick + std::uint64_t{1}) * gait.configuration.tick_period_us;
-    compare_pulses(tick.tick, pulses.take_before(end_us), expected_pulses, note);
-    result.servo_commands += expected_pulses.size();
+    const std::uint64_t end_us = (tick.tick + std::uint64_t{1}) * recorded.configuration.tick_period_us;
+    compare_pulses(tick.tick, pulses.take_before(end_us), gait.pulses(), note);
+    result.servo_commands += gait.pulses().size();
     ++result.ticks;
     if (progress) {
       progress(tick.tick);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "sim/physics/world.hpp"
 
 namespace proleg::sim {

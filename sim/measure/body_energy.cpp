@@ -21,8 +21,8 @@ void BodyEnergy::add_tick(std::span<const Pose> link_poses, std::span<const doub
     Body& body = bodies_[link];
     const Eigen::Vector3d center = link_poses[link] * body.mass.center;
     const Eigen::Vector3d velocity = (center - body.center) * ticks_per_s_;
-    // The vector of a quaternion is the sine of half the angle: for the turn of a tick half the angle itself. It is in
-    // the frame of the link, as the inertia is.
+    // The vector of a quaternion has the length of the sine of half the angle; for the turn of a tick this is half the
+    // angle itself. The vector is in the frame of the link, as is the inertia.
     const Eigen::Quaterniond turn = body.orientation.conjugate() * link_poses[link].orientation;
     const Eigen::Vector3d rotation = (turn.w() < 0.0 ? -2.0 : 2.0) * ticks_per_s_ * turn.vec();
     kinetic += 0.5 * (body.mass.mass * velocity.squaredNorm() + rotation.dot(body.mass.inertia * rotation));

@@ -20,25 +20,26 @@ class BodyEnergy {
   void add_tick(std::span<const Pose> link_poses, std::span<const double> joint_angles,
                 std::span<const double> joint_targets, std::span<const double> motor_torques);
 
-  // J, means over the ticks; not a number before the first tick.
-  /// m g h; h is the height of the centre of mass above that of the start.
+  // Energies in J, means over the ticks; NaN before the first tick.
+  /// m g h, where h is the height of the centre of mass above its height at the start.
   [[nodiscard]] double mean_potential() const { return potential_sum_ / static_cast<double>(ticks_); }
-  /// Sum over the links of m v^2 / 2 and w I w / 2, with the mean velocities of the tick.
+  /// Sum of m v^2 / 2 and w I w / 2 over the links, with the mean velocities of the tick.
   [[nodiscard]] double mean_kinetic() const { return kinetic_sum_ / static_cast<double>(ticks_); }
-  /// K x^2 / 2 of each joint, if its servo were a spring that has its torque at its distance from its target.
+  /// Sum of K x^2 / 2 over the joints, if a servo were a spring that has the servo's torque at its distance from its
+  /// target.
   [[nodiscard]] double mean_elastic() const { return elastic_sum_ / static_cast<double>(ticks_); }
 
  private:
   struct Body {
     MassProperties mass;
-    Eigen::Vector3d center;  ///< in the world, a tick before
+    Eigen::Vector3d center;  ///< centre of mass in the world, a tick before
     Eigen::Quaterniond orientation;
   };
 
   double weight_per_mass_;  ///< m/s^2
   double ticks_per_s_;
   std::vector<Body> bodies_;
-  double start_moment_ = 0.0;  ///< kg m: sum of mass times height at the start
+  double start_moment_ = 0.0;  ///< sum of mass times height at the start, kg m
   std::uint64_t ticks_ = 0;
   double potential_sum_ = 0.0;
   double kinetic_sum_ = 0.0;

@@ -11,7 +11,7 @@ std::optional<BodyWave> find_body_wave(const SignalTable& angles, std::span<cons
   if (joints.size() < 2) {
     return std::nullopt;
   }
-  // The sum of angle times exp(-i w t) over whole strides is amplitude times exp(i phase), but for a factor.
+  // The sum of angle times exp(-i w t) over whole strides is proportional to amplitude times exp(i phase).
   const std::complex<double> turn = std::polar(1.0, -2.0 * std::numbers::pi * stride.frequency * tick_s);
   std::vector<std::complex<double>> swings(joints.size());
   std::complex<double> pointer = 1.0;

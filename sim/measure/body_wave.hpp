@@ -13,8 +13,8 @@
 
 namespace proleg::sim {
 
-/// Number of body waves, for a phase difference between neighbouring joints (equation 2.14). count: of joints, as in
-/// the examples of the thesis, or of segments, one more, as in its text.
+/// Number of body waves, for a phase difference between neighbouring joints (equation 2.14). count: number of joints,
+/// as in the examples of the thesis, or of segments (one more), as in its text.
 [[nodiscard]] inline double wave_count(double phase_difference, double count) {
   return std::abs(phase_difference) * count / (2.0 * std::numbers::pi);
 }
@@ -27,22 +27,22 @@ namespace proleg::sim {
   return amplitude / (2.0 * std::abs(std::sin(phase_difference / 2.0)));
 }
 
-/// Length of a serpenoid curve divided by the length of its arc: the Bessel function J0.
+/// Length of a serpenoid curve divided by the length of its arc, which is the Bessel function J0.
 [[nodiscard]] inline double serpenoid_shortening(double winding_angle) {
   return std::cyl_bessel_j(0.0, std::abs(winding_angle));
 }
 
-/// The distance of a stride without slip (equation 3.2): the body length of one wave minus the length of the wave,
-/// which is that of a serpenoid curve. body_length: m; waves: number of waves on the body, above 0.
+/// The distance of a stride without slip (equation 3.2): the body length of one wave minus the length of the wave, a
+/// serpenoid curve. body_length: m; waves: number of waves on the body, above 0.
 [[nodiscard]] inline double predicted_step_length(double body_length, double waves, double winding_angle) {
   return body_length / waves * (1.0 - serpenoid_shortening(winding_angle));
 }
 
 /// A wave of joint angles along the body.
 struct BodyWave {
-  double phase_difference = 0.0;  ///< between neighbouring joints, -pi to pi; the mean, weighted with the amplitudes
-  double amplitude = 0.0;         ///< mean of the joints
-  std::size_t joints = 0;         ///< that bend the body in the plane of the wave
+  double phase_difference = 0.0;  ///< mean between neighbouring joints, weighted with the amplitudes; -pi to pi
+  double amplitude = 0.0;         ///< mean amplitude of the joints
+  std::size_t joints = 0;         ///< number of joints that bend the body in the plane of the wave
 };
 
 /// The wave in the target angles of some joints over whole strides: the part of each angle that swings with the stride.

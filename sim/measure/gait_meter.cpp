@@ -11,12 +11,12 @@ namespace proleg::sim {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double min_distance = 1e-3;  // m; below, costs of transport are noise
+constexpr double min_distance = 1e-3;  // m; for shorter distances costs of transport are noise
 /// A direction whose horizontal part is shorter counts as vertical.
 constexpr double vertical = 1e-6;
 
 /// A number without the last bits of the system's arctangent, sine or Bessel function: they depend on its version and
-/// on the processor, and a measure is the same on every machine.
+/// on the processor, and a measure is the same on every computer.
 double without_last_bits(double value) { return std::round(std::ldexp(value, 24)) * 0x1p-24; }
 
 }  // namespace
@@ -183,7 +183,8 @@ void GaitMeter::add_servo_measures(MeasureValues& values) const {
 
 void GaitMeter::add_wave_measures(MeasureValues& values, const Stride& stride) const {
   constexpr double degree = std::numbers::pi / 180.0;
-  constexpr double least_difference = 1.0 * degree;  // below, all joints swing together: there is no wave
+  constexpr double least_difference =
+      1.0 * degree;  // for smaller differences all joints swing together, without a wave
   const std::optional<BodyWave> wave = find_body_wave({targets_, joints_.size()}, planar_joints_, stride, tick_s_);
   if (!wave) {
     return;
@@ -256,7 +257,7 @@ MeasureValues GaitMeter::values(double heading_deg) const {
     values[Measure::stride_frequency] = stride->frequency;
     values[Measure::stride_length] = length;
     if (gravity_ > 0.0) {
-      // v^2 / (g * length), v = length * frequency
+      // The Froude number is v^2 / (g * length), with v = length * frequency.
       values[Measure::froude_number] = length * stride->frequency * stride->frequency / gravity_;
     }
   }

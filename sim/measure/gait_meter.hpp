@@ -25,19 +25,19 @@ inline constexpr double servo_supply_v = 6.0;
 /// Computes the measures of a run from the robot's motion. docs/gait-measures.md defines them.
 class GaitMeter {
  public:
-  /// start: centre of mass in the world before the first step. All joint angles are 0 there.
+  /// start: centre of mass in the world before the first step, when all joint angles are 0.
   GaitMeter(const RobotModel& robot, const EnvironmentModel& environment, const Eigen::Vector3d& start, double step_s,
             double tick_s);
 
-  /// What a joint did in a step of the physics.
+  /// The motion of a joint in a step of the physics.
   struct JointStep {
     double motor_torque;     ///< Nm, about the joint's axis
-    double commanded_speed;  ///< rad/s, that the servo tries to reach
-    double angle_before;     ///< rad
+    double commanded_speed;  ///< speed that the servo tries to reach, rad/s
+    double angle_before;     ///< rad, before the step
     double angle;            ///< rad, after the step
-    bool limp;               ///< without pulses
+    bool limp;               ///< the servo has no pulses
   };
-  /// Must be called for every joint after every step. Returns the current, in mA, that its servo draws (an estimate).
+  /// Must be called for each joint after each step. Returns an estimate of the current that its servo draws, in mA.
   double add_joint_step(std::size_t joint, const JointStep& step) {
     JointState& state = joints_[joint];
     state.limp = step.limp;
@@ -58,8 +58,8 @@ class GaitMeter {
     ++joint_steps_;
     return current_ma;
   }
-  /// Must be called after every step. normal_force: N, sum over the contact points with the environment;
-  /// force_times_speed: N m/s, sum of normal force times sliding speed; friction_power: W.
+  /// Must be called after each step. normal_force: sum over the contact points with the environment, N;
+  /// force_times_speed: sum of normal force times sliding speed, N m/s; friction_power: W.
   void add_contacts(double normal_force, double force_times_speed, double friction_power) {
     friction_power_sum_ += friction_power;
     normal_force_sum_ += normal_force;
@@ -69,8 +69,8 @@ class GaitMeter {
     Eigen::Vector3d center_of_mass;    ///< in the world
     std::span<const Pose> link_poses;  ///< in the world
     std::span<const double> joint_angles;
-    std::span<const double> joint_targets;  ///< rad, of the servos in the last step
-    /// Per link, bit 0 rear, bit 1 front sensor: not debounced, without noise.
+    std::span<const double> joint_targets;  ///< targets of the servos in the last step, rad
+    /// Touch sensors of each link, bit 0 rear, bit 1 front: not debounced, without noise.
     std::span<const std::uint8_t> link_contacts;
     std::span<const double> motor_torques{};  ///< Nm, mean over the tick; empty if they are not known
   };
@@ -80,19 +80,19 @@ class GaitMeter {
   /// The measures of the run so far. heading_deg: direction of `speed` in the horizontal plane, relative to the
   /// direction of the head at the start; 90 is to its left.
   [[nodiscard]] MeasureValues values(double heading_deg = 0.0) const;
-  /// For each link from the head: share of the ticks in which at least one of its sensors was pressed, over a whole
-  /// number of strides, or over all ticks if there is no stride. Not a number before the first tick.
+  /// Share of the ticks in which at least one sensor of a link was pressed, for each link from the head: over a whole
+  /// number of strides, or over all ticks without a stride. NaN before the first tick.
   [[nodiscard]] std::vector<double> link_duty_factors() const;
-  /// J, so far: what the motors gave the robot less what they took from it.
+  /// Energy that the motors gave the robot so far, less the energy that they took from it, J.
   [[nodiscard]] double motor_work() const { return motor_power_sum_ * step_s_; }
-  /// J, so far: what friction took.
+  /// Energy that friction took so far, J.
   [[nodiscard]] double friction_work() const { return friction_power_sum_ * step_s_; }
-  /// By joint.
+  /// Tracking of the servos, by joint.
   [[nodiscard]] std::span<const ServoTracking> tracking() const { return tracking_; }
   /// The strides from which measures of strides are computed.
   [[nodiscard]] std::optional<Stride> stride() const;
 
-  /// The time in which the servos move from the start into the gait. tracking() and its measures leave it out.
+  /// Time in which the servos move from the start into the gait. tracking() and its measures leave it out.
   static constexpr double settling_s = 1.0;
   /// Strides are searched in at least this number of the last ticks.
   static constexpr std::size_t history_ticks = 65'536;
@@ -100,7 +100,7 @@ class GaitMeter {
  private:
   struct JointState {
     double per_max_speed;  ///< s/rad
-    double speed = 0.0;    ///< rad/s, in the last step
+    double speed = 0.0;    ///< speed in the last step, rad/s
     bool limp = false;
   };
   /// Positions of the touch sensors of a link, in its frame: in the middle of the halves that they sense.
@@ -136,24 +136,24 @@ class GaitMeter {
   bool has_settled_ = false;
   double normal_force_sum_ = 0.0;      ///< N, over all steps
   double sliding_sum_ = 0.0;           ///< N m/s, over all steps
-  double mechanical_power_sum_ = 0.0;  ///< W, over all steps: what motors give, without what they take
+  double mechanical_power_sum_ = 0.0;  ///< W, over all steps: power that motors give, without power that they take
   double motor_power_sum_ = 0.0;       ///< W, over all steps
   double friction_power_sum_ = 0.0;    ///< W, over all steps
   double current_sum_ma_ = 0.0;        ///< over all steps and joints
-  std::uint64_t joint_steps_ = 0;      ///< number of these
+  std::uint64_t joint_steps_ = 0;      ///< number of terms of current_sum_ma_
 
   std::uint64_t ticks_ = 0;
   Eigen::Vector3d start_;
-  Eigen::Vector3d center_;         ///< of mass, now
-  Eigen::Vector3d center_before_;  ///< a tick before
+  Eigen::Vector3d center_;         ///< present centre of mass
+  Eigen::Vector3d center_before_;  ///< centre of mass a tick before
   double squared_second_differences_ = 0.0;
   double largest_squared_second_difference_ = 0.0;
   Eigen::Vector2d span_;  ///< from tail to head, seen from above, when it was last long enough to have a direction
-  double turn_ = 0.0;     ///< rad, of the span since the start
+  double turn_ = 0.0;     ///< turn of the span since the start, rad
   double margin_sum_ = 0.0;
   std::uint64_t supported_ticks_ = 0;
-  std::vector<double> targets_;         ///< of the last ticks, by tick, then by joint
-  std::vector<std::uint8_t> contacts_;  ///< of the last ticks, by tick, then by link
+  std::vector<double> targets_;         ///< targets of the last ticks, by tick, then by joint
+  std::vector<std::uint8_t> contacts_;  ///< contacts in the last ticks, by tick, then by link
 };
 
 }  // namespace proleg::sim

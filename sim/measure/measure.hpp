@@ -51,22 +51,22 @@ inline constexpr std::size_t measure_count = 30;
 
 struct MeasureDeclaration {
   Measure measure;
-  std::string_view name;  ///< as in files and JSON
+  std::string_view name;  ///< name in files and JSON
   std::string_view unit;  ///< "" if dimensionless
   bool higher_is_better;
   bool may_be_negative;
   std::string_view help;
 };
 
-/// All of them, in the order of the enumeration.
+/// The declarations of all measures, in the order of the enumeration.
 [[nodiscard]] std::span<const MeasureDeclaration, measure_count> measures();
 [[nodiscard]] const MeasureDeclaration& declaration_of(Measure measure);
 [[nodiscard]] std::optional<Measure> find_measure(std::string_view name);
 /// The names that find_measure() knows, for messages.
 [[nodiscard]] std::vector<std::string> measure_names();
 
-/// A value of each measure; not a number where the run does not define it (the cost of transport of a robot that does
-/// not move, the stride length of a gait without strides).
+/// A value of each measure; NaN if the run does not define it (the cost of transport of a robot that does not move, the
+/// stride length of a gait without strides).
 class MeasureValues {
  public:
   MeasureValues() { values_.fill(std::numeric_limits<double>::quiet_NaN()); }

@@ -9,13 +9,14 @@ namespace proleg::sim {
 namespace {
 
 constexpr double min_amplitude = 0.5 * std::numbers::pi / 180.0;
-/// A crossing of the mean counts if the signal was below it by this share of its amplitude: a ripple is no stride.
+/// A crossing of the mean counts if the signal was below the mean by this share of its amplitude: a ripple is no
+/// stride.
 constexpr double hysteresis = 0.25;
 
 struct Swing {
   std::size_t signal = 0;
   double mean = 0.0;
-  double amplitude = 0.0;  ///< of a sine with the same standard deviation
+  double amplitude = 0.0;  ///< amplitude of a sine with the same standard deviation
 };
 
 Swing max_swing(const SignalTable& signals) {
@@ -40,7 +41,7 @@ Swing max_swing(const SignalTable& signals) {
   return largest;
 }
 
-/// In ticks, interpolated.
+/// Interpolated times of the upward crossings, in ticks.
 std::vector<double> upward_crossings(const SignalTable& signals, const Swing& swing) {
   std::vector<double> crossings;
   bool was_below = false;

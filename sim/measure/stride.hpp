@@ -7,7 +7,7 @@
 
 namespace proleg::sim {
 
-/// Signals of one length, one sample of each at every tick. Sample `tick * signals + i` is that of signal i.
+/// Signals of one length, with one sample of each at each tick. Sample `tick * signals + i` belongs to signal i.
 struct SignalTable {
   std::span<const double> samples;
   std::size_t signals = 0;
@@ -16,12 +16,12 @@ struct SignalTable {
   [[nodiscard]] double at(std::size_t tick, std::size_t signal) const { return samples[tick * signals + signal]; }
 };
 
-/// The strides in a table of signals: the cycle that the signals repeat.
+/// The strides in a table of signals: repetitions of one cycle.
 struct Stride {
-  double frequency = 0.0;      ///< Hz, mean
-  std::size_t first_tick = 0;  ///< of a whole number of strides, rounded to ticks
-  std::size_t end_tick = 0;    ///< one past the last
-  std::vector<double> bounds;  ///< in ticks: the start of each stride and the end of the last one; at least two
+  double frequency = 0.0;      ///< mean frequency, Hz
+  std::size_t first_tick = 0;  ///< first tick of a whole number of strides, rounded to ticks
+  std::size_t end_tick = 0;    ///< one past their last tick
+  std::vector<double> bounds;  ///< start of each stride and end of the last one, in ticks; at least two
 };
 
 /// Finds the strides in the target angles (rad) of a robot's joints, by the signal with the largest standard deviation.

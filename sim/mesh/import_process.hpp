@@ -6,12 +6,21 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
-#include "sim/mesh/mesh_file.hpp"
 #include "sim/robot/triangle_mesh.hpp"
 
 namespace proleg::sim {
+
+/// More triangles than any simulation of a link or an obstacle needs.
+inline constexpr std::size_t max_triangles = 100'000;
+
+/// More than so many triangles have; points and lines have vertices too.
+inline constexpr std::size_t max_mesh_vertices = 3 * max_triangles;
+
+/// Gives the bytes of a file beside a mesh file, such as the materials of an OBJ file, or nothing.
+using MeshCompanion = std::function<std::optional<std::string>(const std::string& name)>;
 
 /// What the import of one file may use.
 struct ImportLimits {

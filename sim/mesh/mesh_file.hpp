@@ -1,10 +1,9 @@
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "sim/mesh/import_process.hpp"
 #include "sim/robot/triangle_mesh.hpp"
 
 namespace proleg::sim {
@@ -14,15 +13,6 @@ inline constexpr std::string_view mesh_file_endings = ".stl, .obj, .dae or .off"
 
 /// Whether a file has one of these endings, in any case.
 [[nodiscard]] bool is_mesh_file_name(std::string_view name);
-
-/// More triangles than any simulation of a link or an obstacle needs.
-inline constexpr std::size_t max_triangles = 100'000;
-
-/// More than so many triangles have; points and lines have vertices too.
-inline constexpr std::size_t max_mesh_vertices = 3 * max_triangles;
-
-/// Gives the bytes of a file beside a mesh file, such as the materials of an OBJ file, or nothing.
-using MeshCompanion = std::function<std::optional<std::string>(const std::string& name)>;
 
 /// Reads a mesh with the Open Asset Import Library (Assimp). All parts of the file become one mesh, in the coordinates
 /// of the file, or in metres if the file states a unit. Colours are those of its vertices or materials.

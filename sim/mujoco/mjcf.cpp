@@ -15,10 +15,10 @@
 namespace proleg::sim::mujoco {
 namespace {
 
-/// How hard a constraint is (dmin, dmax, width): 1 would be rigid, and MuJoCo cuts at 0.9999.
+/// Hardness of a constraint (dmin, dmax, width): 1 would be rigid, and MuJoCo cuts at 0.9999.
 constexpr std::string_view hard_contact = "0.9999 0.9999 0.001";
-/// A motor that leaves a hundredth of the difference in speed to the next step takes the robot as far as a harder one
-/// (within 1 %), and Newton's solver a third less time.
+/// A motor that leaves a hundredth of the difference in speed to the next step moves the robot as far as a harder one
+/// (within 1 %), and Newton's solver needs a third less time.
 constexpr std::string_view hard_motor = "0.99 0.99 0.001";
 
 class Writer {
@@ -58,20 +58,21 @@ class Writer {
 
  private:
   static constexpr std::ptrdiff_t environment_owner = -2;   ///< no neighbour of any link
-  static constexpr std::ptrdiff_t first_object_owner = -3;  ///< of the objects that move, downwards
+  static constexpr std::ptrdiff_t first_object_owner = -3;  ///< the objects that move have this number and smaller ones
 
   /// A geometry that was written; its name is its place in the list.
   struct Written {
-    std::ptrdiff_t owner;  ///< link, or one of those below 0
+    std::ptrdiff_t owner;  ///< number of a link, or one of the owners below 0
     std::optional<double> friction;
   };
 
-  /// As the Open Dynamics Engine: the next step takes away the speed, and a fifth of the depth.
+  /// Reference of a contact as in the Open Dynamics Engine: the next step removes the speed, and a fifth of the depth.
   static std::string reference(double step_s) {
     constexpr double error_reduction = 0.2;
     std::ostringstream text;
     text.precision(std::numeric_limits<double>::max_digits10);
-    text << -error_reduction / (step_s * step_s) << ' ' << -1.0 / step_s;  // negative: stiffness and damping
+    text << -error_reduction / (step_s * step_s) << ' '
+         << -1.0 / step_s;  // negative numbers mean stiffness and damping
     return text.str();
   }
 
@@ -109,7 +110,7 @@ class Writer {
 
   static double lowest_of(const HeightField& field) { return *std::ranges::min_element(field.heights); }
 
-  /// MuJoCo's rows and columns are those of the model; fill_height_fields() gives it the heights.
+  /// Writes a height field with the model's rows and columns; fill_height_fields() fills in the heights.
   void write_height_field(const HeightField& field) {
     constexpr double least_range = 1e-6;  // m
     constexpr double base = 0.1;          // m, of solid ground below the lowest point
@@ -120,7 +121,7 @@ class Writer {
     }
   }
 
-  /// MuJoCo makes the convex hull of the corners.
+  /// Writes the corners of meshes; MuJoCo makes their convex hull.
   void write_meshes(const std::vector<Geometry>& geometries) {
     for (const Geometry& geometry : geometries) {
       if (geometry.shape == Shape::hull && meshes_.try_emplace(geometry.mesh.get(), meshes_.size()).second) {
@@ -143,7 +144,7 @@ class Writer {
       case Shape::sphere:
         text_ << " type='sphere' size='" << extents.x() << "'";
         break;
-      case Shape::cylinder:  // MuJoCo's lie along z, those of the model along y
+      case Shape::cylinder:  // MuJoCo's cylinders lie along z, those of the model along y
         text_ << " type='cylinder' size='" << extents.x() << ' ' << extents.y() << "'";
         pose.orientation =
             pose.orientation * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
@@ -162,9 +163,9 @@ class Writer {
     written_.push_back({owner, geometry.friction});
   }
 
-  /// Of the memory for contacts and constraints. A world that needs more ends with a PhysicsError.
+  /// Writes the sizes of the memory for contacts and constraints. A world that needs more ends with a PhysicsError.
   void write_sizes(const RobotModel& robot, const EnvironmentModel& environment) {
-    constexpr std::size_t points = 8;  // of two boxes
+    constexpr std::size_t points = 8;  // contact points of two boxes
     std::size_t contacts = 100;
     for (const Link& link : robot.links) {
       contacts += points * link.geometries.size();
@@ -241,8 +242,8 @@ class Writer {
 
   std::ostringstream text_;
   std::vector<Written> written_;
-  std::map<const TriangleMesh*, std::size_t> meshes_;        ///< their names
-  std::map<const HeightField*, std::string> height_fields_;  ///< their names
+  std::map<const TriangleMesh*, std::size_t> meshes_;        ///< names of the meshes
+  std::map<const HeightField*, std::string> height_fields_;  ///< names of the height fields
 };
 
 }  // namespace

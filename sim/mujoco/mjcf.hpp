@@ -1,14 +1,19 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "sim/environment/environment_model.hpp"
-#include "sim/mujoco/mujoco_world.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::mujoco {
 
-/// A robot and its environment as MJCF, MuJoCo's XML, with what MuJoCo has that comes closest to sim/ode:
+enum class Integrator : std::uint8_t {
+  implicit,  ///< implicit in the velocity; MuJoCo advises it for articulated bodies that turn fast
+  euler,     ///< semi-implicit, as in ODE
+};
+
+/// Writes a robot and its environment as MJCF, MuJoCo's XML, with the settings of MuJoCo that come closest to sim/ode:
 /// - a pair of geometries for everything that may touch, with the friction of friction_of(); neighbouring links have
 ///   none;
 /// - contacts and joint limits that are hard, and give back a fifth of their depth in a step;

@@ -16,7 +16,7 @@ namespace {
 
 mjfCollision collide_boxes = nullptr;
 
-/// How far a box reaches from its centre along a direction.
+/// Distance that a box reaches from its centre along a direction.
 mjtNum reach(const mjModel* model, const mjData* data, int box, const mjtNum* direction) {
   const mjtNum* const rotation = data->geom_xmat + 9 * box;  // by rows
   mjtNum sum = 0.0;
@@ -28,7 +28,7 @@ mjtNum reach(const mjModel* model, const mjData* data, int box, const mjtNum* di
   return sum;
 }
 
-/// Along the normal of a contact two boxes overlap by at least the depth of the contact.
+/// Finds the contacts of two boxes. Along the normal of a contact two boxes overlap by at least the contact's depth.
 int collide(const mjModel* model, const mjData* data, mjContact* contacts, int a, int b, mjtNum margin) {
   constexpr mjtNum tolerance = 1e-3;  // m
   const int count = collide_boxes(model, data, contacts, a, b, margin);
@@ -57,7 +57,8 @@ void mend_box_collision() {
 // MuJoCo ends the process when this returns; an exception is the only way out.
 [[noreturn]] void raise_error(const char* text) { throw PhysicsError("MuJoCo reports: " + one_line(text)); }
 
-/// MuJoCo's own function writes a file where the program was started. MujocoWorld reads warnings from its data.
+/// Ignores a warning. MuJoCo's own function writes a file where the program was started. MujocoWorld reads warnings
+/// from MuJoCo's data.
 void ignore_warning(const char* /*text*/) {}
 
 }  // namespace
@@ -69,7 +70,7 @@ Model compile_mjcf(const std::string& text, const std::string& file) {
   mju_user_warning = ignore_warning;
   mend_box_collision();
   constexpr const char* name = "robot.xml";
-  const auto files = std::make_unique<mjVFS>();  // of megabytes
+  const auto files = std::make_unique<mjVFS>();  // it has a size of megabytes
   mj_defaultVFS(files.get());
   if (mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(text.size())) != 0) {
     throw PhysicsError("MuJoCo takes no model of " + std::to_string(text.size()) + " bytes");

@@ -14,7 +14,7 @@ struct DeleteMujoco {
 using Model = std::unique_ptr<mjModel, DeleteMujoco>;
 using Data = std::unique_ptr<mjData, DeleteMujoco>;
 
-/// Compiles MJCF text. Throws InputError with MuJoCo's reason; file: that it names. From the first call on, an error of
+/// Compiles MJCF text. Throws InputError with MuJoCo's reason and the name `file`. From the first call on, an error of
 /// MuJoCo throws PhysicsError and does not end the process.
 [[nodiscard]] Model compile_mjcf(const std::string& text, const std::string& file);
 

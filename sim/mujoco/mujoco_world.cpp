@@ -31,10 +31,10 @@ Eigen::Map<const Vector> vector_at(const mjtNum* numbers, int row) {
   return Eigen::Map<const Vector>(numbers + 3 * row);
 }
 
-/// The motor of a joint is to reach its speed by the end of the step with the torque it has, as in ODE. MuJoCo has a
-/// constraint that does this for the speed 0: dry friction of a joint. Here it gets the speed. (A velocity actuator
-/// with a force range is not the same: its force is computed from the speed at the start of the step, so it is either
-/// soft or always at its limit.)
+/// The motor of a joint must reach its speed by the end of the step with the torque it has, as in ODE. MuJoCo has a
+/// constraint that does this for the speed 0: dry friction of a joint. This class gives it the speed. (A velocity
+/// actuator with a force range is not the same: its force is computed from the speed at the start of the step, so it is
+/// either soft or always at its limit.)
 class MujocoWorld final : public World {
  public:
   MujocoWorld(const RobotModel& robot, const EnvironmentModel& environment, double step_s, const std::string& file,
@@ -107,7 +107,7 @@ class MujocoWorld final : public World {
   }
   void read_objects(std::span<Pose> poses) const override {
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      poses[i] = link_pose(pressed_.size() + i);  // their bodies follow those of the links
+      poses[i] = link_pose(pressed_.size() + i);  // the bodies of the objects follow those of the links
     }
   }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
@@ -139,7 +139,7 @@ class MujocoWorld final : public World {
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
 
  private:
-  /// MuJoCo has heights from 0 to 1, for each height field that the environment has in its order (mjcf.cpp).
+  /// Fills in the heights, from 0 to 1, of each height field of the environment, in its order (mjcf.cpp).
   void fill_height_fields(const EnvironmentModel& environment) {
     std::vector<const HeightField*> filled;
     for (const StaticObject& object : environment.objects) {
@@ -160,15 +160,15 @@ class MujocoWorld final : public World {
 
   /// A contact at the start of the last step.
   struct Contact {
-    int body;  ///< of MuJoCo; 0: the environment
+    int body;  ///< MuJoCo's number of the body; 0: the environment
     int other;
     Vector point;
     Vector normal;
-    Vector force;     ///< N, between the two
-    Vector velocity;  ///< m/s, of one relative to the other, before the step
+    Vector force;     ///< force between the two bodies, N
+    Vector velocity;  ///< velocity of one relative to the other before the step, m/s
   };
 
-  /// Everything that depends on positions and speeds, and the constraints of the next step.
+  /// Computes all that depends on positions and speeds, and the constraints of the next step.
   void prepare_step() {
     mj_step1(model_.get(), data_.get());
     for (int warning = 0; warning < mjNWARNING; ++warning) {
@@ -180,7 +180,7 @@ class MujocoWorld final : public World {
     is_prepared_ = true;
   }
 
-  /// A constraint pulls towards a reference acceleration: here the one that leads to the wanted speed within the step.
+  /// Sets the reference acceleration of each motor's constraint: it leads to the wanted speed within the step.
   void aim_motors() {
     for (int row = data_->ne; row < data_->ne + data_->nf; ++row) {
       const double wanted = speeds_[static_cast<std::size_t>(data_->efc_id[row] - free_joint_speeds)];
@@ -189,8 +189,8 @@ class MujocoWorld final : public World {
   }
 
   /// In MuJoCo's model of friction, which is convex, a contact that slides also opens, with the friction coefficient
-  /// times its slip: the body hops, and its sensors are released. Here the reference takes that back with the slip
-  /// before the step. What remains is Coulomb's law.
+  /// times its slip: the body hops, and its sensors are released. This function subtracts that speed, for the slip
+  /// before the step, from the reference. Coulomb's law remains.
   void keep_sliding_contacts_closed() {
     for (int i = 0; i < data_->ncon; ++i) {
       const int row = data_->contact[i].efc_address;
@@ -248,7 +248,7 @@ class MujocoWorld final : public World {
     }
   }
 
-  /// Or the environment, or an object that moves.
+  /// Whether a body is a link; else it is the environment or an object that moves.
   [[nodiscard]] bool is_link(int body) const { return body > 0 && body <= static_cast<int>(pressed_.size()); }
 
   void note_force(int body, double normal_force) {
@@ -265,7 +265,7 @@ class MujocoWorld final : public World {
                                                          to_link * contact.normal));
   }
 
-  /// MuJoCo's normal points from the first body to the other.
+  /// Keeps a contact point. MuJoCo's normal points from the first body to the other.
   void note_contact_point(const Contact& contact) {
     if (keeps_contact_points_) {
       const bool is_first = is_link(contact.body);
@@ -289,13 +289,12 @@ class MujocoWorld final : public World {
         sliding_.normal_force += normal_force;
         sliding_.force_times_speed += normal_force * velocity.norm();
       }
-      // As in ODE: friction takes a force times the mean of the speeds before and after the step.
+      // Friction takes the power of a force times the mean of the speeds before and after the step, as in ODE.
       sliding_.friction_power += std::abs(along(contact.force).dot(0.5 * (velocity + along(contact.velocity))));
     }
   }
 
-  /// MuJoCo has the velocities of the bodies at the centre of mass of the robot, or of the object: rotation, then
-  /// translation.
+  /// Velocities of a body, rotation and translation. MuJoCo has them at the centre of mass of the robot or the object.
   [[nodiscard]] Vector rotation_of(int body) const { return vector_at(data_->cvel, 2 * body); }
   [[nodiscard]] Vector velocity_of(int body, const Vector& point) const {
     return vector_at(data_->cvel, 2 * body + 1) +
@@ -307,11 +306,11 @@ class MujocoWorld final : public World {
 
   Model model_;
   Data data_;
-  std::vector<double> speeds_;   ///< rad/s, wanted, by joint
+  std::vector<double> speeds_;   ///< wanted speeds by joint, rad/s
   std::vector<double> torques_;  ///< Nm, by joint
   std::vector<Contact> contacts_;
   std::vector<double> contact_forces_;  ///< N, by link
-  std::vector<std::uint8_t> pressed_;   ///< by link
+  std::vector<std::uint8_t> pressed_;   ///< sensors by link
   std::vector<TouchSensorFrame> touch_sensors_;
   bool keeps_contact_points_ = false;
   std::vector<LinkContact> contact_points_;

@@ -1,25 +1,20 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "sim/environment/environment_model.hpp"
+#include "sim/mujoco/mjcf.hpp"
 #include "sim/physics/world.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::mujoco {
 
-enum class Integrator : std::uint8_t {
-  implicit,  ///< in the velocity; what MuJoCo advises for articulated bodies that turn fast
-  euler,     ///< semi-implicit, as in ODE
-};
-
 /// Whether the program is built with MuJoCo, which is optional.
 [[nodiscard]] bool is_built_in();
 
-/// A world in MuJoCo. file: that messages name. step_s: length of a step, above 0. Throws InputError if MuJoCo does not
-/// have what robot or environment needs, or is not built in.
+/// Makes a world in MuJoCo. file: name for messages. step_s: length of a step, above 0. Throws InputError if MuJoCo
+/// lacks a feature that robot or environment needs, or is not built in.
 [[nodiscard]] std::unique_ptr<World> make_mujoco_world(const RobotModel& robot, const EnvironmentModel& environment,
                                                        double step_s, const std::string& file,
                                                        Integrator integrator = Integrator::implicit);

@@ -1,4 +1,4 @@
-// Instead of the other sources, where MuJoCo is not installed.
+// This source replaces the others if MuJoCo is not installed.
 
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/mujoco/mujoco_world.hpp"

@@ -15,7 +15,7 @@ double squared_distance(const dContactGeom& a, const dContactGeom& b) {
   return x * x + y * y + z * z;
 }
 
-/// Without points at the place of a deeper one.
+/// Removes points at the place of a deeper one, and returns the number of those left.
 std::size_t merge(std::span<dContactGeom> points) {
   constexpr double same_place = 1e-10;  // m^2
   std::size_t count = 0;
@@ -39,7 +39,7 @@ std::size_t choose_contacts(std::span<dContactGeom> points, std::size_t most) {
   if (points.size() <= most) {
     return points.size();
   }
-  std::array<double, max_mesh_points> distances{};  // from the nearest that is kept
+  std::array<double, max_mesh_points> distances{};  // distance from the nearest point that is kept
   distances.fill(std::numeric_limits<double>::max());
   auto next = static_cast<std::size_t>(std::ranges::max_element(points, {}, &dContactGeom::depth) - points.begin());
   for (std::size_t kept = 0; kept < most; ++kept) {

@@ -6,7 +6,7 @@
 namespace proleg::sim {
 namespace {
 
-/// m/s. Below, the direction of the velocity may be an error of the solver.
+/// Least sliding speed, m/s. Below it, the direction of the velocity may be an error of the solver.
 constexpr double min_sliding_speed = 1e-3;
 
 Eigen::Vector3d point_velocity(dGeomID shape, const Eigen::Vector3d& point) {
@@ -23,7 +23,7 @@ Eigen::Vector3d tangential(const Eigen::Vector3d& vector, const Eigen::Vector3d&
   return vector - vector.dot(normal) * normal;
 }
 
-/// Of shape a relative to shape b.
+/// Sliding velocity of shape a relative to shape b.
 Eigen::Vector3d sliding_velocity(dGeomID a, dGeomID b, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
   return tangential(point_velocity(a, point) - point_velocity(b, point), normal);
 }
@@ -84,14 +84,14 @@ void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis
   if (direction.norm() > least_projection) {
     set_first_axis(contact, direction);
   } else {
-    contact.surface.mu2 = along;  // a body that stands on its end
+    contact.surface.mu2 = along;  // the body stands on its end
   }
 }
 
 void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between) {
   note_point(contact, a, b, between);
   const Eigen::Vector3d& normal = next_.normal;
-  // Without this mode mu would be a force.
+  // In this mode mu is a coefficient; without it mu would be a force.
   contact.surface.mode = dContactApprox1;
   contact.surface.mu = coefficient;
   if (coefficient <= 0.0) {
@@ -141,8 +141,8 @@ void ContactFriction::end_step() {
         sliding_.normal_force += normal_force;
         sliding_.force_times_speed += normal_force * velocity.norm();
       }
-      // A force times the mean of the speeds before and after a step is the energy that the step takes. Friction takes;
-      // the sign of the engine's force depends on the order of the bodies.
+      // A force times the mean of the speeds before and after a step is the power that the step takes. Friction always
+      // takes energy, but the sign of the engine's force depends on the order of the bodies.
       sliding_.friction_power += std::abs(force.dot(0.5 * (velocity + point.velocity)));
     }
   }

@@ -29,25 +29,25 @@ namespace proleg::sim {
 /// All axes turn with the robot and its motion. Therefore a run does not depend on the robot's heading.
 class ContactFriction {
  public:
-  /// Before the contacts of a step.
+  /// Must be called before the contacts of a step.
   void begin_step();
-  /// Who touches: it decides what the sums of sliding() count.
+  /// Kinds of pairs that touch; the kind decides what the sums of sliding() count.
   enum class Between : std::uint8_t {
     robot_and_world,  ///< a link, and the environment or an object that moves
     links,            ///< counts for nothing
     objects,          ///< an object that moves, and another or the environment: only friction_power
   };
   /// Sets the surface of a contact point whose friction is not the same in every direction: the engine limits it along
-  /// two fixed axes. axis: in the world, of the body; along it and across it are the coefficients.
+  /// two fixed axes. axis: the body's axis, in the world; along, across: coefficients along it and across it.
   void set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across, dGeomID a, dGeomID b,
                    Between between);
   /// Sets the surface of a contact point, without its geometry. a, b: the shapes that touch.
   void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between);
-  /// joint: of the contact of the last set_surface(), attached to its bodies.
+  /// joint: the joint of the contact of the last set_surface(), attached to its bodies.
   void observe(dJointID joint);
-  /// After the step, before its contact joints are destroyed.
+  /// Must be called after the step, before its contact joints are destroyed.
   void end_step();
-  /// Of the robot's points with the world, in the last step.
+  /// Sums over the robot's contact points with the world in the last step.
   [[nodiscard]] const ContactSliding& sliding() const { return sliding_; }
   /// Calls visit(a, b, normal force in N) for each two shapes that touched in the last step.
   template <typename Visitor>
@@ -66,26 +66,26 @@ class ContactFriction {
     dGeomID b;
     Between between;
     std::size_t points = 0;
-    double normal_force = 0.0;                           ///< N, sum of its points
-    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< N, sum of its points; on either shape
+    double normal_force = 0.0;                           ///< sum of its points, N
+    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< sum of its points on either shape, N
   };
   /// A contact point of this step.
   struct Point {
-    std::size_t pair;  ///< in pairs_
+    std::size_t pair;  ///< index in pairs_
     Eigen::Vector3d position;
     Eigen::Vector3d normal;
-    Eigen::Vector3d velocity;  ///< m/s, sliding, before the step
+    Eigen::Vector3d velocity;  ///< sliding velocity before the step, m/s
     dJointFeedback feedback;
   };
 
   [[nodiscard]] const Pair* before(dGeomID a, dGeomID b) const;
   [[nodiscard]] std::size_t pair_of(dGeomID a, dGeomID b, Between between);
 
-  std::vector<Pair> pairs_before_;  ///< of the step before, with their forces
-  std::vector<Pair> pairs_;         ///< of this step
-  std::deque<Point> points_;        ///< the engine keeps pointers to their feedback; not all are in use
+  std::vector<Pair> pairs_before_;  ///< pairs of the step before, with their forces
+  std::vector<Pair> pairs_;         ///< pairs of this step
+  std::deque<Point> points_;        ///< points, not all in use; the engine keeps pointers to their feedback
   std::size_t point_count_ = 0;
-  Point next_{};  ///< of the last set_surface()
+  Point next_{};  ///< point of the last set_surface()
   ContactSliding sliding_;
 };
 

@@ -11,7 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-/// Not initialised: the engine fills them in.
+/// Finds contact points. `points` need no values before: the engine fills them.
 std::size_t contact_points(dGeomID a, dGeomID b, std::span<dContactGeom> points) {
   return static_cast<std::size_t>(dCollide(a, b, static_cast<int>(points.size()), points.data(), sizeof(dContactGeom)));
 }
@@ -110,7 +110,7 @@ void Contacts::set_surface(dContact& contact, dGeomID a, dGeomID b) {
     friction_.set_surface(contact, along, a, b, who);
     return;
   }
-  // Of two such bodies, which scrape along each other, the first one decides.
+  // If both bodies have such an axis, the first one decides.
   const bool first = data_a.friction_across.has_value();
   const double across =
       friction_of((first ? data_a : data_b).friction_across, (first ? data_b : data_a).friction, unspecified_friction_);

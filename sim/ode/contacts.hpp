@@ -15,28 +15,28 @@
 
 namespace proleg::sim {
 
-/// The contacts of a step: finds them, gives the engine a joint for each, and keeps what sensors and measures read.
+/// Finds the contacts of a step, gives the engine a joint for each, and keeps the data for sensors and measures.
 class Contacts {
  public:
-  /// world: in which the joints are made; must outlive this. unspecified_friction: of bodies without a coefficient.
+  /// world: has the joints; must outlive this object. unspecified_friction: coefficient of bodies without one.
   Contacts(dWorldID world, double unspecified_friction)
       : group_(dJointGroupCreate(0)), world_(world), unspecified_friction_(unspecified_friction) {}
 
-  /// Before the first step, in the order of the links. body: of the link.
+  /// Must be called before the first step, in the order of the links. body: the body of the link.
   void add_link(const RobotModel& robot, std::size_t link, dBodyID body);
-  /// From the next step on points() has the points of each step.
+  /// Lets points() have the points of each step from the next one on.
   void keep_points() { keeps_points_ = true; }
 
-  /// Before the calls of find of a step.
+  /// Must be called before the calls of find() of a step.
   void begin_step();
-  /// The contacts of the shapes of one space with each other, or of two spaces. Shapes must have their ShapeData.
+  /// Find the contacts of the shapes of one space with each other, or of two spaces. Shapes must have their ShapeData.
   void find(dSpaceID space);
   void find(dSpaceID a, dSpaceID b);
-  /// After the step. Destroys the joints.
+  /// Must be called after the step; destroys the joints.
   void end_step();
-  /// Destroys the joints in the middle of a step that failed. What was found stays.
+  /// Destroys the joints in the middle of a step that failed. The contacts found so far stay.
   void abandon() { group_.reset(); }
-  /// Nothing touches the robot: it was moved.
+  /// Removes all contacts, because the robot was moved.
   void clear();
 
   [[nodiscard]] std::uint8_t pressed(std::size_t link) const { return touch_sensors_.pressed(link); }

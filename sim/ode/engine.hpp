@@ -10,9 +10,9 @@ namespace proleg::sim {
 /// end the process; its messages are counted, not printed.
 void prepare_engine_for_this_thread();
 
-/// Messages of the engine on this thread so far.
+/// Number of messages of the engine on this thread so far.
 [[nodiscard]] std::size_t engine_messages();
-/// The first of them that differ, at most ten.
+/// The first messages that differ, at most ten.
 [[nodiscard]] std::span<const std::string> engine_message_texts();
 
 }  // namespace proleg::sim

@@ -5,7 +5,7 @@
 namespace proleg::sim {
 namespace {
 
-/// rotation: 3 rows of 4, as the engine has it.
+/// Rotates a vector. rotation: 3 rows of 4 numbers, as the engine has it.
 Eigen::Vector3d rotated(const dReal* rotation, const Eigen::Vector3d& vector) {
   return {rotation[0] * vector.x() + rotation[1] * vector.y() + rotation[2] * vector.z(),
           rotation[4] * vector.x() + rotation[5] * vector.y() + rotation[6] * vector.z(),

@@ -15,16 +15,16 @@ namespace proleg::sim {
 ///   torque * axis - force * moment,  moment = axis x (anchor - centre of mass)
 class HingeMotor {
  public:
-  /// hinge: of the joint; body: of the link, which is the hinge's first. The engine keeps a pointer to this object
-  /// until the hinge is destroyed, so it must not move.
+  /// hinge: the hinge of the joint; body: the body of the link, which must be the hinge's first. The engine keeps a
+  /// pointer to this object until the hinge is destroyed, so it must not move.
   void attach(dJointID hinge, dBodyID body, const Joint& joint, const Link& link);
 
   void set_speed(double speed) { dJointSetHingeParam(hinge_, dParamVel, speed); }  ///< rad/s
   void set_max_torque(double torque);                                              ///< Nm
 
-  /// Before each step.
+  /// Must be called before each step.
   void note_axis();
-  /// In the last step, Nm. 0 before the first step.
+  /// Torque in the last step, Nm; 0 before the first step.
   [[nodiscard]] double torque() const;
 
  private:
@@ -34,7 +34,7 @@ class HingeMotor {
   double max_torque_ = 0.0;  ///< Nm
   Eigen::Vector3d axis_in_link_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment_in_link_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  ///< in the world, at the start of the last step
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  ///< axis in the world, at the start of the last step
   Eigen::Vector3d moment_ = Eigen::Vector3d::Zero();
 };
 

@@ -34,7 +34,7 @@ struct FreeThreading {
 
 Eigen::Vector3d vector_of(const dReal* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-/// Of the engine's frame, whose origin is the centre of mass.
+/// Pose of the engine's frame, whose origin is the centre of mass.
 Pose pose_of(dBodyID body) {
   const dReal* orientation = dBodyGetQuaternion(body);
   return {vector_of(dBodyGetPosition(body)), {orientation[0], orientation[1], orientation[2], orientation[3]}};
@@ -52,7 +52,7 @@ class OdeWorld final : public World {
     threading_.reset(dThreadingAllocateSelfThreadedImplementation());
     dWorldSetStepThreadingImplementation(world_.get(), dThreadingImplementationGetFunctions(threading_.get()),
                                          threading_.get());
-    dRandSetSeed(0);  // dWorldQuickStep shuffles its rows with it
+    dRandSetSeed(0);  // dWorldQuickStep shuffles its rows with these random numbers
     robot_space_.reset(dSimpleSpaceCreate(nullptr));
     environment_space_.reset(dSimpleSpaceCreate(nullptr));
     object_space_.reset(dSimpleSpaceCreate(nullptr));
@@ -219,8 +219,8 @@ class OdeWorld final : public World {
     contacts_->end_step();
   }
 
-  /// An error that the engine raises in the middle of a step leaves jobs in the world's threading implementation, and
-  /// destroying that would fail the next assertion. So it is never destroyed, only kept reachable: less than 1 kB.
+  /// Gives up the threading implementation. An error that the engine raises in the middle of a step leaves jobs in it,
+  /// and destroying it would fail the next assertion. So it is never destroyed, only kept reachable: less than 1 kB.
   void abandon() {
     contacts_->abandon();
     object_space_.reset();
@@ -233,7 +233,7 @@ class OdeWorld final : public World {
     abandoned->push_back(threading_.release());
   }
 
-  /// One number that is not finite makes the sum not finite, so checking the sum checks all of them.
+  /// Checks the sum of all positions: one number that is not finite makes the sum not finite.
   void require_finite_positions() const {
     double sum = 0.0;
     for (const dBodyID body : all_bodies_) {
@@ -262,7 +262,7 @@ class OdeWorld final : public World {
     }
   }
 
-  /// pose: of the frame of the body, in the world. owner: of its geometries.
+  /// pose: pose of the body's frame in the world. owner: owner of its geometries.
   dBodyID add_body(dxSpace* space, const Pose& pose, const MassProperties& properties,
                    const std::vector<Geometry>& geometries, int owner) {
     const dBodyID body = dBodyCreate(world_.get());
@@ -303,7 +303,7 @@ class OdeWorld final : public World {
   }
 
   void add_joints(const RobotModel& robot, const Pose& robot_pose) {
-    motors_.resize(robot.joints.size());  // the engine keeps pointers into it
+    motors_.resize(robot.joints.size());  // the engine keeps pointers to the motors
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
       const Joint& joint = robot.joints[i];
       const dJointID hinge = dJointCreateHinge(world_.get(), nullptr);
@@ -312,7 +312,7 @@ class OdeWorld final : public World {
       const Eigen::Vector3d axis = robot_pose.orientation * joint.axis;
       dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
       dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
-      // With a limp joint that stands exactly at its stop the solver breaks down: distance and force are both 0.
+      // The solver fails if a limp joint is exactly at its stop: distance and force are both 0.
       constexpr double start_distance = 1e-7;  // rad
       const bool can_turn = joint.lower_limit < joint.upper_limit;
       dJointSetHingeParam(hinge, dParamLoStop,
@@ -327,7 +327,7 @@ class OdeWorld final : public World {
   /// A ray, and the nearest surface that it has met.
   struct RayHit {
     dGeomID ray;
-    int link;  ///< whose surfaces do not count
+    int link;  ///< link whose surfaces do not count
     std::optional<double> distance;
   };
 
@@ -340,7 +340,7 @@ class OdeWorld final : public World {
     }
   }
 
-  // Declared in the order in which the engine needs them; destroyed in reverse.
+  // The engine needs these in the order of declaration; they are destroyed in reverse.
   StepMemory step_memory_;
   Shapes shapes_;
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
@@ -349,10 +349,10 @@ class OdeWorld final : public World {
   std::unique_ptr<dxSpace, DestroySpace> environment_space_;
   std::unique_ptr<dxSpace, DestroySpace> object_space_;
   std::optional<Contacts> contacts_;
-  std::vector<dBodyID> bodies_;                  ///< of the links
-  std::vector<dBodyID> objects_;                 ///< of the objects that move
-  std::vector<dBodyID> all_bodies_;              ///< of both
-  std::vector<Eigen::Vector3d> object_centers_;  ///< of mass, in the frames of the objects
+  std::vector<dBodyID> bodies_;                  ///< bodies of the links
+  std::vector<dBodyID> objects_;                 ///< bodies of the objects that move
+  std::vector<dBodyID> all_bodies_;              ///< bodies of links and objects
+  std::vector<Eigen::Vector3d> object_centers_;  ///< centres of mass, in the frames of the objects
   std::vector<dJointID> joints_;
   std::vector<HingeMotor> motors_;  ///< by joint
   std::vector<double> masses_;

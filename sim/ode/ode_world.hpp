@@ -9,10 +9,10 @@
 
 namespace proleg::sim {
 
-/// How contact and joint forces are solved.
+/// Solvers for contact and joint forces.
 enum class Stepper : std::uint8_t {
-  direct,     ///< dWorldStep: exact, repeatable on every thread; the faster one up to about 8 links
-  iterative,  ///< dWorldQuickStep, 20 iterations: the faster one above. Draws from one random generator for the whole
+  direct,     ///< dWorldStep: exact, repeatable on each thread; the faster one up to about 8 links
+  iterative,  ///< dWorldQuickStep, 20 iterations: faster for more links. It has one random generator for the whole
               ///< process, so each run that must be repeatable needs its own process.
 };
 

@@ -25,7 +25,7 @@ dGeomID Shapes::add(dSpaceID space, const Geometry& geometry, int owner) {
   return shape;
 }
 
-/// The engine's cylinders lie along z, those of the model along y.
+/// Orientation for the engine, whose cylinders lie along z; those of the model lie along y.
 Eigen::Quaterniond engine_orientation(const Geometry& geometry, const Eigen::Quaterniond& orientation) {
   if (geometry.shape == Shape::cylinder) {
     return orientation * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());

@@ -14,9 +14,9 @@
 
 namespace proleg::sim {
 
-/// What collisions need to know of a shape of the engine.
+/// Data of a shape of the engine for collisions.
 struct ShapeData {
-  int link = 0;  ///< or of_environment or of_moving_object
+  int link = 0;  ///< number of the link, of_environment or of_moving_object
   std::optional<double> friction;
   std::optional<double> friction_across;
   bool is_mesh = false;
@@ -28,10 +28,10 @@ inline constexpr int of_moving_object = -2;
   return *static_cast<const ShapeData*>(dGeomGetData(shape));
 }
 
-/// The shapes of a world: those that the engine made of the model's geometries.
+/// The shapes of a world, which the engine makes of the model's geometries.
 class Shapes {
  public:
-  /// count: of all shapes to come. The engine keeps pointers to their data.
+  /// Must be called first. count: number of all shapes to come. The engine keeps pointers to their data.
   void reserve(std::size_t count) { data_.reserve(count); }
   /// owner: the number of a link, of_environment or of_moving_object.
   dGeomID add(dSpaceID space, const Geometry& geometry, int owner);

@@ -25,7 +25,7 @@ void StepMemory::use_for(dWorldID world) {
 
 void StepMemory::select() { selected = this; }
 
-// The engine handles a block that it does not get.
+// The engine handles the absence of a block.
 void* StepMemory::allocate(std::size_t size) {
   auto* const header = static_cast<Header*>(std::malloc(sizeof(Header) + size));
   if (header == nullptr) {

@@ -21,11 +21,11 @@ class TouchSensors {
     pressed_.push_back(0);
   }
 
-  /// Before each step: no sensor is pressed.
+  /// Must be called before each step: releases all sensors.
   void release_all() { pressed_.assign(frames_.size(), 0); }
-  /// The environment touches a link. body: of the link.
+  /// Notes that the environment touches a link. body: the body of the link.
   void press(std::size_t link, dBodyID body, const dContactGeom& contact);
-  /// Bit 0 rear, bit 1 front.
+  /// Sensors that are pressed: bit 0 rear, bit 1 front.
   [[nodiscard]] std::uint8_t pressed(std::size_t link) const { return pressed_[link]; }
 
  private:
@@ -33,12 +33,12 @@ class TouchSensors {
   std::vector<std::uint8_t> pressed_;
 };
 
-// Runs for every contact of every step, so it uses what the engine has at hand: the middle of the link is its centre of
-// mass, and the origin of the engine's body.
+// This function runs for each contact of each step, so it uses the data of the engine: the middle of the link is its
+// centre of mass, which is the origin of the engine's body.
 inline void TouchSensors::press(std::size_t link, dBodyID body, const dContactGeom& contact) {
   const dReal* rotation = dBodyGetRotation(body);  // 3 rows of 4
   const dReal* middle = dBodyGetPosition(body);
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // of the contact, from the middle, in the frame of the link
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // contact point from the middle, in the frame of the link
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // its sign depends on the order of the two bodies
   for (int row = 0; row < 3; ++row) {
     const Eigen::Vector3d row_of_rotation(rotation[4 * row], rotation[4 * row + 1], rotation[4 * row + 2]);

@@ -1,17 +1,11 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "sim/record/figure_contents.hpp"
 #include "sim/record/recording.hpp"
 
 namespace proleg::sim {
-
-/// Part of a run, in seconds from its start; by default the last three strides.
-struct TimeWindow {
-  std::optional<double> from_s;
-  std::optional<double> to_s;
-};
 
 /// Draws a recording as an SVG picture: the robot in a stride (robot_views.hpp), set-points and measured angles of the
 /// joints and the contacts of the links in the window, with changes, restarts and losses, and the path of the chain's

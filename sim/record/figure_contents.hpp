@@ -2,14 +2,20 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "sim/record/figure.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/svg.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
+
+/// Part of a run, in seconds from its start; by default the last three strides.
+struct TimeWindow {
+  std::optional<double> from_s;
+  std::optional<double> to_s;
+};
 
 /// What a figure shows, read from the recording in one pass. Angles and positions are limited to +-10^9, so that the
 /// picture has finite coordinates even if the simulation became unstable.

@@ -1,7 +1,8 @@
 #include "sim/record/recorded_scenario.hpp"
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/scenario/source_texts.hpp"
+#include "sim/scenario/file_source.hpp"
+#include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "shared/computer/errors/file_error.hpp"
-#include "sim/record/recorded_fault.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
@@ -21,28 +21,27 @@ class RecordingClaim;
 
 /// The result of tick k, after it was computed and simulated until SYNC k + 1. Joints and links count from the head.
 struct TickSample {
-  std::uint32_t tick;  ///< k
-  std::span<const std::uint8_t>
-      latched_contacts;                     ///< per link bit 0 rear, bit 1 front sensor; given to the kernel at k
-  std::span<const std::int32_t> setpoints;  ///< per joint: out(k + 1)
+  std::uint32_t tick = 0;  ///< k
+  /// Per link, bit 0 rear, bit 1 front sensor; given to the kernel at k.
+  std::span<const std::uint8_t> latched_contacts{};
+  std::span<const std::int32_t> setpoints{};  ///< per joint: out(k + 1)
   /// State k + 1: slot by slot, in each the joints of its group, of each joint all values.
-  std::span<const std::int32_t> internal_values;
-  std::span<const ServoPulse> servo_pulses;      ///< that start in the tick, in the order of time, then of joints
-  std::span<const std::int32_t> servo_commands;  ///< per joint: the last pulse before SYNC k + 1
-  std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1
-  std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
-  std::span<const double> motor_torques;         ///< Nm, means over the tick
-  std::span<const double> servo_currents;        ///< mA, means over the tick
-  std::span<const double> contact_forces;        ///< per link: N, normal forces of its contacts, means over the tick
-  std::span<const Loss> lost;                    ///< frames labelled k that their receivers did not get
-  std::span<const RobotMove> moves = {};         ///< that took effect at k
-  std::span<const Pose> object_poses = {};       ///< of the objects that move, in the world, at SYNC k + 1
+  std::span<const std::int32_t> internal_values{};
+  std::span<const ServoPulse> servo_pulses{};      ///< that start in the tick, in the order of time, then of joints
+  std::span<const std::int32_t> servo_commands{};  ///< per joint: the last pulse before SYNC k + 1
+  std::span<const Pose> link_poses{};              ///< in the world, at SYNC k + 1
+  std::span<const double> joint_angles{};          ///< rad, at SYNC k + 1, measured on the robot
+  std::span<const double> motor_torques{};         ///< Nm, means over the tick
+  std::span<const double> servo_currents{};        ///< mA, means over the tick
+  std::span<const double> contact_forces{};        ///< per link: N, normal forces of its contacts, means over the tick
+  std::span<const Loss> lost{};                    ///< frames labelled k that their receivers did not get
+  std::span<const RobotMove> moves{};              ///< that took effect at k
+  std::span<const Pose> object_poses{};            ///< of the objects that move, in the world, at SYNC k + 1
   /// At SYNC k + 1, of each sensor of the robot's file all channels. measured_sensors: per sensor, 0 if its values are
   /// older.
-  std::span<const double> sensor_values = {};
-  std::span<const std::uint8_t> measured_sensors = {};
-  std::span<const JointReadings> readings =
-      {};  ///< per joint, given to the kernels at k; empty: no algorithm reads them
+  std::span<const double> sensor_values{};
+  std::span<const std::uint8_t> measured_sensors{};
+  std::span<const JointReadings> readings{};  ///< per joint, given to the kernels at k; empty: no algorithm reads them
 };
 
 /// Writes a run into an SQLite file (tables: schema.hpp) while it runs. Other programs may read the file at the same

@@ -11,10 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "shared/fixed/unit.hpp"
-#include "shared/gait/joint_readings.hpp"
-#include "sim/record/recorded_fault.hpp"
-#include "sim/robot/robot_model.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -24,83 +21,6 @@ class Statement;
 }
 
 namespace proleg::sim {
-
-struct RecordedJoint {
-  std::string name;
-  std::size_t file_index = 0;
-  std::int32_t lower_limit = 0;  ///< 90 degrees = 2^30
-  std::int32_t upper_limit = 0;
-};
-
-struct RecordedSlot {
-  std::uint32_t slot = 0;
-  std::string algorithm;
-  std::vector<bool> joint_group;  ///< for each joint, the head's first
-};
-
-/// An internal value of one joint.
-struct RecordedInternalValue {
-  std::uint32_t slot = 0;
-  std::uint32_t joint = 0;
-  std::uint32_t number = 0;  ///< of the value in the declaration of the slot's algorithm
-  std::string name;
-  Unit unit = Unit::count;
-};
-
-/// A parameter at the start or after a commit, or an internal value that was overwritten.
-struct RecordedSetting {
-  std::uint32_t tick = 0;
-  bool commit = false;  ///< took effect at SYNC tick; otherwise: from the start
-  std::uint32_t slot = 0;
-  std::uint32_t joint = 0;
-  std::string name;
-  Unit unit = Unit::count;
-  std::int32_t raw = 0;
-};
-
-/// A sensor that the robot's file attaches.
-struct RecordedSensor {
-  struct Channel {
-    std::string name;
-    std::string unit;
-  };
-  std::string name;
-  SensorKind kind = SensorKind::touch;
-  std::uint32_t part = 0;  ///< link, of a servo_current the joint; from the head
-  std::vector<Channel> channels;
-  std::size_t first_value = 0;  ///< of its channels in RecordedTick::sensor_values
-};
-
-/// A module that restarted.
-struct RecordedRestart {
-  std::uint32_t tick = 0;
-  std::uint32_t joint = 0;
-  bool joined = false;  ///< computes again from this tick on; otherwise: computes nothing from this tick on
-};
-
-/// Frames that were lost in a part of the run.
-struct RecordedLosses {
-  std::uint32_t tick = 0;    ///< of the first one
-  std::uint64_t frames = 0;  ///< a frame counts once for each joint that did not receive it
-};
-
-/// What was computed at SYNC `tick` and holds at SYNC tick + 1, and the contacts from which it was computed. Joints and
-/// links from the head.
-struct RecordedTick {
-  std::uint32_t tick = 0;
-  std::vector<std::int32_t> setpoints;         ///< 90 degrees = 2^30
-  std::vector<std::int32_t> servo_commands;    ///< twelfths of a microsecond
-  std::vector<double> joint_angles;            ///< rad
-  std::vector<double> motor_torques;           ///< Nm, mean over the tick
-  std::vector<double> servo_currents;          ///< mA, mean over the tick
-  std::vector<std::int32_t> internal_values;   ///< in the order of Recording::internal_values()
-  std::vector<Pose> link_poses;                ///< in the world
-  std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
-  std::vector<double> contact_forces;          ///< N, of each link, mean over the tick
-  std::vector<Pose> object_poses;              ///< of each object that moves, in the world
-  std::vector<JointReadings> readings;         ///< by joint, given to its algorithms at SYNC tick
-  std::vector<double> sensor_values;           ///< of all sensors, all channels; of a laser those of its last scan
-};
 
 /// A recording as it was when it was opened; a recorder may write into the file meanwhile.
 ///

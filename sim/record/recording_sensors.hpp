@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "shared/computer/sqlite/sqlite.hpp"
-#include "sim/record/recording.hpp"
+#include "sim/record/recorded_run.hpp"
 
 namespace proleg::sim {
 

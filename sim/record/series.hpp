@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/record/figure.hpp"
+#include "sim/record/figure_contents.hpp"
 #include "sim/record/svg.hpp"
 
 namespace proleg::sim {

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "shared/computer/text/table_line.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/servo_command.hpp"
 

@@ -1,10 +1,8 @@
-#include "sim/reduced/chain_kernel.hpp"
-#include "sim/reduced/kernel_functions.hpp"
+#include "sim/reduced/chain_step.hpp"
+#include "sim/reduced/kernel.hpp"
 
 namespace proleg::sim::reduced {
 
-const ChainKernel avx2_kernel{
-    "AVX2",           4, step_strong<4>, step_weak<4>, place<4>, step_strong_in_space<4>, step_weak_in_space<4>,
-    place_in_space<4>};
+constinit const ChainKernel avx2_kernel{steps_of<Planar, 4>, steps_of<Spatial, 4>, "AVX2", 4};
 
 }  // namespace proleg::sim::reduced

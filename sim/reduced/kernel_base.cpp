@@ -1,10 +1,8 @@
-#include "sim/reduced/chain_kernel.hpp"
-#include "sim/reduced/kernel_functions.hpp"
+#include "sim/reduced/chain_step.hpp"
+#include "sim/reduced/kernel.hpp"
 
 namespace proleg::sim::reduced {
 
-const ChainKernel base_kernel{
-    "SSE2 or NEON",   2, step_strong<2>, step_weak<2>, place<2>, step_strong_in_space<2>, step_weak_in_space<2>,
-    place_in_space<2>};
+constinit const ChainKernel base_kernel{steps_of<Planar, 2>, steps_of<Spatial, 2>, "SSE2 or NEON", 2};
 
 }  // namespace proleg::sim::reduced

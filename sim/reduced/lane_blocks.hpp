@@ -9,8 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/reduced/chain_kernel.hpp"
-
 namespace proleg::sim::reduced {
 
 /// The memory of the chains of a batch: blocks of as many chains as a vector has lanes, and one more block in which the
@@ -18,8 +16,8 @@ namespace proleg::sim::reduced {
 /// blocks have one scratch memory, for what a step computes and nothing keeps: so it stays in the processor's cache.
 class LaneBlocks {
  public:
-  /// width: a power of two. numbers: of a chain, at first 0. scratch_numbers: for a chain, at first not numbers: so a
-  /// step that reads what it has not computed gives wrong results at once.
+  /// width: a power of two. numbers: how many a chain has; they are 0 at first. scratch_numbers: how many a step of a
+  /// chain needs; they are NaN at first, so a step that reads what it has not computed gives wrong results at once.
   LaneBlocks(std::size_t chains, std::size_t width, std::size_t numbers, std::size_t scratch_numbers)
       : size_(chains),
         width_(width),
@@ -42,8 +40,16 @@ class LaneBlocks {
 
   /// Copies the first numbers of an array from a lane to another one.
   void copy(std::size_t from, std::size_t to, const double* array, std::size_t count) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      of(to, array, i) = of(from, array, i);
+    if (count == 0) {
+      return;
+    }
+    const double* source = &of(from, array, 0);
+    double* target = &of(to, array, 0);
+    *target = *source;
+    for (std::size_t left = count - 1; left > 0; --left) {
+      source += width_;
+      target += width_;
+      *target = *source;
     }
   }
   /// How many numbers of a lane lie from one array to another one that follows.
@@ -93,10 +99,10 @@ class LaneBlocks {
   std::size_t size_;
   std::size_t width_;
   unsigned log2_width_;
-  std::size_t block_size_;  ///< in numbers
+  std::size_t block_size_;  ///< numbers of a block
   Numbers numbers_;
   Numbers scratch_;
-  std::vector<std::size_t> weak_;  ///< chains, in a step
+  std::vector<std::size_t> weak_;  ///< chains that have weak motors in this step
 };
 
 }  // namespace proleg::sim::reduced

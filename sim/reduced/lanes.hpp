@@ -3,7 +3,7 @@
 #include <cstdint>
 
 namespace proleg::sim::reduced {
-namespace {  // of each instruction set its own (chain_step.hpp)
+namespace {  // each instruction set has its own: see chain_step.hpp
 
 /// Numbers of several worlds, one in each lane of a vector. Each operation acts on each lane by itself and is one of
 /// IEEE 754: a lane gives the same bits in any company, with any width and on any processor.
@@ -50,34 +50,22 @@ inline bool any(Mask mask) {
   return bits != 0;
 }
 
-/// A point or a direction in the plane in which the chains move.
-template <typename Number>
-struct Plane {
-  Number x{};
-  Number z{};
-
-  Plane operator+(const Plane& other) const { return {x + other.x, z + other.z}; }
-  Plane operator-(const Plane& other) const { return {x - other.x, z - other.z}; }
-  Plane operator*(Number factor) const { return {x * factor, z * factor}; }
-};
-
-template <typename Mask, typename Number>
-inline Plane<Number> select(Mask mask, const Plane<Number>& a, const Plane<Number>& b) {
-  return {select(mask, a.x, b.x), select(mask, a.z, b.z)};
+/// The lanes in which a mask is set: bit k for lane k.
+template <typename Mask>
+inline unsigned bits_of(Mask mask) {
+  unsigned bits = 0;
+  for (unsigned lane = 0; lane < sizeof(Mask) / sizeof(std::int64_t); ++lane) {
+    bits |= mask[lane] != 0 ? 1U << lane : 0U;
+  }
+  return bits;
 }
+/// IEEE 754 rounds it in one way, like a division.
 template <typename Number>
-inline Number dot(const Plane<Number>& a, const Plane<Number>& b) {
-  return a.x * b.x + a.z * b.z;
-}
-/// Positive if b points to the left of a: from x towards z.
-template <typename Number>
-inline Number cross(const Plane<Number>& a, const Plane<Number>& b) {
-  return a.x * b.z - a.z * b.x;
-}
-/// A quarter turn from x towards z: the velocity of a point at r that turns at 1 rad/s.
-template <typename Number>
-inline Plane<Number> turned(const Plane<Number>& r) {
-  return {-r.z, r.x};
+inline Number square_root(Number value) {
+  for (unsigned lane = 0; lane < sizeof(Number) / sizeof(double); ++lane) {
+    value[lane] = __builtin_sqrt(value[lane]);
+  }
+  return value;
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "sim/reduced/chain_form.hpp"
-#include "sim/reduced/lanes.hpp"
+#include "sim/reduced/vectors.hpp"
 
 namespace proleg::sim::reduced {
-namespace {  // of each instruction set its own (chain_step.hpp)
+namespace {  // each instruction set has its own: see chain_step.hpp
 
 /// A Rectangle in each lane, in its place. Its sides are numbered as they follow each other when x turns towards z,
 /// from the one below: 0 below, 1 ahead, 2 above, 3 behind (with `along` ahead). Corner k is at the start of side k.
@@ -32,7 +31,7 @@ struct Touch {
 template <int width>
 struct Side {
   using Number = typename Lanes<width>::Number;
-  Number distance;       ///< of the other outline's nearest corner from the side, m; negative: behind it
+  Number distance;       ///< distance of the other outline's nearest corner from the side, m; negative: behind it
   Plane<Number> normal;  ///< outward
   Plane<Number> middle;
   Number half;  ///< m: half its length

@@ -1,4 +1,4 @@
-#include "sim/reduced/planar_chain.hpp"
+#include "sim/reduced/robot_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/reduced/rounding.hpp"
 #include "sim/robot/friction.hpp"
 #include "sim/robot/touch_sensor_frame.hpp"
 
@@ -17,12 +16,14 @@ namespace {
 
 constexpr double tolerance = 1e-6;  // m, and rad
 
+Point rounded_point(const Point& point) { return {rounded(point.x), rounded(point.z)}; }
+
 bool is_horizontal(const Eigen::Vector3d& axis) { return std::abs(axis.z()) < tolerance; }
 bool are_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.cross(b).norm() < tolerance; }
 
-class Maker {
+class PlanarMaker {
  public:
-  Maker(const RobotModel& robot, const EnvironmentModel& environment, double step_s, const std::string& file)
+  PlanarMaker(const RobotModel& robot, const EnvironmentModel& environment, double step_s, const std::string& file)
       : robot_(robot), environment_(environment), file_(file) {
     chain_.step_s = step_s;
     chain_.self_collision = environment.self_collision;
@@ -49,7 +50,7 @@ class Maker {
     if (std::abs(gravity.dot(chain_.plane.across)) > tolerance) {
       refuse("gravity across the plane in which the robot moves");
     }
-    chain_.gravity = rounded(chain_.plane.project(gravity));
+    chain_.gravity = rounded_point(chain_.plane.project(gravity));
     return std::move(chain_);
   }
 
@@ -74,7 +75,8 @@ class Maker {
     }
     // The angle of a joint is that of the link in front of it about the axis. So that of the link behind turns about
     // the opposite of the axis, which turns x towards z if x is axis x up.
-    plane.across = rounded(Eigen::Vector3d(axis.x(), axis.y(), 0.0).normalized());
+    plane.across =
+        Eigen::Vector3d(axis.x(), axis.y(), 0.0).normalized().unaryExpr([](double value) { return rounded(value); });
     plane.x = Eigen::Vector3d(plane.across.y(), -plane.across.x(), 0.0);
     const Link& head = robot_.links.front();
     plane.offset = rounded((start_of(head) * head.mass.center).dot(plane.across));
@@ -93,7 +95,7 @@ class Maker {
     }
     chain_.masses.push_back(rounded(link.mass.mass));
     chain_.inertias.push_back(rounded(inertia, 50));
-    LinkForm form;
+    Planar::Link form;
     if (i > 0) {
       form.front = from(center, environment_.robot_pose * robot_.joints[i - 1].anchor);
     }
@@ -101,21 +103,21 @@ class Maker {
       form.rear = from(center, environment_.robot_pose * robot_.joints[i].anchor);
     }
     const TouchSensorFrame sensors = touch_sensor_frame(robot_, i);
-    form.forward = rounded(chain_.plane.project(start.orientation * sensors.forward));
-    form.down = rounded(chain_.plane.project(start.orientation * sensors.down));
+    form.forward = rounded_point(chain_.plane.project(start.orientation * sensors.forward));
+    form.down = rounded_point(chain_.plane.project(start.orientation * sensors.down));
     chain_.links.push_back(form);
     for (const Geometry& geometry : link.geometries) {
       add_shape(i, geometry, start, center);
     }
     if (i == 0) {
-      chain_.first_link = rounded(chain_.plane.project(center));
+      chain_.first_link = rounded_point(chain_.plane.project(center));
     }
-    chain_.start_orientations.push_back(start.orientation);
+    chain_.link_orientations.push_back(start.orientation);
     chain_.mass_centers.push_back(link.mass.center);
   }
 
   [[nodiscard]] Point from(const Eigen::Vector3d& center, const Eigen::Vector3d& point) const {
-    return rounded(chain_.plane.project(point - center));
+    return rounded_point(chain_.plane.project(point - center));
   }
 
   void require_in_plane(const Eigen::Vector3d& point, const std::string& name) const {
@@ -136,7 +138,7 @@ class Maker {
       refuse(geometry.shape == Shape::box ? name + " with a box that is oblique to the plane in which the robot moves"
                                           : name + " with " + std::string(with_article(geometry.shape)));
     }
-    ShapeForm form{link, *outline, 0.0};
+    Planar::Shape form{link, *outline, 0.0};
     form.radius = rounded(std::hypot(outline->center.x, outline->center.z) +
                           std::hypot(outline->half_length, outline->half_height)) +
                   tolerance;
@@ -168,7 +170,7 @@ class Maker {
     return 0.0;
   }
 
-  /// Of a box with two sides parallel to the plane; nothing for another shape. pose: of the geometry.
+  /// The section of a box with two sides parallel to the plane; nothing for another shape. pose: of the geometry.
   [[nodiscard]] std::optional<Rectangle> section(const Geometry& geometry, const Pose& pose) const {
     if (geometry.shape != Shape::box) {
       return std::nullopt;
@@ -188,7 +190,7 @@ class Maker {
 
   /// along: unit vector.
   static Rectangle rectangle(const Point& center, const Point& along, double half_length, double half_height) {
-    return {rounded(center), rounded(along), rounded(half_length), rounded(half_height)};
+    return {rounded_point(center), rounded_point(along), rounded(half_length), rounded(half_height)};
   }
 
   void add_joint(const Joint& joint) {
@@ -201,7 +203,7 @@ class Maker {
     chain_.joint_signs.push_back(sign);
     const double lower = rounded(joint.lower_limit);
     const double upper = rounded(joint.upper_limit);
-    chain_.joints.push_back(sign > 0.0 ? JointForm{lower, upper} : JointForm{-upper, -lower});
+    chain_.joints.push_back(sign > 0.0 ? JointLimits{lower, upper} : JointLimits{-upper, -lower});
   }
 
   void add_solid(const StaticObject& object, const Geometry& geometry) {
@@ -229,8 +231,8 @@ class Maker {
     solid_geometries_.push_back(&geometry);
   }
 
-  /// Of an upright box that is turned about the vertical, and under the whole robot: what is under the whole width of
-  /// the robot. So its ends are upright in the plane.
+  /// The section of an upright box that is turned about the vertical, and under the whole robot: what is under the
+  /// whole width of the robot. So its ends are upright in the plane.
   [[nodiscard]] std::optional<Rectangle> section_of_turned_floor(const Geometry& geometry, const Pose& pose) const {
     if (geometry.shape != Shape::box) {
       return std::nullopt;
@@ -276,10 +278,12 @@ class Maker {
   void set_friction() {
     for (const Geometry* shape : shape_geometries_) {
       for (const Geometry* solid : solid_geometries_) {
-        chain_.terrain_friction.push_back(friction(*shape, *solid));
+        chain_.friction.push_back(friction(*shape, *solid));
       }
+    }
+    for (const Geometry* shape : shape_geometries_) {
       for (const Geometry* other : shape_geometries_) {
-        chain_.self_friction.push_back(friction(*shape, *other));
+        chain_.friction.push_back(friction(*shape, *other));
       }
     }
   }
@@ -297,7 +301,7 @@ class Maker {
 
 PlanarChain make_planar_chain(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                               const std::string& file) {
-  return Maker(robot, environment, step_s, file).make();
+  return PlanarMaker(robot, environment, step_s, file).make();
 }
 
 }  // namespace proleg::sim::reduced

@@ -10,7 +10,7 @@
 #include "sim/environment/environment_model.hpp"
 #include "sim/physics/world.hpp"
 #include "sim/reduced/chain_batch.hpp"
-#include "sim/reduced/spatial_batch.hpp"
+#include "sim/reduced/robot_chain.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::reduced {
@@ -18,8 +18,8 @@ namespace proleg::sim::reduced {
 /// Changes when the engine gives other bits for the same world.
 inline constexpr int engine_version = 1;
 
-/// A world in the reduced engine. file: that messages name. step_s: length of a step, above 0. Throws InputError if the
-/// engine does not have what robot or environment needs.
+/// A world in the reduced engine. file: the file that messages name. step_s: length of a step, above 0. Throws
+/// InputError if the engine does not have what robot or environment needs.
 [[nodiscard]] std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment,
                                                         double step_s, const std::string& file);
 
@@ -28,8 +28,13 @@ struct WorldInput {
   const RobotModel* robot;
   const EnvironmentModel* environment;
   double step_s;
-  std::string file;  ///< that messages name
+  std::string file;  ///< the file that messages name
 };
+
+/// The world of chain number `lane` of a batch. If the batch has others, World::step of each makes no step but throws
+/// PhysicsError if the world broke down. input: what the chain was made from.
+[[nodiscard]] std::unique_ptr<World> make_world(const WorldInput& input, SpatialChain chain,
+                                                std::shared_ptr<ChainBatch<Spatial>> batch, std::size_t lane);
 
 /// Worlds that make their steps together, as fast as the processor's vectors allow. Each gives the same bits as alone.
 class ReducedWorlds {
@@ -40,13 +45,13 @@ class ReducedWorlds {
   /// Gives the worlds away, in the order of the inputs. Then they are used between the steps; World::step of each of
   /// them makes no step but throws PhysicsError if the world broke down. They cannot be moved.
   [[nodiscard]] std::vector<std::unique_ptr<World>> take_worlds() { return std::move(worlds_); }
-  /// All worlds. Those that broke down have no effect on the others.
+  /// Steps all worlds. Those that broke down have no effect on the others.
   void step();
 
  private:
-  // One for each form of chain.
-  std::vector<std::shared_ptr<ChainBatch>> batches_;
-  std::vector<std::shared_ptr<SpatialBatch>> spatial_batches_;
+  // One batch for each form of chain.
+  std::vector<std::shared_ptr<ChainBatch<Planar>>> planar_batches_;
+  std::vector<std::shared_ptr<ChainBatch<Spatial>>> spatial_batches_;
   std::vector<std::unique_ptr<World>> worlds_;
 };
 

@@ -3,7 +3,7 @@
 #include "sim/reduced/lanes.hpp"
 
 namespace proleg::sim::reduced {
-namespace {  // of each instruction set its own (chain_step.hpp)
+namespace {  // each instruction set has its own: see chain_step.hpp
 
 template <typename Number>
 struct SineCosine {

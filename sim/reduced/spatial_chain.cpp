@@ -1,11 +1,10 @@
-#include "sim/reduced/spatial_chain.hpp"
+#include "sim/reduced/robot_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/reduced/rounding.hpp"
 #include "sim/robot/friction.hpp"
 #include "sim/robot/touch_sensor_frame.hpp"
 
@@ -30,7 +29,7 @@ class SpatialMaker {
     if (!environment_.moving_objects.empty()) {
       refuse("object '" + environment_.moving_objects.front().name + "', which moves");
     }
-    if (robot_.joints.size() > max_spatial_joints) {
+    if (robot_.joints.size() > Spatial::max_joints) {
       refuse("a robot of " + std::to_string(robot_.joints.size()) + " joints");
     }
     for (const StaticObject& object : environment_.objects) {
@@ -44,14 +43,15 @@ class SpatialMaker {
     for (const Joint& joint : robot_.joints) {
       // The angle of a joint is that of the link in front of it; in the engine it is that of the link behind it.
       chain_.joints.push_back(
-          {to_point(-joint.axis.normalized()), {rounded(joint.lower_limit), rounded(joint.upper_limit)}});
+          {{rounded(joint.lower_limit), rounded(joint.upper_limit)}, to_point(-joint.axis.normalized())});
+      chain_.joint_signs.push_back(1.0);
     }
     chain_.gravity = to_point(environment_.gravity);
     const Link& head = robot_.links.front();
     chain_.first_link = to_point(environment_.robot_pose * (head.pose * head.mass.center));
     const Eigen::Quaterniond& start = environment_.robot_pose.orientation;
     const double numbers[] = {start.w(), start.x(), start.y(), start.z()};
-    std::ranges::transform(numbers, chain_.orientation, [](double value) { return rounded(value); });
+    std::ranges::transform(numbers, chain_.orientation.begin(), [](double value) { return rounded(value); });
     return std::move(chain_);
   }
 
@@ -80,9 +80,9 @@ class SpatialMaker {
     const Eigen::Index a = (upright + 1) % 3;
     const Eigen::Index b = (upright + 2) % 3;
     const double half_height = geometry.extents[upright];
-    chain_.floor = {to_point(pose.position + Eigen::Vector3d(0.0, 0.0, half_height)),
-                    to_point(pose.orientation * Eigen::Vector3d::Unit(a)), rounded(geometry.extents[a]),
-                    rounded(geometry.extents[b]), rounded(2.0 * half_height)};
+    chain_.terrain.push_back({to_point(pose.position + Eigen::Vector3d(0.0, 0.0, half_height)),
+                              to_point(pose.orientation * Eigen::Vector3d::Unit(a)), rounded(geometry.extents[a]),
+                              rounded(geometry.extents[b]), rounded(2.0 * half_height)});
     chain_.lowest_ground = pose.position.z() - half_height;
     floor_ = &geometry;
   }
@@ -98,7 +98,7 @@ class SpatialMaker {
     }
     chain_.masses.push_back(rounded(link.mass.mass));
     const TouchSensorFrame sensors = touch_sensor_frame(robot_, i);
-    SpatialLinkForm form;
+    Spatial::Link form;
     if (i > 0) {
       form.front = to_point(robot_.joints[i - 1].anchor - center);
     }
@@ -123,14 +123,14 @@ class SpatialMaker {
       refuse("link '" + link.name + "' with another friction across it");
     }
     const Eigen::Vector3d center = geometry.pose.position - link.mass.center;
-    BoxForm box;
+    Spatial::Shape box;
     box.link = i;
     box.center = to_point(link.pose.orientation * center);
     for (Eigen::Index side = 0; side < 3; ++side) {
       const Eigen::Vector3d middle = geometry.pose.orientation * Eigen::Vector3d::Unit(side) * geometry.extents[side];
       box.sides[side] = to_point(link.pose.orientation * middle);
     }
-    for (unsigned number = 0; number < corners_of_box; ++number) {
+    for (unsigned number = 0; number < Spatial::corners_of_shape; ++number) {
       const Eigen::Vector3d signs((number & 1U) != 0 ? 1.0 : -1.0, (number & 2U) != 0 ? 1.0 : -1.0,
                                   (number & 4U) != 0 ? 1.0 : -1.0);
       const Eigen::Vector3d corner =
@@ -141,7 +141,7 @@ class SpatialMaker {
       }
     }
     box.radius = rounded(center.norm() + geometry.extents.norm()) + rounding_error;
-    chain_.boxes.push_back(box);
+    chain_.shapes.push_back(box);
     const std::optional<double> of_floor = floor_ != nullptr ? floor_->friction : std::nullopt;
     chain_.friction.push_back(rounded(friction_of(geometry.friction, of_floor, environment_.unspecified_friction)));
   }

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "shared/canopen/messages.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/names.hpp"
 
@@ -35,9 +34,9 @@ ModuleEntry read_module(const XmlElement& element, const RobotModel& model) {
   ModuleEntry entry{element, name, static_cast<std::size_t>(joint), {}};
   const std::string node_text = element.required_attribute("node");
   const std::optional<std::uint32_t> node = parse_node_or_serial(node_text);
-  if (!node || *node == 0 || *node > canopen::max_node_id) {
+  if (!node || *node == 0 || *node > max_module_node) {
     element.refuse("node " + in_quotes(node_text) + " in " + element.label(),
-                   "a whole number from 1 to " + std::to_string(canopen::max_node_id) + " (127 is the host)");
+                   "a whole number from 1 to " + std::to_string(max_module_node) + " (127 is the host)");
   }
   entry.place.node = static_cast<std::uint8_t>(*node);
   if (const auto serial_text = element.attribute("serial")) {

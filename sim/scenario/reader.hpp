@@ -17,31 +17,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "shared/fixed/unit.hpp"
 #include "shared/gait/joint_mask.hpp"
+#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
-
-/// Where the reader gets its files from: a disk or, in tests and the fuzzer, memory.
-class FileSource {
- public:
-  virtual ~FileSource() = default;
-  /// The text of a file, or nothing if it cannot be read.
-  [[nodiscard]] virtual std::optional<std::string> read(const std::filesystem::path& path) = 0;
-  /// What is at a path that cannot be read, for "found ...": "a folder". Nothing if nothing is there.
-  [[nodiscard]] virtual std::optional<std::string> found_instead(const std::filesystem::path& /*path*/) { return {}; }
-};
-
-/// Files on disk, at most 16 MiB each. Reads regular files only: a device or a pipe might never end.
-class DiskFiles final : public FileSource {
- public:
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
-  [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
-};
 
 /// Reads a top-level simulation file and all that it names, and applies the overrides. Throws InputError.
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& path, FileSource& files,

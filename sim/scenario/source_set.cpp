@@ -1,13 +1,9 @@
 #include "sim/scenario/source_set.hpp"
 
-#include <cstdint>
-#include <fstream>
 #include <optional>
-#include <sstream>
-#include <system_error>
 #include <utility>
 
-#include "shared/computer/errors/file_kind.hpp"
+#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/data_url.hpp"
@@ -15,7 +11,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::size_t max_file_bytes = std::size_t{16} << 20U;
 constexpr std::size_t max_bytes = std::size_t{64} << 20U;
 constexpr std::size_t max_includes = 1000;
 constexpr int max_include_depth = 32;
@@ -24,39 +19,6 @@ constexpr std::size_t max_path_size = 4096;
 constexpr const char* readable_file = "a readable file of at most 16 MiB";
 
 }  // namespace
-
-std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return std::nullopt;
-  }
-  if (const auto size = std::filesystem::file_size(path, error); error || size > max_file_bytes) {
-    return std::nullopt;
-  }
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) {
-    text << stream.rdbuf();
-  }
-  if (stream.bad() || !stream.is_open()) {
-    return std::nullopt;
-  }
-  return std::move(text).str();
-}
-
-std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    return std::nullopt;
-  }
-  if (const std::optional<std::string> found = found_instead_of_file(path)) {
-    return found;
-  }
-  constexpr std::uintmax_t mebibyte = 1U << 20U;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  return !error && size > max_file_bytes ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
-                                         : "a file that cannot be read";
-}
 
 const std::string* SourceSet::text_of(const std::filesystem::path& path, Contents contents) {
   const std::string name = name_of(path);

@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "sim/robot/triangle_mesh.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/file_source.hpp"
+#include "sim/scenario/scenario.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {

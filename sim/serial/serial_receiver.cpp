@@ -6,7 +6,7 @@ namespace proleg::sim {
 namespace {
 
 constexpr unsigned data_bits = 8;
-/// From the falling edge to the middle of the stop bit, in half bits.
+/// Time from the falling edge to the middle of the stop bit, in half bits.
 constexpr unsigned half_bits_to_stop = 19;
 
 }  // namespace
@@ -58,7 +58,7 @@ SerialReceiver::Time SerialReceiver::idle_time(Time bit) const {
 
 SerialReceiver::Time SerialReceiver::next_event(Time bit) const {
   if (!is_busy()) {
-    return never;  // as on most lines at most times
+    return never;  // this is the usual case
   }
   const Time start = next_start();
   const Time end = start == never ? never : start + half_bits_to_stop * bit / 2;

@@ -9,14 +9,14 @@ namespace proleg::sim {
 /// A character on an asynchronous serial line: a start bit (low), eight data bits, lowest first, and a stop bit.
 struct SerialCharacter {
   std::uint8_t byte = 0;
-  bool has_stop_bit = true;  ///< false: the line stays low in its place, as in a break
+  bool has_stop_bit = true;  ///< false: the line stays low instead of the stop bit, as in a break
 
   friend bool operator==(const SerialCharacter&, const SerialCharacter&) = default;
 };
 inline constexpr unsigned serial_character_bits = 10;
 
 /// The receiving half of a UART. It samples the line in the middle of each bit, by its own bit time: a sender with
-/// another baud rate leads to other characters, as on a real line. Times are of any unit, all of one.
+/// another baud rate leads to other characters, as on a real line. All times have one unit, which may be any.
 class SerialReceiver {
  public:
   using Time = std::uint64_t;
@@ -24,22 +24,23 @@ class SerialReceiver {
 
   enum class Kind : std::uint8_t {
     character,
-    idle,  ///< the line was high for a whole character, the first time since the last character
+    idle,  ///< the line was high for the length of a character; once after each character
   };
   struct Event {
     Kind kind = Kind::character;
-    SerialCharacter character;  ///< has_stop_bit false: a framing error
-    Time time = 0;              ///< of a character: the middle of its stop bit
+    SerialCharacter character;  ///< the received character; without a stop bit it is a framing error
+    Time time = 0;              ///< of a character: middle of its stop bit
   };
 
-  /// The line is high, and nothing was received.
+  /// Sets the line high, with nothing received.
   void reset() { *this = SerialReceiver(); }
-  /// A character begins on the line. The one before must be over.
+  /// A character begins on the line; the one before must have ended.
   void begin(Time start, const SerialCharacter& character, Time bit);
 
-  /// When the next event occurs if no character begins before; `never`: there is none. bit: the receiver's.
+  /// Time of the next event if no character begins before; `never` if no event will occur. bit: the receiver's bit
+  /// time.
   [[nodiscard]] Time next_event(Time bit) const;
-  /// The oldest event up to `now` that was not taken yet.
+  /// Takes the oldest event up to `now`.
   [[nodiscard]] std::optional<Event> take(Time now, Time bit);
   /// Whether a character is being received at this time, or an event has not been taken.
   [[nodiscard]] bool is_busy() const { return !edges_.empty() || idle_from_ != never; }
@@ -52,14 +53,14 @@ class SerialReceiver {
 
   void add_edge(Time time, bool high);
   [[nodiscard]] bool level_at(Time time) const;
-  /// The first falling edge that no character has taken.
+  /// Time of the first falling edge after the last character.
   [[nodiscard]] Time next_start() const;
   [[nodiscard]] Time idle_time(Time bit) const;
   void forget_until(Time time);
 
-  std::deque<Edge> edges_;  ///< after the last character received
-  bool level_ = true;       ///< before the first of them
-  Time idle_from_ = never;  ///< the end of the last character received; never: the line has been idle since
+  std::deque<Edge> edges_;  ///< edges after the last character received
+  bool level_ = true;       ///< level before the first of edges_
+  Time idle_from_ = never;  ///< end of the last character received; never: the line has been idle since
 };
 
 }  // namespace proleg::sim

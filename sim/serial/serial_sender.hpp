@@ -9,21 +9,21 @@
 
 namespace proleg::sim {
 
-/// The sending half of a UART: characters that wait go out one after the other, at a baud rate.
+/// The sending half of a UART: it sends waiting characters one after the other, at a baud rate.
 class SerialSender {
  public:
   /// baud: 1 to 1,000,000,000.
   explicit SerialSender(std::uint32_t baud) : bit_(ns_per_second / baud) {}
 
-  /// Characters begin at `now` or, behind those that wait, later.
+  /// Sends characters from `now` on, or later if others wait.
   void send(BusTime now, std::string_view characters);
   void send(BusTime now, const SerialCharacter& character);
-  /// Forgets those that wait.
+  /// Removes the waiting characters.
   void clear() { pending_.clear(); }
 
-  /// When the next character begins; never_on_bus if none waits.
+  /// Time at which the next character begins; never_on_bus if none waits.
   [[nodiscard]] BusTime next_event() const { return pending_.empty() ? never_on_bus : pending_.front().start; }
-  /// The character that begins at next_event(), if that is due.
+  /// Takes the character that begins at next_event(), if it is due.
   [[nodiscard]] std::optional<SerialCharacter> take(BusTime now);
   [[nodiscard]] BusTime bit_time() const { return bit_; }
   [[nodiscard]] std::size_t pending() const { return pending_.size(); }
@@ -36,7 +36,7 @@ class SerialSender {
   };
 
   BusTime bit_;
-  BusTime free_at_ = 0;  ///< the end of the last character
+  BusTime free_at_ = 0;  ///< end of the last character
   std::deque<Pending> pending_;
 };
 

@@ -48,8 +48,8 @@ void load(Cpu& cpu, const ElfImage& image, std::string_view program, std::string
     cpu.write(segment.load_address, segment.bytes);
   }
   constexpr std::uint32_t first_interrupt = 16;
-  set_word(cpu, Cpu::flash_start + 4, image.symbol(program).address | 1U);
-  set_word(cpu, Cpu::flash_start + 4 * (first_interrupt + interrupt), image.symbol(handler).address | 1U);
+  set_word(cpu, ChipMemory::flash_start + 4, image.symbol(program).address | 1U);
+  set_word(cpu, ChipMemory::flash_start + 4 * (first_interrupt + interrupt), image.symbol(handler).address | 1U);
   cpu.reset();
 }
 

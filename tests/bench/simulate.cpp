@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/ode/engine.hpp"
 #include "sim/scenario/reader.hpp"

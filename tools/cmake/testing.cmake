@@ -40,12 +40,14 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them but sources
 #   COMPILES   it compiles from the folders of DATA, so that their sources count too
 #   COST       roughly, where it is many seconds: long tests start first
+#   TIMEOUT    when it hangs: 15 times its cost, and 1200 at least, unless it is given
 #   REAL_TIME  it mostly waits, for example for a robot that moves as on the table, and must get its turn in time. One such
 #              test runs for each two cores, beside others that keep the cores busy. (Others at a lower priority would be
 #              no help: with groups of processes, Linux then holds frames on a pseudo terminal back for up to a second.)
 #   HALF_CORES what it keeps busy: 2 by default, 1 in real time. ctest starts as many as fit (tools/check). A test that
 #              needs more comes late, since smaller ones fit first.
 set(PROLEG_HALF_CORES 2)
+set(PROLEG_SHORTEST_TIMEOUT 1200)
 cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
 math(EXPR PROLEG_REAL_TIME_TESTS_AT_ONCE "(${cores} + 1) / 2")
 set_property(GLOBAL PROPERTY proleg_real_time_tests 0)
@@ -66,7 +68,14 @@ function(proleg_add_test name)
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/run_test --name ${name}
             --results ${CMAKE_BINARY_DIR}/test_results ${inputs} -- ${test_COMMAND})
   if(NOT test_TIMEOUT)
-    set(test_TIMEOUT 600)
+    set(test_TIMEOUT ${PROLEG_SHORTEST_TIMEOUT})
+    if(test_COST)
+      # A busy computer, or the sanitizers, may take ten times as long.
+      math(EXPR test_TIMEOUT "${test_COST} * 15")
+      if(test_TIMEOUT LESS PROLEG_SHORTEST_TIMEOUT)
+        set(test_TIMEOUT ${PROLEG_SHORTEST_TIMEOUT})
+      endif()
+    endif()
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${test_TIMEOUT})
   if(PROLEG_SANITIZE)

@@ -1,19 +1,64 @@
 # Writes the result key into a header: two programs with equal keys give equal results of a search. It is a hash of the
-# sources that determine a result and of SETTINGS (compiler, flags, libraries). Does not touch a header that already has it.
-# Called at every build with SOURCE_DIR, SETTINGS and OUTPUT.
-set(rooms
-  shared/fixed shared/gait shared/kernel shared/computer/text
-  sim/robot sim/mesh sim/environment sim/scenario sim/physics sim/mujoco sim/ode sim/reduced sim/measure sim/loop
-  sim/optimize/experiment sim/optimize/evaluation sim/optimize/method)
-set(text "${SETTINGS}")
-foreach(room IN LISTS rooms)
-  file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${room}/*.cpp ${SOURCE_DIR}/${room}/*.hpp)
-  list(SORT sources)
-  foreach(source IN LISTS sources)
-    file(SHA256 ${SOURCE_DIR}/${source} hash)
-    string(APPEND text "\n${source} ${hash}")
-  endforeach()
+# sources that the program links, of all files of the project that they include, and of SETTINGS (compiler, flags,
+# libraries). Does not touch a header that already has it. Beside the header, OUTPUT.txt has what was hashed.
+# Called at every build with SOURCE_DIR, BINARY_DIR, SOURCES (the file of proleg_write_linked_sources), SETTINGS and OUTPUT.
+cmake_minimum_required(VERSION 3.25)
+
+# The hashes do not depend on where the folders are.
+function(name_of file out)
+  cmake_path(IS_PREFIX BINARY_DIR ${file} is_generated)
+  cmake_path(IS_PREFIX SOURCE_DIR ${file} is_source)
+  if(is_generated)
+    cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${BINARY_DIR})
+  elseif(is_source)
+    cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${SOURCE_DIR})
+  else()
+    cmake_path(GET file FILENAME file)  # an algorithm of a user
+  endif()
+  set(${out} ${file} PARENT_SCOPE)
+endfunction()
+
+file(STRINGS ${SOURCES} lines)
+set(pending)
+foreach(line IN LISTS lines)
+  string(REGEX MATCH "^(source|generated) ([^ ]+)" matched "${line}")
+  set(base ${SOURCE_DIR})
+  if(CMAKE_MATCH_1 STREQUAL "generated")
+    set(base ${BINARY_DIR})
+  endif()
+  list(APPEND pending ${base}/${CMAKE_MATCH_2})
 endforeach()
+
+set(hashes)
+while(pending)
+  list(POP_FRONT pending file)
+  if(DEFINED "has_${file}")
+    continue()
+  endif()
+  set("has_${file}" TRUE)
+  file(SHA256 ${file} hash)
+  name_of(${file} name)
+  list(APPEND hashes "${name} ${hash}\n")
+  cmake_path(GET file PARENT_PATH folder)
+  file(STRINGS ${file} includes REGEX "^ *# *include +\"")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*$" "\\1" include "${include}")
+    foreach(base ${folder} ${SOURCE_DIR})
+      cmake_path(ABSOLUTE_PATH include BASE_DIRECTORY ${base} NORMALIZE OUTPUT_VARIABLE included)
+      if(EXISTS ${included})
+        list(APPEND pending ${included})
+        break()
+      endif()
+    endforeach()
+  endforeach()
+endwhile()
+list(SORT hashes)
+
+file(READ ${SOURCES} text)
+list(JOIN hashes "" hashes_text)
+string(PREPEND text "${SETTINGS}\n")
+string(APPEND text "${hashes_text}")
+file(WRITE ${OUTPUT}.txt "${text}")
 string(SHA256 key "${text}")
 set(header "#define PROLEG_RESULT_KEY \"${key}\"\n")
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "${header}" @ONLY)

@@ -19,7 +19,7 @@
 
 extern "C" {
 
-/// RAM for an image, from the linker script.
+/// RAM for an image; the linker script defines it.
 extern std::uint8_t image_buffer_start[];
 extern std::uint8_t image_buffer_end[];
 
@@ -35,28 +35,29 @@ class Settings final : public canopen::LssStorage {
     return {firmware::append_node(flash_, node) == firmware::AppendResult::ok ? canopen::lss::ok
                                                                               : canopen::lss::storage_failed};
   }
-  /// 0: none.
+  /// The stored node id; 0: none.
   [[nodiscard]] std::uint8_t node() const { return firmware::newest_node(flash_.contents(0), flash_.contents(1)); }
 
  private:
   BoardRecordFlash flash_;
 };
 
-// Static, so that the interrupts find it, and the stack stays small.
-constinit std::optional<Can> the_can;  // in .bss, which needs no flash
+// The drivers are static, so that the interrupts find them, and the stack stays small.
+constinit std::optional<Can> the_can;  // it is in .bss, which needs no flash
 constinit MicrosecondClock the_clock;
 constinit SlotMemory the_slot_memory;
 constinit Settings the_settings;
 constinit std::optional<bootloader::Bootloader> the_bootloader;
 
-/// A controller that was bus-off comes back after this time.
+/// Time after which a controller that was bus-off comes back.
 constexpr Microseconds bus_off_pause_us = 100'000;
 
 constexpr Microseconds recovery_poll_us = 1'000;
-/// A quarter of the watchdog's time: with its fastest clock it expires after almost three of these.
+/// Longest time between two runs, a quarter of the watchdog's time: with its fastest clock it expires after almost
+/// three of these.
 constexpr Microseconds max_pause_us = 50'000;
 
-/// The answer to bus-off, which no interrupt ends.
+/// Lets the controller recover from bus-off, whose end raises no interrupt.
 class BusRecovery {
  public:
   void follow(Microseconds now) {
@@ -71,7 +72,7 @@ class BusRecovery {
     }
     was_off_ = is_off;
   }
-  /// Its end raises no interrupt.
+  /// Time of the next look at the controller: the end of a recovery raises no interrupt.
   [[nodiscard]] Microseconds next_deadline() const {
     return the_can->recovering() ? the_clock.now() + recovery_poll_us : recover_at_;
   }
@@ -81,7 +82,7 @@ class BusRecovery {
   Microseconds recover_at_ = never;
 };
 
-/// Some at a time, so that the watchdog is fed.
+/// Takes some events at a time, so that the watchdog is fed.
 void take_events() {
   for (unsigned left = 16; left != 0; --left) {
     const Can::Event* const event = the_can->next_event();
@@ -98,8 +99,8 @@ void take_events() {
   }
 }
 
-/// Until an event of the bus or the deadline. With interrupts masked, so that none comes between the look at the events
-/// and the sleep: a masked one wakes the CPU, too (PM0214, section 2.5.1).
+/// Sleeps until an event of the bus or the deadline. Interrupts are masked, so that none comes between the look at the
+/// events and the sleep: a masked one wakes the CPU, too (PM0214, section 2.5.1).
 void sleep_until(Microseconds deadline) {
   asm volatile("cpsid i" : : : "memory");
   if (the_can->next_event() == nullptr && deadline > the_clock.now() && MicrosecondClock::wake_at(deadline)) {

@@ -1,5 +1,5 @@
-// Functions to which the compiler translates copies and comparisons. Those of the C library are fast, and four times as
-// long.
+// Functions to which the compiler translates copies and comparisons. The versions in the C library are faster, but four
+// times as long.
 
 #include <cstddef>
 #include <cstdint>

@@ -9,7 +9,7 @@ namespace proleg::stm32f405 {
 namespace {
 
 using flash_layout::image_body;
-// PM0214, section 4.4.4: the table has 98 words, so its address is a multiple of 512.
+// The vector table has 98 words, so its address must be a multiple of 512 (PM0214, section 4.4.4).
 static_assert(image_body % 512 == 0);
 
 }  // namespace
@@ -19,7 +19,7 @@ image::Place image_place() {
 }
 
 void start_program() {
-  // What the caches hold of an earlier program does not count (RM0090, section 3.5.2). They are off after a reset.
+  // The caches may hold data of an earlier program (RM0090, section 3.5.2). They are off after a reset.
   flash_interface::acr.set(flash_interface::acr_icrst | flash_interface::acr_dcrst);
   flash_interface::acr.clear(flash_interface::acr_icrst | flash_interface::acr_dcrst);
   jump_to(image_body);

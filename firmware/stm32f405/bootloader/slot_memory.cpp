@@ -8,7 +8,7 @@ namespace {
 
 using bootloader::FlashSlot;
 
-/// Twice the maximum of the data sheet for 128 KiB.
+/// Time after which an erase has failed: twice the maximum of the data sheet for 128 KiB.
 constexpr std::uint32_t erase_timeout_us = 4'000'000;
 
 constexpr const flash_layout::Sector& sector_of(FlashSlot slot) {

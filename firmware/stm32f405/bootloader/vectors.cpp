@@ -24,10 +24,10 @@ constexpr Table make_vectors() {
 
 extern "C" {
 
-/// The next start begins anew. There is no one to whom a record of the fault would be shown.
+/// A fault resets the chip. A record of the fault would have no reader.
 void fault_handler() { proleg::stm32f405::reset_chip(); }
 
-/// The compiler's tables have it in place of a virtual function that is not overridden.
+/// The compiler's tables contain this function in place of a virtual function that is not overridden.
 [[noreturn]] void __cxa_pure_virtual() { proleg::stm32f405::reset_chip(); }
 
 }  // extern "C"

@@ -22,7 +22,7 @@ inline constexpr std::uint32_t cr2_jswstart = 1U << 22U;
 inline constexpr std::uint32_t cr2_extsel_tim3_trgo = 8U << 24U;
 inline constexpr std::uint32_t cr2_exten_rising = 1U << 28U;
 
-/// 3 bits a channel: its sampling time; channels 10 to 18.
+/// Sampling times of channels 10 to 18, 3 bits for each channel.
 inline constexpr Register smpr1{base + 0x0C};
 inline constexpr std::uint32_t sampling_84_cycles = 4;
 inline constexpr std::uint32_t sampling_480_cycles = 7;
@@ -33,7 +33,7 @@ inline constexpr std::uint32_t sampling_480_cycles = 7;
 /// The regular group: SQR1 = 0 is one conversion, SQR3 its channel.
 inline constexpr Register sqr1{base + 0x2C};
 inline constexpr Register sqr3{base + 0x34};
-/// The injected group; with two conversions it begins with the third of the four places (13.3.9).
+/// The injected group. With two conversions it begins with the third of the four places (13.3.9).
 inline constexpr Register jsqr{base + 0x38};
 [[nodiscard]] constexpr std::uint32_t jsqr_of(unsigned first, unsigned second) {
   constexpr std::uint32_t two_conversions = 1U << 20U;
@@ -45,7 +45,7 @@ inline constexpr std::uint32_t jdr_mask = 0xFFF;
 
 inline constexpr std::uintptr_t dr = base + 0x4C;  ///< result of the regular group; DMA reads it
 
-/// Common to all ADCs.
+/// Register that all ADCs share.
 inline constexpr Register ccr{base + 0x304};
 inline constexpr std::uint32_t ccr_adcpre_4 = 1U << 16U;
 inline constexpr std::uint32_t ccr_tsvrefe = 1U << 23U;

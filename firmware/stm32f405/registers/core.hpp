@@ -11,13 +11,13 @@ namespace scb {
 inline constexpr std::uintptr_t base = 0xE000'ED00;
 
 inline constexpr Register icsr{base + 0x04};
-inline constexpr std::uint32_t icsr_pendsvset = 1U << 28U;  ///< a 0 does nothing
+inline constexpr std::uint32_t icsr_pendsvset = 1U << 28U;  ///< writing 0 does nothing
 
 inline constexpr Register scr{base + 0x10};
 inline constexpr std::uint32_t scr_sleeponexit = 1U << 1U;  ///< sleeps when an interrupt would return to thread mode
 inline constexpr Register vtor{base + 0x08};
 inline constexpr Register aircr{base + 0x0C};
-inline constexpr std::uint32_t aircr_sysresetreq = 0x05FA'0004;  ///< with its key
+inline constexpr std::uint32_t aircr_sysresetreq = 0x05FA'0004;  ///< the request, with the key that a write needs
 inline constexpr Register shpr3{base + 0x20};
 inline constexpr std::uint32_t shpr3_pendsv_position = 16;
 inline constexpr Register cfsr{base + 0x28};
@@ -43,7 +43,7 @@ inline constexpr unsigned interrupt_count = 82;
 
 namespace nvic {
 
-/// Priority 0 (first) to 15: only the upper four bits exist.
+/// Sets the priority, 0 (first) to 15: only the upper four bits exist.
 inline void set_priority(Interrupt interrupt, std::uint32_t priority) {
   const auto position = static_cast<std::uint32_t>(interrupt);
   const std::uint32_t shift = 8U * (position % 4U);

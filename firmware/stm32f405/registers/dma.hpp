@@ -13,8 +13,8 @@ inline constexpr std::uintptr_t dma2 = 0x4002'6400;
 struct Stream {
   Register cr, ndtr, par, m0ar;
   Register flags;          ///< LISR or HISR
-  Register clear;          ///< LIFCR or HIFCR: a 1 clears
-  std::uint32_t position;  ///< of the stream's flags in them
+  Register clear;          ///< LIFCR or HIFCR: writing 1 clears the flag
+  std::uint32_t position;  ///< position of the stream's flags in these registers
 
   constexpr Stream(std::uintptr_t controller, unsigned number)
       : cr(controller + 0x10 + 0x18 * number),
@@ -40,7 +40,7 @@ inline constexpr std::uint32_t cr_msize_16 = 1U << 13U;
 [[nodiscard]] constexpr std::uint32_t cr_channel(unsigned channel) { return channel << 25U; }
 
 inline constexpr std::uint32_t flag_half = 1U << 4U;      ///< half of the buffer is done
-inline constexpr std::uint32_t flag_complete = 1U << 5U;  ///< all of it is
+inline constexpr std::uint32_t flag_complete = 1U << 5U;  ///< all of the buffer is done
 inline constexpr std::uint32_t all_flags = 0x3D;
 
 }  // namespace proleg::stm32f405::dma

@@ -13,14 +13,14 @@ inline constexpr std::uint32_t acr_latency_mask = 7U;
 inline constexpr std::uint32_t acr_prften = 1U << 8U;
 inline constexpr std::uint32_t acr_icen = 1U << 9U;
 inline constexpr std::uint32_t acr_dcen = 1U << 10U;
-inline constexpr std::uint32_t acr_icrst = 1U << 11U;  ///< only while ICEN = 0
-inline constexpr std::uint32_t acr_dcrst = 1U << 12U;  ///< only while DCEN = 0
+inline constexpr std::uint32_t acr_icrst = 1U << 11U;  ///< may be set only while ICEN = 0
+inline constexpr std::uint32_t acr_dcrst = 1U << 12U;  ///< may be set only while DCEN = 0
 
 inline constexpr Register keyr{base + 0x04};
 inline constexpr std::uint32_t keyr_key1 = 0x4567'0123;
 inline constexpr std::uint32_t keyr_key2 = 0xCDEF'89AB;
 
-inline constexpr Register sr{base + 0x0C};  ///< a 1 clears the flags
+inline constexpr Register sr{base + 0x0C};  ///< writing 1 clears a flag
 inline constexpr std::uint32_t sr_eop = 1U << 0U;
 inline constexpr std::uint32_t sr_operr = 1U << 1U;
 inline constexpr std::uint32_t sr_wrperr = 1U << 4U;
@@ -34,7 +34,7 @@ inline constexpr Register cr{base + 0x10};
 inline constexpr std::uint32_t cr_pg = 1U << 0U;
 inline constexpr std::uint32_t cr_ser = 1U << 1U;
 inline constexpr std::uint32_t cr_snb_position = 3;
-inline constexpr std::uint32_t cr_psize_32 = 2U << 8U;  ///< 2.7 to 3.6 V
+inline constexpr std::uint32_t cr_psize_32 = 2U << 8U;  ///< for 2.7 to 3.6 V
 inline constexpr std::uint32_t cr_strt = 1U << 16U;
 inline constexpr std::uint32_t cr_lock = 1U << 31U;
 

@@ -15,10 +15,10 @@ inline constexpr std::uint32_t cr_csson = 1U << 19U;  ///< clock security system
 inline constexpr std::uint32_t cr_pllon = 1U << 24U;
 inline constexpr std::uint32_t cr_pllrdy = 1U << 25U;
 
-/// f(VCO) = f(HSE) / M * N, f(SYSCLK) = f(VCO) / P, f(48 MHz) = f(VCO) / Q.
+/// Factors of the PLL: f(VCO) = f(HSE) / M * N, f(SYSCLK) = f(VCO) / P, f(48 MHz) = f(VCO) / Q.
 inline constexpr Register pllcfgr{base + 0x04};
 inline constexpr std::uint32_t pllcfgr_pllsrc_hse = 1U << 22U;
-/// M, N, P, source and Q; the bits between are reserved and stay.
+/// Fields M, N, P, source and Q; the bits between are reserved and must not change.
 inline constexpr std::uint32_t pllcfgr_mask = 0x0F43'7FFF;
 [[nodiscard]] constexpr std::uint32_t pllcfgr_of(std::uint32_t m, std::uint32_t n, std::uint32_t p, std::uint32_t q) {
   return m | n << 6U | (p / 2U - 1U) << 16U | q << 24U;
@@ -36,7 +36,8 @@ inline constexpr std::uint32_t cfgr_ppre1_4 = 5U << 10U;
 inline constexpr std::uint32_t cfgr_ppre2_2 = 4U << 13U;
 
 inline constexpr Register cir{base + 0x0C};
-inline constexpr std::uint32_t cir_cssf = 1U << 7U;  ///< the clock security system has seen the crystal stop
+/// The clock security system has detected that the crystal has stopped.
+inline constexpr std::uint32_t cir_cssf = 1U << 7U;
 
 inline constexpr Register ahb1enr{base + 0x30};
 inline constexpr std::uint32_t ahb1enr_gpioa = 1U << 0U;
@@ -56,7 +57,7 @@ inline constexpr std::uint32_t apb1enr_pwr = 1U << 28U;
 inline constexpr Register apb2enr{base + 0x44};
 inline constexpr std::uint32_t apb2enr_adc1 = 1U << 8U;
 
-/// Flags of what reset the chip; they add up until RMVF clears them.
+/// Flags of the causes of resets; they accumulate until RMVF clears them.
 inline constexpr Register csr{base + 0x74};
 inline constexpr std::uint32_t csr_rmvf = 1U << 24U;
 inline constexpr std::uint32_t csr_borrstf = 1U << 25U;

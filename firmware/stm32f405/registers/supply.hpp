@@ -28,7 +28,7 @@ inline constexpr std::uint32_t line_pvd = 1U << 16U;
 inline constexpr Register imr{base + 0x00};
 inline constexpr Register rtsr{base + 0x08};
 inline constexpr Register ftsr{base + 0x0C};
-inline constexpr Register pr{base + 0x14};  ///< a 1 clears
+inline constexpr Register pr{base + 0x14};  ///< writing 1 clears a flag
 
 }  // namespace exti
 }  // namespace proleg::stm32f405

@@ -21,7 +21,7 @@ class Timer {
   [[nodiscard]] constexpr Register dier() const { return Register(base_ + 0x0C); }
   static constexpr std::uint32_t dier_cc1ie = 1U << 1U;
 
-  /// Flags; a 0 clears, a 1 does nothing.
+  /// Flags. Writing 0 clears a flag, writing 1 does nothing.
   [[nodiscard]] constexpr Register sr() const { return Register(base_ + 0x10); }
   static constexpr std::uint32_t sr_uif = 1U << 0U;
   static constexpr std::uint32_t sr_cc1if = 1U << 1U;
@@ -36,7 +36,7 @@ class Timer {
   [[nodiscard]] constexpr Register ccer() const { return Register(base_ + 0x20); }
   static constexpr std::uint32_t ccer_cc1e = 1U << 0U;
 
-  /// Always inlined, for code that runs from RAM.
+  /// Always inlined, because code that runs from RAM uses it.
   [[nodiscard, gnu::always_inline]] constexpr Register cnt() const { return Register(base_ + 0x24); }
   [[nodiscard]] constexpr Register psc() const { return Register(base_ + 0x28); }  ///< divides by its value + 1
   [[nodiscard]] constexpr Register arr() const { return Register(base_ + 0x2C); }  ///< the last count before it wraps

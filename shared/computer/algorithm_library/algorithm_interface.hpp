@@ -1,9 +1,9 @@
 #pragma once
 
-// What a library with a user's algorithm exports (docs/user-algorithms.md). tools/cmake/user_algorithm.cmake writes the
-// source that does it. The library contains its own copy of the core's code, so a program takes from it nothing but the
-// object below and the algorithm that it names. All of the object is constant: a program checks it before it calls
-// anything.
+// The object that a library with a user's algorithm exports (docs/user-algorithms.md). tools/cmake/user_algorithm.cmake
+// writes the source with this object. The library contains its own copy of the core's code, so a program takes from it
+// only the object below and the algorithm that it names. The whole object is constant: a program checks it before it
+// calls anything.
 
 #include <array>
 #include <cstddef>
@@ -14,12 +14,13 @@
 
 namespace proleg {
 
-/// Changes when AlgorithmInterface, or the meaning of what an algorithm is given, changes.
+/// Version of the interface. It changes when AlgorithmInterface, or the meaning of the arguments of an algorithm,
+/// changes.
 inline constexpr std::uint32_t algorithm_interface_version = 1;
 /// Name of the exported object.
 inline constexpr const char* algorithm_interface_symbol = "proleg_algorithm_interface";
 
-/// A fact on which the program and the library must agree, whatever compiler has made them.
+/// A fact on which the program and the library must agree, whatever compilers have made them.
 struct LayoutFact {
   const char* name;
   std::uint32_t value;
@@ -49,8 +50,8 @@ struct AlgorithmInterface {
   std::array<char, 8> mark{'p', 'r', 'o', 'l', 'e', 'g', 'a', 'l'};
   std::uint32_t version = algorithm_interface_version;
   std::uint32_t size = sizeof(AlgorithmInterface);
-  std::uint32_t core = core_fingerprint;  ///< of the core whose headers and sources are in the library
-  std::uint32_t sources;                  ///< as Declaration::sources
+  std::uint32_t core = core_fingerprint;  ///< fingerprint of the core whose headers and sources are in the library
+  std::uint32_t sources;                  ///< Declaration::sources of the algorithm
   std::array<std::uint32_t, algorithm_layout.size()> layout;
   const ActuationModule& (*algorithm)();
 };

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
-#include "shared/computer/errors/file_kind.hpp"
+#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* compile_again = "; compile the library again with this checkout of Proleg";
 
-/// Why dlopen() failed, without the path that the message already has.
+/// The reason why dlopen() failed, without the path, which is in the message already.
 std::string loader_error(const std::string& path) {
   const char* const text = dlerror();
   std::string error = text == nullptr ? "unknown reason" : text;
@@ -55,7 +55,7 @@ void check(const AlgorithmInterface& interface, const std::string& file) {
   }
 }
 
-/// Runs a function of the library that has no tick yet.
+/// Runs a function of the library to which no tick belongs.
 template <typename Function>
 void ask(const std::string& file, const char* name, const char* what, Function&& function) {
   CallFailure failure;
@@ -66,7 +66,7 @@ void ask(const std::string& file, const char* name, const char* what, Function&&
 
 std::vector<std::unique_ptr<const GuardedAlgorithm>>& loaded_algorithms() {
   static auto& owned = *new std::vector<std::unique_ptr<const GuardedAlgorithm>>;
-  return owned;  // never destroyed: kernels name them until the end
+  return owned;  // it is never destroyed, because kernels name the algorithms until the end
 }
 
 }  // namespace
@@ -93,7 +93,8 @@ std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) 
     throw InputError(path.empty() ? in_quotes(path) : path, 0, *found,
                      "the library of an algorithm, as 'proleg new algorithm' makes it");
   }
-  const std::string absolute = std::filesystem::absolute(path).string();  // otherwise the loader searches its folders
+  // The loader would search its folders for a name without a folder.
+  const std::string absolute = std::filesystem::absolute(path).string();
   void* library = nullptr;
   ask(path, "dlopen", "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
   if (library == nullptr) {

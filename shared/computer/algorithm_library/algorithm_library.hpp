@@ -11,10 +11,10 @@
 
 namespace proleg {
 
-/// Loads a library and checks it. Nothing of it is called before its interface has been read; what a library does when
-/// it is loaded is guarded too. The library stays loaded until the program ends. Throws InputError: there is no such
-/// file, it is no library for this computer, it has no interface or one of another version, core or layout, its
-/// declaration is wrong, or it fails while it is asked.
+/// Loads a library and checks it. No function of it is called before its interface has been read; the code that a
+/// library runs when it is loaded is guarded, too. The library stays loaded until the program ends. Throws InputError
+/// if the file is missing, is no library for this computer, has no interface or one of another version, core or layout,
+/// has a wrong declaration, or fails during these calls.
 [[nodiscard]] std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path);
 
 /// Checks an interface and makes its algorithm. file: for messages. Throws InputError.

@@ -16,7 +16,7 @@ void copy_text(std::string_view from, CapturedDeclaration::Text<capacity>& to) {
   std::copy_n(from.data(), std::min(from.size(), capacity), to.characters.begin());
 }
 
-/// Names are words of files and of the command line.
+/// Whether a text can be a name: names are words in files, and arguments of the command line.
 bool is_name(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   return !text.empty() && is_letter(text.front()) &&

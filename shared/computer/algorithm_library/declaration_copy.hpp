@@ -15,7 +15,7 @@ struct CapturedDeclaration {
   static constexpr std::size_t max_name = 60;
   static constexpr std::size_t max_help = 400;
 
-  /// Too long texts and lists are cut, and `size` is what they should have been.
+  /// A text or list of limited size. If it is too long it is cut, and `size` is its original size.
   template <std::size_t capacity>
   struct Text {
     std::array<char, capacity> characters;
@@ -49,7 +49,8 @@ struct CapturedDeclaration {
 /// A declaration that owns its texts and lists.
 class DeclarationCopy {
  public:
-  /// Checks all rules of docs/user-algorithms.md. file: of the library. Throws InputError, which names what breaks one.
+  /// Checks all rules of docs/user-algorithms.md. file: name of the library. Throws InputError, which names the value
+  /// that breaks a rule.
   DeclarationCopy(const CapturedDeclaration& captured, const std::string& file);
   DeclarationCopy(const DeclarationCopy&) = delete;
   DeclarationCopy& operator=(const DeclarationCopy&) = delete;

@@ -18,15 +18,15 @@ namespace {
 
 using Array = GuardedArrays::Array;
 
-/// Some functions are not told for which joint they compute. The parameters that they get are those of a slot on a
-/// joint, so the last call with a joint and the same parameters says it.
+/// The joint of a call. Some functions do not receive the joint for which they compute. Their parameters are those of a
+/// slot on a joint, so the last call with a joint and the same parameters identifies it.
 struct KnownJoint {
   const std::int32_t* parameters = nullptr;
   unsigned joint = 0;
   std::optional<std::uint32_t> tick;
 };
 
-/// What a thread needs for its calls.
+/// Memory of a thread for its calls.
 struct ThreadMemory {
   GuardedArrays arrays;
   std::array<KnownJoint, 256> joints;
@@ -62,7 +62,7 @@ class GuardedAlgorithm::Call {
     given_[given_count_++] = {array, {values, count}, nullptr};
     return memory_.arrays.place(array, {values, count});
   }
-  /// The values come back when the call has ended well.
+  /// Passes values in an array of the call. They are copied back when the call has ended without an error.
   std::int32_t* lend(Array array, std::int32_t* values, std::size_t count) {
     given_[given_count_++] = {array, {values, count}, values};
     return memory_.arrays.place(array, {values, count});

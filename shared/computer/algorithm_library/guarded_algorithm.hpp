@@ -11,27 +11,27 @@
 
 namespace proleg {
 
-/// A user's algorithm has failed. what() is one line that names library, algorithm, function, tick and joint as far as
-/// they are known, and what it did.
+/// The failure of a user's algorithm. what() is one line with the error, and library, algorithm, function, tick and
+/// joint as far as they are known.
 class AlgorithmFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What an algorithm reads of its module and its robot.
+/// The inputs that an algorithm reads from its module and its robot.
 struct Senses {
   bool contacts = false;
   std::uint8_t readings = 0;
 };
 
-/// A user's algorithm, called so that its mistakes are reported: it may throw, crash, loop, and write beside its
-/// arrays. Each function then throws AlgorithmFailure, through the core too, which has no code to clean up. Once it has
-/// failed, all later calls fail with the same text, without a call.
+/// A user's algorithm, called so that its errors are reported: it may throw, crash, loop, and write outside its arrays.
+/// Each function then throws AlgorithmFailure, also through the core, which has no code to clean up. After a failure
+/// all later calls fail with the same text, without a call.
 ///
 /// Threads may use it at the same time.
 class GuardedAlgorithm final : public ActuationModule {
  public:
-  /// file: of the library, for messages. foreign: must outlive this object. captured: its declaration. Throws
+  /// file: name of the library, for messages. foreign: must outlive this object. captured: its declaration. Throws
   /// InputError if that is wrong.
   GuardedAlgorithm(std::string file, const ActuationModule& foreign, const CapturedDeclaration& captured,
                    Senses senses);
@@ -59,7 +59,7 @@ class GuardedAlgorithm final : public ActuationModule {
   const ActuationModule& foreign_;
   DeclarationCopy copy_;
   Senses senses_;
-  std::string subject_;  ///< of the messages
+  std::string subject_;  ///< subject of the messages
   mutable std::atomic<bool> has_failed_ = false;
   mutable std::mutex mutex_;
   mutable std::string failure_;

@@ -11,12 +11,12 @@ namespace proleg {
 namespace {
 
 constexpr std::int32_t pattern = 0x5A5AA5A5;
-/// Values before an array that are looked at: an index that is wrong by more is rare, and the look costs time.
+/// Number of values before an array that are checked. An index that is wrong by more is rare, and the check takes time.
 constexpr std::size_t front_values = 128;
 // The smallest page has 4096 bytes.
 static_assert((front_values + GuardedArrays::most_values) * sizeof(std::int32_t) <= 4096);
-/// Pages that do not exist, before and behind each array. In the first half of them an access is meant for the array
-/// before, in the second half for the array behind.
+/// Number of pages that do not exist before and behind each array. An access in the first half of them is meant for the
+/// array before, one in the second half for the array behind.
 constexpr std::size_t gap_pages = 16;
 constexpr std::array<const char*, GuardedArrays::array_count> names{"parameters", "derived", "state", "next", "frame"};
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The last line of a program that cannot go on.
+// The last line of a program that cannot continue.
 
 #include <unistd.h>
 
@@ -9,8 +9,8 @@
 
 namespace proleg {
 
-/// One line on standard error, without a lock or memory of the C library: a signal handler may print it, also if that
-/// library is damaged. A text of 1000 bytes and more is cut.
+/// Writes one line to standard error, without a lock or memory of the C library: a signal handler may print it, also if
+/// that library is damaged. A text of 1000 bytes and more is cut.
 class LastLine {
  public:
   LastLine& operator<<(const char* text) {
@@ -23,7 +23,7 @@ class LastLine {
   /// Prints the line; the exit status is 1.
   [[noreturn]] void end_program() {
     text_[length_++] = '\n';
-    // A failure has no place where it could be printed.
+    // A failure cannot be reported anywhere.
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text_.data(), length_);
     _exit(1);
   }

@@ -29,7 +29,7 @@ void close_all_but(std::span<const int> kept) {
 void leave_parent(std::span<const int> kept, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) {
-    _exit(0);  // the parent ended before prctl()
+    _exit(0);  // the parent ended before the call of prctl()
   }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     std::signal(signal, SIG_IGN);
@@ -37,7 +37,8 @@ void leave_parent(std::span<const int> kept, pid_t parent) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  // Above all the other children's sockets: while this process held them, those would not see the parent's end.
+  // The other children's sockets must be closed above all: while this process held them, those children would not
+  // notice the parent's end.
   close_all_but(kept);
   if (const int nothing = open("/dev/null", O_RDWR); nothing >= 0) {
     dup2(nothing, STDIN_FILENO);

@@ -5,10 +5,10 @@
 
 namespace proleg {
 
-/// The bytes in zlib format (RFC 1950), as browsers and Python read it. Throws std::bad_alloc.
+/// Compresses bytes to the zlib format (RFC 1950), which browsers and Python read. Throws std::bad_alloc.
 [[nodiscard]] std::string deflate(std::string_view bytes);
 
-/// RFC 4648, with padding.
+/// Encodes bytes with base64 (RFC 4648), with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
 }  // namespace proleg

@@ -6,8 +6,9 @@
 
 namespace proleg {
 
-/// Measured durations, in a unit that the user chooses: how many, and which value a share of them does not exceed.
-/// Keeps three significant digits of each, rounded to the nearest, so that a long run needs little memory.
+/// Measured durations, in a unit that the user chooses: their number, and the value that a share of them does not
+/// exceed. Keeps three significant digits of each duration, rounded to the nearest, so that a long run needs little
+/// memory.
 class Durations {
  public:
   void add(std::uint64_t duration);
@@ -18,7 +19,7 @@ class Durations {
   [[nodiscard]] std::optional<std::uint64_t> median() const { return percentile(50); }
 
  private:
-  std::map<std::uint64_t, std::uint64_t> counts_;  ///< by duration
+  std::map<std::uint64_t, std::uint64_t> counts_;  ///< number of durations with each value
   std::uint64_t count_ = 0;
 };
 

@@ -84,7 +84,7 @@ void ChangePlan::decide_tick(std::uint32_t earliest) {
 void ChangePlan::commit_next() { ++next_; }
 
 void ChangePlan::drop_next() {
-  decide_tick(0);  // those behind it need a change before them that has a tick
+  decide_tick(0);  // the changes behind it need a tick before theirs
   changes_[next_].dropped = true;
   ++next_;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// The changes that the master makes in flight: which one is next, which wait for their tick, and the SDO writes of
-// each.
+// The changes that the master makes in flight: the next one, those that wait for their tick, and the SDO writes of each
+// change.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,14 +16,15 @@ namespace proleg::canopen {
 struct ChangedValue {
   std::uint8_t slot = 0;
   std::uint8_t joint = 0;   ///< kernel order
-  std::uint8_t number = 0;  ///< of the parameter or internal value
+  std::uint8_t number = 0;  ///< number of the parameter or internal value
   bool internal = false;
   std::int32_t value = 0;
 };
 
-/// Values that take effect together. At most max_staged_values of one joint.
+/// Values that take effect together, at most max_staged_values of one joint.
 struct Change {
-  /// As `tick`: the master decides, when all modules have the values. So a slow connection delays the change.
+  /// Value of `tick`: the master chooses the tick when all modules have the values. So a slow connection delays the
+  /// change.
   static constexpr std::uint32_t soon = 0xFFFF'FFFF;
 
   std::uint32_t tick = 0;
@@ -31,21 +32,21 @@ struct Change {
   bool dropped = false;  ///< set by the master: the change was not made (see Problem)
 };
 
-/// Change n travels as transaction n + 1 (modulo 65535), which is opened in every module.
+/// Change n is sent as transaction n + 1 (modulo 65535), which is opened in every module.
 class ChangePlan {
  public:
-  /// Committed transactions that a module holds beside the open one.
+  /// Greatest number of committed transactions that a module holds beside the open one.
   static constexpr std::size_t max_pending = max_transactions - 1;
 
-  /// kernel and changes must outlive the plan. Clears `dropped` of all changes from this one on: those before are made.
+  /// kernel and changes must outlive the plan. Clears `dropped` of all changes from `next` on; those before are made.
   ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes, std::size_t next = 0);
 
-  /// More changes: the earlier ones, as they are now, and new ones behind them.
+  /// Adds changes. changes: the earlier ones, as they are now, and new ones behind them.
   void extend(std::span<Change> changes) { changes_ = changes; }
 
-  /// The first change from next() on that is not possible: with a value that its joint does not have, more than
-  /// max_staged_values of a joint, or a tick not later than that of the change before (any number of changes may be
-  /// `soon`, one after the other).
+  /// The first change from next() on that is not possible. It has a value that its joint does not have, more than
+  /// max_staged_values of a joint, or a tick not later than that of the change before. (Any number of successive
+  /// changes may be `soon`.)
   [[nodiscard]] std::optional<std::size_t> find_bad() const;
 
   /// The next change to stage; size() if all are committed or dropped.
@@ -58,18 +59,18 @@ class ChangePlan {
 
   /// Whether there is a next change and the modules have room for it beside the pending ones.
   [[nodiscard]] bool can_stage() const;
-  /// Decides the tick of the next change, if it is `soon`: the first one from this on that is later than the change
-  /// before.
+  /// Decides the tick of the next change, if it is `soon`: the first tick from `earliest` on that is later than the
+  /// change before.
   void decide_tick(std::uint32_t earliest);
   void commit_next();
   void drop_next();
   /// Notes that committed changes for this tick and earlier ones are in force.
   void pass(std::uint32_t tick);
 
-  /// The n-th write that stages a change in the module of a joint.
+  /// Write number n of those that stage a change in the module of a joint; nothing behind the last one.
   [[nodiscard]] std::optional<SdoWrite> staging(std::size_t change, unsigned joint, std::size_t n) const;
-  /// The n-th write that repeats, for one joint, the parameters set by the changes before `end`. (The gait has
-  /// overwritten their internal values since.)
+  /// Write number n of those that repeat, for one joint, the parameters that the changes before `end` have set; nothing
+  /// behind the last one. (The gait has overwritten their internal values since.)
   [[nodiscard]] std::optional<SdoWrite> parameter_write(std::size_t end, unsigned joint, std::size_t n) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace proleg::canopen {
 
-/// All modules stop waiting for configuration.
+/// The request by which all modules stop waiting for configuration.
 [[nodiscard]] constexpr CanFrame lss_release_request() {
   return lss::make(identifier::lss_request, lss::Service::switch_state_global,
                    static_cast<std::uint8_t>(lss::State::waiting));
@@ -18,7 +18,7 @@ namespace proleg::canopen {
 
 class LssExchange {
  public:
-  /// What counts as an answer.
+  /// Frames that are an answer to the request.
   struct Answer {
     std::uint16_t identifier;
     std::uint8_t length;
@@ -32,15 +32,15 @@ class LssExchange {
     return {frame.identifier, frame.length, frame.data[0]};
   }
 
-  /// send_timeout_us: of a frame that no node acknowledges. settle_us: after an answer.
+  /// send_timeout_us: for a frame that no node acknowledges. settle_us: time without a frame after an answer.
   LssExchange(CanPort& port, Microseconds send_timeout_us, Microseconds settle_us)
       : port_(port), send_timeout_us_(send_timeout_us), settle_us_(settle_us) {}
 
-  /// wait_us: for an answer, after the request was sent.
+  /// Begins an exchange. wait_us: time for an answer, after the request was sent.
   void begin(Microseconds now, const CanFrame& request, const Answer& answer, Microseconds wait_us);
-  /// A request without an answer: ends when it was sent.
+  /// Begins an exchange with a request without an answer: it ends when the request was sent.
   void begin(Microseconds now, const CanFrame& request) { begin(now, request, {}, 0); }
-  /// Whatever happens from now on belongs to no exchange.
+  /// Ends the exchange: frames from now on do not belong to one.
   void cancel() { deadline_ = never; }
 
   void receive(Microseconds now, const CanFrame& frame);
@@ -48,10 +48,10 @@ class LssExchange {
 
   [[nodiscard]] Microseconds deadline() const { return deadline_; }
   [[nodiscard]] bool has_ended(Microseconds now) const { return now >= deadline_; }
-  // After the end:
+  // Result of an exchange that has ended.
   [[nodiscard]] bool is_sent() const { return is_sent_; }
   [[nodiscard]] bool is_answered() const { return is_answered_; }
-  /// From begin() to the first answer.
+  /// Time from begin() to the first answer.
   [[nodiscard]] Microseconds answer_delay() const { return answer_delay_; }
   /// The second byte of the answer; of several answers, the first one that is not lss::ok.
   [[nodiscard]] std::uint8_t error() const { return error_; }

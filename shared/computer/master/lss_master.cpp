@@ -61,13 +61,13 @@ void LssMaster::exchange(Microseconds now) {
       exchange_.begin(now, request(), LssExchange::of(Service::identified), options_.first_answer_timeout_us);
       break;
     case Step::configure:
-      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), patience_us_);
+      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), answer_time_us_);
       break;
     case Step::store:
       exchange_.begin(now, request(), LssExchange::of(Service::store_configuration), options_.store_timeout_us);
       break;
     default:
-      exchange_.begin(now, request(), LssExchange::of(Service::identified), patience_us_);
+      exchange_.begin(now, request(), LssExchange::of(Service::identified), answer_time_us_);
       break;
   }
 }
@@ -94,8 +94,9 @@ CanFrame LssMaster::request() const {
   return lss_release_request();
 }
 
-/// How often the present request is sent, if there is no answer. Without an answer a bit of an address is 1. That is
-/// asked once, since every second bit is 1; if the address is wrong, it is scanned again with more patience.
+/// Number of times that the present request is sent if there is no answer. A bit of an address without an answer is 1.
+/// A bit is asked once in the first scan, since every second bit is 1. If the address is wrong, it is scanned again
+/// with more attempts.
 unsigned LssMaster::attempts() const { return step_ == Step::bit && scans_ == 0 ? 1 : options_.attempts; }
 
 void LssMaster::receive(Microseconds now, const CanFrame& frame) { exchange_.receive(now, frame); }
@@ -118,7 +119,7 @@ void LssMaster::poll(Microseconds now) {
   conclude(now);
 }
 
-/// The answers to the request have come, or none.
+/// Ends the step: all answers to the request have come, or there is none.
 void LssMaster::conclude(Microseconds now) {
   switch (step_) {
     case Step::release_all:
@@ -126,7 +127,7 @@ void LssMaster::conclude(Microseconds now) {
       return;
     case Step::begin:
       if (exchange_.is_answered()) {
-        patience_us_ = std::max(3 * exchange_.answer_delay(), options_.answer_timeout_us);
+        answer_time_us_ = std::max(3 * exchange_.answer_delay(), options_.answer_timeout_us);
         sub_ = 0;
         scan_number(now);
       } else {
@@ -201,7 +202,7 @@ void LssMaster::repeat_scan(Microseconds now) {
   }
 }
 
-/// The module has selected itself.
+/// Gives a node id to the module, which has selected itself.
 void LssMaster::assign(Microseconds now) {
   module_ = find_entry();
   if (module_ == nullptr) {
@@ -243,7 +244,8 @@ void LssMaster::fail(LssProblem problem, std::uint8_t detail) {
   problem_ = problem;
   problem_detail_ = detail;
   exchange_.cancel();
-  // No module stays selected: it would be configured with the next one. If that is lost, the next start releases it.
+  // No module stays selected: it would be configured with the next one. If this frame is lost, the next start releases
+  // the module.
   static_cast<void>(port_.send(lss_release_request()));
 }
 

@@ -13,50 +13,53 @@
 
 namespace proleg::canopen {
 
-/// A module that is to have a node id.
+/// A module that needs a node id.
 struct LssModule {
   std::uint8_t node = 0;     ///< the node id that it will have, 1 to 126
-  std::uint32_t serial = 0;  ///< that the module must have (0x1018:4); 0: any that no other entry names
+  std::uint32_t serial = 0;  ///< serial number that the module must have (0x1018:4); 0: any that no other entry names
   bool has_booted = false;   ///< result: a module was found, and has booted with the node id
-  LssAddress address{};      ///< result: of that module
+  LssAddress address{};      ///< result: the address of that module
 };
 
 struct LssMasterOptions {
-  /// Numbers that most modules have: they are tried first, a frame instead of 33. 0: not known.
+  /// Numbers that most modules have. They are tried first, with one frame instead of 33. 0: not known.
   LssAddress usual{object::vendor.default_value, 0, object::revision.default_value, 0};
-  bool stores = true;     ///< the modules keep the node id
-  unsigned attempts = 1;  ///< of each request, if there is no answer; more for a connection that loses frames
+  bool stores = true;  ///< whether the modules store the node id
+  /// Number of times that a request is sent without an answer; more for a connection that loses frames.
+  unsigned attempts = 1;
   Microseconds answer_timeout_us = 10'000;
-  /// Of the first request, 'is there a module?'. If its answer takes long, as over a radio, the master waits for
-  /// further answers three times as long, and at least answer_timeout_us.
+  /// Time for the answer to the first request, 'is there a module?'. If its answer takes long, as over a radio, the
+  /// master waits for further answers three times as long, and at least answer_timeout_us.
   Microseconds first_answer_timeout_us = 10'000;
-  Microseconds settle_us = 2'000;  ///< without an answer before the next request
+  Microseconds settle_us = 2'000;  ///< time without an answer before the next request
   Microseconds store_timeout_us = storing_time_us;
   Microseconds boot_timeout_us = 100'000;
-  Microseconds send_timeout_us = 1'000'000;  ///< of a frame that no node acknowledges
+  Microseconds send_timeout_us = 1'000'000;  ///< time-out of a frame that no node acknowledges
 };
 
 enum class LssProblem : std::uint8_t {
   none,
-  not_sent,           ///< no node acknowledges: no other is on the bus, or all have another bit rate
-  scan_failed,        ///< a module answered, then not; detail: the number of the address that was asked for, 0 to 3
-  unexpected_module,  ///< found() is not in the list, or the list is used up
-  no_answer,          ///< of the module that was found, to 'configure node id' or 'store'; detail: the service
-  node_refused,       ///< detail: error code
-  store_refused,      ///< detail: error code; 255: the module does not write its flash in its present state
-  not_released,       ///< of LssRenumbering: another module stays selected
+  not_sent,     ///< no node acknowledges: no other node is on the bus, or all have another bit rate
+  scan_failed,  ///< a module answered at first, and then no more; detail: number of the address that was asked for, 0
+                ///< to 3
+  unexpected_module,  ///< found() is not in the list, or all entries are used
+  no_answer,          ///< the module that was found does not answer 'configure node id' or 'store'; detail: the service
+  node_refused,       ///< the module has refused the node id; detail: error code
+  store_refused,      ///< the module has refused to store; detail: error code; 255: it does not write its flash in its
+                      ///< present state
+  not_released,       ///< only from LssRenumbering: another module stays selected
   no_boot_up,         ///< the module does not boot; detail: the node id
 };
-/// One short phrase for people.
+/// A short phrase that describes the problem, for people.
 [[nodiscard]] std::string_view describe(LssProblem problem);
 
 class LssMaster {
  public:
   enum class State : std::uint8_t { idle, working, done, failed };
-  /// A scan is repeated so often, if a module leaves meanwhile.
+  /// Greatest number of scans, if a module leaves the bus meanwhile.
   static constexpr unsigned max_scans = 3;
 
-  /// port: used by this master only. modules must outlive the master.
+  /// port: must be used by this master only. modules: must outlive the master.
   LssMaster(CanPort& port, std::span<LssModule> modules, const LssMasterOptions& options = {})
       : port_(port),
         modules_(modules),
@@ -65,13 +68,14 @@ class LssMaster {
   LssMaster(const LssMaster&) = delete;
   LssMaster& operator=(const LssMaster&) = delete;
 
-  /// Done when no module without a node id answers. Then modules that were not found have no `has_booted`.
+  /// Starts. The master is done when no module without a node id answers. Modules that were not found have no
+  /// `has_booted`.
   void start(Microseconds now);
 
   void receive(Microseconds now, const CanFrame& frame);
-  /// The controller has sent a frame of the master.
+  /// Must be called when the controller has sent a frame of the master.
   void transmitted(Microseconds now, const CanFrame& frame);
-  /// Handles the deadline that has passed; must be called at next_deadline() or later.
+  /// Handles time-outs. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return exchange_.deadline(); }
 
@@ -80,20 +84,20 @@ class LssMaster {
   [[nodiscard]] std::uint8_t problem_detail() const { return problem_detail_; }
   /// The address of the module that was found last.
   [[nodiscard]] const LssAddress& found() const { return address_; }
-  /// Modules that have booted with their node id.
+  /// Number of modules that have booted with their node id.
   [[nodiscard]] unsigned assigned() const { return assigned_; }
 
  private:
-  /// The request that was sent last, or what is waited for.
+  /// The request that was sent last, or the event that the master waits for.
   enum class Step : std::uint8_t {
-    release_all,  ///< at the start: modules that another master has selected
-    begin,        ///< is there a module without a node id?
-    guess,        ///< a usual number as a whole
-    bit,          ///< is the next lower bit 0?
-    verify,       ///< the number that the bits have given
+    release_all,  ///< at the start: release modules that another master has selected
+    begin,        ///< ask whether there is a module without a node id
+    guess,        ///< ask for a usual number as a whole
+    bit,          ///< ask whether the next lower bit is 0
+    verify,       ///< ask for the number that the bits have given
     configure,
     store,
-    release,  ///< of the module that was configured: it boots
+    release,  ///< release the module that was configured: it boots
   };
 
   void send(Microseconds now, Step step);
@@ -117,15 +121,15 @@ class LssMaster {
   LssProblem problem_ = LssProblem::none;
   std::uint8_t problem_detail_ = 0;
   Step step_ = Step::release_all;
-  Microseconds patience_us_ = 0;  ///< for the answers of this connection
-  unsigned tries_ = 0;            ///< of the present request
-  std::uint8_t sub_ = 0;          ///< the number that is scanned
+  Microseconds answer_time_us_ = 0;  ///< time for answers on this connection
+  unsigned tries_ = 0;               ///< number of times that the present request was sent
+  std::uint8_t sub_ = 0;             ///< position of the number that is scanned
   std::uint8_t bit_ = 0;
   std::uint32_t number_ = 0;
   unsigned scans_ = 0;
   unsigned assigned_ = 0;
   LssAddress address_{};
-  LssModule* module_ = nullptr;  ///< the one that is configured
+  LssModule* module_ = nullptr;  ///< the module that is configured
   LssExchange exchange_;
 };
 

@@ -8,7 +8,7 @@ using lss::Service;
 
 namespace {
 
-/// One of them may be lost.
+/// Number of frames that release modules: one of them may be lost.
 constexpr unsigned releases = 2;
 
 }  // namespace
@@ -53,12 +53,13 @@ void LssRenumbering::send(Microseconds now, Step step) {
   }
 }
 
-/// At another try the module may have its new node id already, and its boot-up message was lost.
+/// The node id that the reset is sent to. At another attempt the module may have its new node id already, if its
+/// boot-up message was lost.
 std::uint8_t LssRenumbering::node_to_reset() const {
   return options_.reset_node != 0 && tries_ % 2 == 0 ? modules_[position_].node : options_.reset_node;
 }
 
-/// Sends the next number of the address; the module answers the last one.
+/// Sends the next number of the address. The module answers the last one.
 void LssRenumbering::select(Microseconds now) {
   const LssAddress& address = modules_[position_].address;
   const CanFrame request = lss::make_word(
@@ -183,7 +184,7 @@ void LssRenumbering::repeat_or_fail(Microseconds now, Step first, LssProblem pro
   }
 }
 
-/// The module that has not booted with its last node id.
+/// The first module that has not booted with its last node id.
 std::size_t LssRenumbering::first_missing() const {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     const bool has_another = std::ranges::any_of(

@@ -30,7 +30,7 @@ void Master::start(Microseconds now) {
     joint_of_[setup_.nodes[joint]] = joint;
   }
   sdo_clients_.set_attempts(options_.attempts);
-  // Until the robot is this host's, another host must not take these heartbeats for those of its own session.
+  // Until the robot belongs to this host, another host must not take these heartbeats for those of its own session.
   heartbeat_at_ = options_.resets_modules ? (options_.session_token == 0 ? now + listening_time_us : never) : now;
   enter(options_.resets_modules ? Phase::listen : Phase::scan);
   poll(now);
@@ -74,7 +74,7 @@ void Master::stop(Microseconds now) {
   advance(now);
 }
 
-// Events.
+// Handlers of events.
 
 void Master::receive(Microseconds now, const CanFrame& frame) {
   if (state_ == MasterState::idle) {
@@ -113,7 +113,7 @@ void Master::transmitted(Microseconds now, const CanFrame& frame) {
     ++commits_sent_;
   }
   if (phase_ == Phase::reset && frame.identifier == identifier::nmt) {
-    next_phase();  // what booted before does not count
+    next_phase();  // boot-ups before the reset do not count
   }
   advance(now);
 }
@@ -154,7 +154,7 @@ void Master::on_heartbeat(const CanFrame& frame) {
     return;
   }
   if (heartbeat->node == host_node) {
-    on_other_host();  // the controller does not receive its own frames
+    on_other_host();  // it is another host's, because the controller does not receive its own frames
     return;
   }
   const std::uint8_t joint = joint_of_[heartbeat->node];
@@ -225,7 +225,7 @@ void Master::on_emergency(const CanFrame& frame) {
     return;
   }
   if (is_before_reset()) {
-    return;  // of an earlier run
+    return;  // the frame belongs to an earlier run
   }
   events_.add(
       {now_, EventKind::emergency, emergency->node, emergency->error_register, emergency->code, emergency->detail});
@@ -239,13 +239,13 @@ void Master::on_emergency(const CanFrame& frame) {
 
 void Master::on_other_host() {
   if (phase_ == Phase::take_lease && has_lease_) {
-    return;  // the leases decide which of the two gets the robot
+    return;  // the leases decide which of the two hosts gets the robot
   }
   if (phase_ == Phase::take_lease && is_lease_refused_) {
     fail_without_lease(joint_of_[lease_node_]);
   } else if (mission_ == Mission::bring_up && options_.resets_modules && !is_powered_) {
     fail({ProblemCode::other_host});
-    heartbeat_at_ = never;  // modules that the other host drives must miss that one only
+    heartbeat_at_ = never;  // modules that the other host drives must miss that heartbeat only
   } else if (!other_host_reported_) {
     other_host_reported_ = true;
     add_event(EventKind::other_host, host_node);
@@ -271,7 +271,7 @@ void Master::on_tick_passed() {
   }
   sync_lost_at_ = now_ + silence_us;
   if (const std::optional<std::uint32_t> tick = ticks_.tick(); tick && *tick >= ticks_on_the_way) {
-    plan_.pass(*tick - ticks_on_the_way);  // also in a module that has missed the last SYNC
+    plan_.pass(*tick - ticks_on_the_way);  // the change is also in force in a module that has missed the last SYNC
   }
 }
 
@@ -297,7 +297,7 @@ void Master::watch_heartbeats() {
   silence_at_ = silence_at_ == never ? now_ + silence_us : silence_at_;
 }
 
-// Problems.
+// Handlers of problems.
 
 Problem Master::problem_of(ProblemCode code, unsigned joint) const {
   Problem problem{code};

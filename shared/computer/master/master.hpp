@@ -4,7 +4,7 @@
 // simulator's hardware-in-the-loop and the host program use it (docs/protocol.md). It is a state machine with frames
 // and deadlines as inputs and frames as outputs. It never blocks, and each of its waits has a timeout.
 //
-// A mission is what the master works on; its phases follow each other in this order:
+// A mission is the present task of the master. Its phases follow each other in this order:
 //
 //   mission   starts when                    phases                                 joints_
 //   bring_up  start()                        (listen, take_lease, reset,) scan,     all that booted, which are all of
@@ -24,7 +24,7 @@
 //                                                                                   their checksums are read
 //   none      no other mission               none                                   not used
 //
-// Phases in parentheses: only if the options demand them.
+// Phases in parentheses are left out unless the options demand them.
 //
 // A change that has passed its tick before its commit in `rejoin` starts that mission again from set_up. A change that
 // is too late for its tick leaves out `stage` and is dropped.
@@ -50,37 +50,37 @@
 namespace proleg::canopen {
 
 struct MasterOptions {
-  std::uint32_t core_fingerprint = 0;        ///< of the master's own core; modules must have the same
-  std::span<const std::uint32_t> serials{};  ///< kernel order, 0: any; empty: all any
+  std::uint32_t core_fingerprint = 0;        ///< fingerprint of the master's own core; modules must have the same
+  std::span<const std::uint32_t> serials{};  ///< serial numbers of the modules in kernel order, 0: any; empty: all any
   std::uint8_t sync_producer = 0;            ///< joint whose module produces SYNC
-  /// The modules may be on already, in any state: start() listens for another host, then resets all of them.
+  /// Whether the modules may be on already, in any state: start() listens for another host, then resets all of them.
   bool resets_modules = false;
-  /// Nodes that are not in the set-up may boot and send: the master leaves them as they boot.
+  /// Whether nodes that are not in the set-up may boot and send. The master does not change them.
   bool allows_others = false;
-  /// stop() lets the joints of a moving robot ramp to their safe pose (quick stop) before it takes their power.
+  /// Whether stop() lets the joints of a moving robot ramp to their safe pose (quick stop) before it takes their power.
   bool ramps_down = false;
-  /// While the joints ramp down, the master reads the checksums of the modules' set-points (0x200D).
+  /// Whether the master reads the checksums of the modules' set-points (0x200D) while the joints ramp down.
   bool reads_checksums = false;
-  /// Before SYNC 0 the joints go at this speed from their measured angles to the start of the gait (0x200E), degrees a
-  /// second, 1 to max_command_speed; 0: they do not. The master waits for all of them that measure their angles.
+  /// Speed at which joints move from their measured angles to the start of the gait before SYNC 0 (0x200E) [deg/s], 1
+  /// to max_command_speed; 0: they do not. The master waits for all joints that measure their angles.
   std::uint16_t ramp_in_speed = 0;
-  /// The joints do not follow the gait: they stay at the angles that they measure (mode direct position, 0x6060), until
-  /// the host gives other ones or switches the mode. See Master::set_holds().
+  /// Whether the joints do not follow the gait: they stay at the angles that they measure (mode direct position,
+  /// 0x6060), until the host sends other angles or switches the mode. See Master::set_holds().
   bool holds = false;
-  /// Of this host's session, random; the master takes the lease of the robot with it (0x2002) before it resets the
+  /// Random token of this host's session. With it the master takes the lease of the robot (0x2002) before it resets the
   /// modules, and again when it sets them up. 0: without a lease.
   std::uint32_t session_token = 0;
-  /// Of each SDO answer, and how often a request is sent until there is one. For a connection that loses frames: more
-  /// attempts; for a slow one: more time.
+  /// Time for each SDO answer; more for a slow connection.
   Microseconds answer_timeout_us = SdoClient::default_timeout_us;
+  /// Number of times that a request is sent without an answer; more for a connection that loses frames.
   unsigned attempts = 1;
-  /// A COMMIT is sent at least this many ticks before its tick.
+  /// Least number of ticks before its tick at which a COMMIT is sent.
   std::uint32_t commit_lead = 20;
 };
 
 enum class MasterState : std::uint8_t {
   idle,        ///< before start(): ignores all frames, sends none
-  listening,   ///< for another host, before it resets the modules
+  listening,   ///< listens for another host, before it resets the modules
   scanning,    ///< waits for the modules to boot
   setting_up,  ///< reads identities, writes set-up lists
   staging,     ///< stages and commits the first changes
@@ -95,31 +95,32 @@ enum class MasterState : std::uint8_t {
 class Master final : private SdoWork {
  public:
   static constexpr Microseconds heartbeat_period_us = 100'000;
-  /// Time in which another host is heard three times.
+  /// Time in which another host sends three heartbeats.
   static constexpr Microseconds listening_time_us = 300'000;
-  /// How long another host may have the lease without a heartbeat: its session is over then, and its lease ends.
+  /// Time for which another host may have the lease without a heartbeat: its session is over then, and its lease ends.
   static constexpr Microseconds lease_timeout_us = 700'000;
   static constexpr Microseconds lease_pause_us = 50'000;
-  /// A quick stop takes 90 degrees a second, from 90 degrees at most; then the servo, behind its pulses, settles.
+  /// Time that the joints get to ramp down. A quick stop moves at 90 degrees a second, over at most 90 degrees; then
+  /// the servo, which is behind its pulses, settles.
   static constexpr Microseconds ramping_time_us = 1'200'000;
-  /// Beyond the time that a ramp over 180 degrees takes.
+  /// Time that joints get to ramp in beyond the time of a ramp over 180 degrees.
   static constexpr Microseconds ramp_in_reserve_us = 2'000'000;
-  /// Between two questions of the master whether a joint has ramped in.
+  /// Time between two requests of the master whether a joint has ramped in.
   static constexpr Microseconds ramp_in_pause_us = 5'000;
   static constexpr Microseconds boot_timeout_us = 1'000'000;
   /// Time after the last expected boot-up in which unexpected modules may appear.
   static constexpr Microseconds quiet_time_us = 50'000;
   static constexpr Microseconds start_timeout_us = 1'000'000;
-  /// With options.resets_modules a reset or a start that has no effect is sent again after this time. One of its
+  /// Time after which a reset or a start without an effect is sent again, with options.resets_modules. One of its
   /// frames, or of the answers, may have been lost.
   static constexpr Microseconds repeat_us = 500'000;
   static constexpr unsigned max_requests = 3;
   static constexpr Microseconds send_timeout_us = 1'000'000;
   static constexpr Microseconds silence_us = 500'000;
-  /// Between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, so transfers without
-  /// pauses would keep TICK from the bus.
+  /// Time between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, so transfers
+  /// without pauses would keep TICK from the bus.
   static constexpr Microseconds pause_us = 300;
-  /// Of each SDO answer during stop().
+  /// Time for an SDO answer during stop().
   static constexpr Microseconds stop_timeout_us = 100'000;
   static constexpr unsigned commit_repeats = 3;
 
@@ -129,7 +130,7 @@ class Master final : private SdoWork {
     std::uint32_t serial = 0;
   };
 
-  /// What the module of a joint has computed, as objects 0x200D:1 and 2 have it.
+  /// Result of the module of a joint, as in objects 0x200D:1 and 2.
   struct SetpointChecksum {
     enum class State : std::uint8_t {
       not_read,       ///< the module has not answered, or was not asked
@@ -137,12 +138,13 @@ class Master final : private SdoWork {
       read,
     };
     State state = State::not_read;
-    std::uint32_t ticks = 0;  ///< from tick 0 on; 0: the module does not know the set-points of all ticks
-    std::uint32_t crc = 0;    ///< CRC-32 (shared/fixed/crc32.hpp) of the int32 set-points, little-endian
+    /// Number of ticks from tick 0 on; 0: the module does not know the set-points of all ticks.
+    std::uint32_t ticks = 0;
+    std::uint32_t crc = 0;  ///< CRC-32 (shared/fixed/crc32.hpp) of the int32 set-points, little-endian
   };
 
-  /// port: used by the master only. changes: by ascending tick. setup, changes and the spans in setup and options must
-  /// outlive the master.
+  /// port: must be used by the master only. changes: by ascending tick. setup, changes and the spans in setup and
+  /// options must outlive the master.
   Master(CanPort& port, const RobotSetup& setup, const MasterOptions& options, std::span<Change> changes = {});
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
@@ -150,48 +152,49 @@ class Master final : private SdoWork {
   /// Checks set-up and changes, then waits for boot-up messages: modules must be switched on (or reset) after this
   /// call. Only the first call has an effect.
   void start(Microseconds now);
-  /// While the robot runs, or before: more changes, behind the earlier ones. changes: those that the master has, as
-  /// they are (it has set `dropped`, and the ticks of those that were `soon`), and new ones. They must outlive the
-  /// master, or be replaced by this call. False, without an effect, if one of the new ones is not possible.
+  /// Adds changes behind the earlier ones, while the robot runs or before. changes: those that the master has, as they
+  /// are (it has set `dropped`, and the ticks of those that were `soon`), and new ones. They must outlive the master,
+  /// or be replaced by another call. False, without an effect, if one of the new ones is not possible.
   [[nodiscard]] bool extend_changes(Microseconds now, std::span<Change> changes);
-  /// Switches off the servos and the SYNC of the robot. In any state after start(). It sends nothing as long as the
-  /// master has only listened, or if the robot is another host's. A module that does not confirm that its servo has no
-  /// power is reported as an event.
+  /// Switches off the servos and the SYNC of the robot. It may be called in any state after start(). It sends nothing
+  /// as long as the master has only listened, or if the robot belongs to another host. A module that does not confirm
+  /// that its servo has no power is reported as an event.
   void stop(Microseconds now);
-  /// The host has switched the mode of the joints: a module that restarts gets the same one (MasterOptions::holds).
+  /// Must be called when the host has switched the mode of the joints: a module that restarts gets the same mode
+  /// (MasterOptions::holds).
   void set_holds(bool holds) { options_.holds = holds; }
 
   void receive(Microseconds now, const CanFrame& frame);
-  /// The controller has sent a frame of the master.
+  /// Must be called when the controller has sent a frame of the master.
   void transmitted(Microseconds now, const CanFrame& frame);
-  /// Handles the deadlines that have passed; must be called at next_deadline() or later.
+  /// Handles time-outs. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
   [[nodiscard]] MasterState state() const { return state_; }
-  /// What ended the start or the run, or the first problem in flight; code `none` without a problem.
+  /// The problem that ended the start or the run, or the first problem in flight; code `none` without a problem.
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] std::optional<Event> take_event() { return events_.take(); }
-  /// Events that were dropped because the log was full.
+  /// Number of events that were dropped because the log was full.
   [[nodiscard]] std::uint32_t lost_events() const { return events_.overflow(); }
 
   /// Tick of the last SYNC; nothing before SYNC 0.
   [[nodiscard]] std::optional<std::uint32_t> tick() const { return ticks_.tick(); }
-  /// Changes that are committed or dropped: those before this position.
+  /// Number of changes that are committed or dropped: those before this position.
   [[nodiscard]] std::size_t changes_made() const { return plan_.next(); }
   [[nodiscard]] std::uint32_t restarts() const { return restarts_; }
-  /// As read during set-up. joint: below the joint count.
+  /// Identity of the module of a joint, as read during set-up. joint: below the joint count.
   [[nodiscard]] const Identity& identity(unsigned joint) const { return identities_[joint]; }
-  /// With options.reads_checksums, from stop() on. joint: below the joint count.
+  /// Checksum of the module of a joint, with options.reads_checksums, from stop() on. joint: below the joint count.
   [[nodiscard]] const SetpointChecksum& checksum(unsigned joint) const { return checksums_[joint]; }
-  /// With options.holds, while running: the angle that the joint had when it got power (90 degrees = 2^30);
+  /// The angle that the joint had when it got power (90 degrees = 2^30), with options.holds and while running;
   /// position_not_measured: its module does not know it. joint: below the joint count.
   [[nodiscard]] std::int32_t held_angle(unsigned joint) const { return static_cast<std::int32_t>(measured_[joint]); }
   /// Joints whose modules have booted.
   [[nodiscard]] JointMask booted() const { return booted_; }
 
  private:
-  /// What the master waits for.
+  /// The phases of a mission: what the master waits for.
   enum class Phase : std::uint8_t {
     none,
     listen,
@@ -214,14 +217,15 @@ class Master final : private SdoWork {
     disable,
     sync_off,
   };
-  /// What the phases lead to.
+  /// The missions.
   enum class Mission : std::uint8_t { none, bring_up, change, rejoin, stop };
 
   static constexpr std::uint8_t no_joint = 0xFF;
-  /// A change counts as passed this many ticks before its tick: a frame that is sent now may be received after it.
+  /// Number of ticks before its tick at which a change counts as passed: a frame that is sent now may be received after
+  /// the tick.
   static constexpr std::uint32_t ticks_on_the_way = 2;
 
-  // SdoWork: the transfers of the present phase.
+  // Functions of SdoWork: the transfers of the present phase.
   [[nodiscard]] std::optional<SdoStep> step(unsigned joint, std::size_t position) override;
   [[nodiscard]] bool on_value(unsigned joint, std::size_t position, std::uint32_t value) override;
   void on_abort(unsigned joint, Address address, AbortCode code) override;
@@ -291,56 +295,57 @@ class Master final : private SdoWork {
   TickFollower ticks_;
   EventLog events_;
 
-  Microseconds now_ = 0;  ///< of the present event
+  Microseconds now_ = 0;  ///< time of the present event
   MasterState state_ = MasterState::idle;
   Problem problem_;
   Mission mission_ = Mission::none;
   Phase phase_ = Phase::none;
-  Microseconds deadline_ = never;  ///< of the phase
+  Microseconds deadline_ = never;  ///< deadline of the phase
   Microseconds heartbeat_at_ = never;
-  Microseconds silence_at_ = never;  ///< the next check of heartbeats
+  Microseconds silence_at_ = never;  ///< time of the next check of heartbeats
   Microseconds sync_lost_at_ = never;
 
-  JointMask joints_;                          ///< of the mission
-  JointMask ramping_in_ = {};                 ///< are not yet where the gait starts
-  JointMask booted_;                          ///< since start()
-  JointMask operational_;                     ///< by their heartbeats
-  JointMask restarted_;                       ///< must be set up again
-  JointMask lost_;                            ///< silent, or without answers; changes leave them out
-  JointMask outdated_;                        ///< have missed a commit
-  JointMask given_up_;                        ///< could not be set up again; wait for a restart
-  JointMask start_joints_ = {};               ///< NMT start is pending
-  JointMask reset_joints_ = {};               ///< NMT reset node is pending
-  JointMask reset_again_;                     ///< were reset once more in `scan`: both of their boot-ups may come
-  bool start_all_pending_ = false;            ///< NMT start to all is pending
-  bool reset_all_pending_ = false;            ///< NMT reset node to all is pending
+  JointMask joints_;                ///< joints of the mission
+  JointMask ramping_in_ = {};       ///< joints that are not yet at the start of the gait
+  JointMask booted_;                ///< joints that have booted since start()
+  JointMask operational_;           ///< joints that are Operational by their heartbeats
+  JointMask restarted_;             ///< joints that must be set up again
+  JointMask lost_;                  ///< joints that are silent, or without answers; changes leave them out
+  JointMask outdated_;              ///< joints that have missed a commit
+  JointMask given_up_;              ///< joints that could not be set up again, and wait for a restart
+  JointMask start_joints_ = {};     ///< joints to which NMT start is pending
+  JointMask reset_joints_ = {};     ///< joints to which NMT reset node is pending
+  JointMask reset_again_;           ///< joints that were reset once more in `scan`: both of their boot-ups may come
+  bool start_all_pending_ = false;  ///< NMT start to all is pending
+  bool reset_all_pending_ = false;  ///< NMT reset node to all is pending
   bool pre_operational_all_pending_ = false;  ///< NMT enter Pre-operational to all is pending
   bool last_mission_was_rejoin_ = false;
   bool change_failed_ = false;
-  bool owns_robot_ = false;  ///< it has begun to change the modules: before that it only listens
-  bool is_powered_ = false;  ///< servos may have power
+  bool owns_robot_ = false;  ///< whether the master has begun to change the modules: before that it only listens
+  bool is_powered_ = false;  ///< whether servos may have power
   bool other_host_reported_ = false;
   std::uint32_t restarts_ = 0;
 
-  // Of the lease, before the reset.
-  std::uint8_t lease_node_ = 0;     ///< whose lease is taken: in ascending order
-  Microseconds lease_ends_ = 0;     ///< of a session without a heartbeat
-  bool has_lease_ = false;          ///< of one module at least
-  bool only_reads_lease_ = false;   ///< a request to take it has been sent
-  bool is_lease_refused_ = false;   ///< by the present module
-  bool has_missing_lease_ = false;  ///< of one module at least
+  // State of the lease before the reset.
+  std::uint8_t lease_node_ = 0;     ///< node whose lease is taken, in ascending order
+  Microseconds lease_ends_ = 0;     ///< end of the lease of a session without a heartbeat
+  bool has_lease_ = false;          ///< the lease of at least one module is taken
+  bool only_reads_lease_ = false;   ///< a request to take the lease was sent, so it is only read
+  bool is_lease_refused_ = false;   ///< the present module has refused the lease
+  bool has_missing_lease_ = false;  ///< the lease of at least one module is missing
 
-  std::size_t change_ = 0;       ///< the one that is staged or committed
+  std::size_t change_ = 0;       ///< position of the change that is staged or committed
   std::size_t rejoin_from_ = 0;  ///< earlier changes are written as parameters in force
-  unsigned requests_ = 0;        ///< resets or starts, in the present phase
+  unsigned requests_ = 0;        ///< number of resets or starts that were sent in the present phase
   unsigned commits_queued_ = 0;
   unsigned commits_sent_ = 0;
 
-  std::array<std::uint8_t, host_node + 1> joint_of_{};  ///< by node; `no_joint` if it is not in the set-up
+  std::array<std::uint8_t, host_node + 1>
+      joint_of_{};  ///< joint of each node; `no_joint` if the node is not in the set-up
   std::array<Microseconds, max_joints> heartbeat_received_at_{};
   std::array<Identity, max_joints> identities_{};
   std::array<SetpointChecksum, max_joints> checksums_{};
-  std::array<std::uint32_t, max_joints> measured_{};  ///< angles of joints that hold, as 0x6064 has them
+  std::array<std::uint32_t, max_joints> measured_{};  ///< angles of joints that hold, as in 0x6064
 };
 
 }  // namespace proleg::canopen

@@ -3,11 +3,11 @@
 #include "shared/canopen/objects.hpp"
 #include "shared/computer/master/master.hpp"
 
-// The lease of the robot: of two hosts exactly one gets it (docs/protocol.md, The lease).
+// The lease of the robot: exactly one of two hosts gets it (docs/protocol.md, The lease).
 
 namespace proleg::canopen {
 
-/// A module that is not there costs this many answers' time.
+/// Number of attempts to take the lease of a module. A missing module takes the time of this number of answers.
 constexpr unsigned lease_attempts = 2;
 
 std::optional<SdoStep> Master::lease_step(std::size_t position) const {
@@ -16,7 +16,7 @@ std::optional<SdoStep> Master::lease_step(std::size_t position) const {
     case 0:
       return SdoStep{true, token.address, size_of(token.type), options_.session_token};
     case 1:
-      // The answer to a write may be that to the write of another host, which has the same identifier.
+      // The answer to a write may belong to the write of another host, which has the same identifier.
       return SdoStep{false, token.address};
     default:
       return std::nullopt;
@@ -33,7 +33,8 @@ void Master::begin_lease() {
   take_next_lease();
 }
 
-/// In ascending order of the node ids: of two hosts, one at most is refused by a module that the other has taken.
+/// Takes the leases in ascending order of the node ids. So at most one of two hosts is refused by a module whose lease
+/// the other has.
 void Master::take_next_lease() {
   const unsigned attempts = has_missing_lease_ ? 1 : lease_attempts;
   sdo_clients_.set_attempts(std::min(options_.attempts, attempts));
@@ -50,30 +51,30 @@ void Master::take_next_lease() {
   enter(Phase::reset);
 }
 
-/// holder: the token that the module has. Always false: the list ends.
+/// Handles the token that the module has. Always returns false: the list ends.
 bool Master::on_lease(unsigned joint, std::uint32_t holder) {
   if (holder != options_.session_token) {
     refuse_lease(joint);
   } else if (phase_ == Phase::take_lease && !has_lease_) {
     has_lease_ = true;
-    heartbeat_at_ = now_;  // it keeps the lease
+    heartbeat_at_ = now_;  // this host keeps the lease
   }
   return false;
 }
 
 void Master::on_lease_abort(unsigned joint, Address address, AbortCode code) {
   if (code == AbortCode::no_such_object) {
-    return;  // its program is older
+    return;  // the program of the module is older
   }
   if (code == AbortCode::refused_by_state && phase_ == Phase::take_lease && now_ < lease_ends_) {
-    // It may be the answer to another host's request: the lease may be this host's. The value decides.
+    // The answer may be the one to another host's request: the lease may be this host's. The value decides.
     is_lease_refused_ = true;
     only_reads_lease_ = true;
     deadline_ = now_;
   } else if (code == AbortCode::refused_by_state) {
     refuse_lease(joint);
   } else if (phase_ == Phase::take_lease) {
-    has_missing_lease_ = true;  // if it is not there, that will be found after the reset
+    has_missing_lease_ = true;  // if the module is missing, that will be found after the reset
   } else {
     Problem problem = problem_of(code == AbortCode::timeout ? ProblemCode::no_answer : ProblemCode::refused, joint);
     problem.address = address;
@@ -82,7 +83,7 @@ void Master::on_lease_abort(unsigned joint, Address address, AbortCode code) {
   }
 }
 
-/// The module has given its lease to another host. That host may be dead: then its lease ends soon.
+/// Handles a lease that the module has given to another host. That host may have stopped: then its lease ends soon.
 void Master::refuse_lease(unsigned joint) {
   if (phase_ == Phase::keep_lease) {
     static_cast<void>(joint_failed(problem_of(ProblemCode::lease_refused, joint)));

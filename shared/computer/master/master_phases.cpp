@@ -50,7 +50,7 @@ bool Master::is_phase_done() const {
     case Phase::reset:
     case Phase::quiet:
     case Phase::ramping:
-      return false;  // ends by its deadline, or when the frame is sent
+      return false;  // they end by their deadline, or when the frame was sent
     case Phase::commit:
       return commits_sent_ >= commit_repeats;
     case Phase::nmt_start:
@@ -164,7 +164,7 @@ void Master::enter(Phase phase) {
   }
 }
 
-/// Enters the phase after one that is done.
+/// Enters the phase that follows one that is done.
 void Master::next_phase() {
   switch (phase_) {
     case Phase::none:
@@ -268,9 +268,9 @@ void Master::phase_timed_out() {
       next_phase();
       break;
     case Phase::take_lease:
-      enter(Phase::take_lease);  // of the same module, once more
+      enter(Phase::take_lease);  // the same module is asked once more
       break;
-    // Transports may lose a confirmation: what left the queue counts as sent.
+    // Transports may lose a confirmation, so frames that left the queue count as sent.
     case Phase::reset:
       if (!reset_all_pending_) {
         next_phase();
@@ -294,7 +294,7 @@ void Master::phase_timed_out() {
         fail({ProblemCode::cannot_send});
       }
       if (mission_ == Mission::bring_up && repeat_request()) {
-        // All together again, since each module needs the first state frames of the others.
+        // All modules are started again together, since each needs the first state frames of the others.
         pre_operational_all_pending_ = true;
         request_start();
         operational_ = {};
@@ -371,7 +371,7 @@ void Master::drop_change(const Problem& problem) {
 
 void Master::begin_commit() {
   if (mission_ == Mission::rejoin && has_passed(plan_[change_])) {
-    // The change is in force by now, so its parameters must be written before anything is staged.
+    // The change is in force by now, so its parameters must be written before any value is staged.
     begin_rejoin(joints_);
     return;
   }
@@ -440,7 +440,7 @@ void Master::begin_rejoin(JointMask joints) {
   enter(options_.session_token != 0 ? Phase::keep_lease : Phase::set_up);
 }
 
-/// Stages the committed changes that wait for their tick in the restarted modules too, and commits them again. All
+/// Stages the committed changes that wait for their tick in the restarted modules, too, and commits them again. All
 /// other modules ignore the repeated commit.
 void Master::stage_for_rejoin() {
   while (change_ < plan_.next() && plan_[change_].dropped) {

@@ -1,6 +1,5 @@
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
-#include "shared/computer/master/controlwords.hpp"
 #include "shared/computer/master/master.hpp"
 
 // The SDO transfers of each phase, and how the master handles their results.
@@ -8,12 +7,12 @@
 namespace proleg::canopen {
 namespace {
 
-/// Read from each module before it is set up.
+/// Entries that are read from each module before it is set up.
 constexpr const Object* identity_entries[] = {&object::vendor, &object::product, &object::serial, &object::version,
                                               &object::core_fingerprint};
 constexpr std::size_t identity_count = 5;
 
-/// One after the other.
+/// Controlwords that enable a drive, in their order.
 constexpr std::uint16_t enabling_controlwords[] = {shutdown_controlword, switch_on_controlword,
                                                    enable_operation_controlword};
 constexpr std::size_t enabling_count = 3;
@@ -43,7 +42,7 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
       if (position < enabling_count) {
         return write(object::controlword, enabling_controlwords[position]);
       }
-      // An answer that is late may have confirmed the next request, which was lost.
+      // A late answer may have confirmed the next request, which was lost.
       return position == enabling_count && options_.attempts > 1
                  ? std::optional(SdoStep{false, object::statusword.address})
                  : std::nullopt;
@@ -62,7 +61,7 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
     case Phase::ramping:
       return checksum_step(position);
     case Phase::disable:
-      // The host leaves: its silence is no error then. (In the loop the modules are not used again.)
+      // The host leaves, so its silence must be no error. (In the loop the modules are not used again.)
       return position == 1 && options_.resets_modules ? std::optional(write(object::host_heartbeat, 0))
                                                       : only(object::controlword, 0);
     case Phase::sync_off:
@@ -94,7 +93,7 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
   return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
 }
 
-/// Slots of the robot with users' algorithms.
+/// Number of slots of the robot with users' algorithms.
 std::size_t Master::user_algorithm_count() const {
   std::size_t count = 0;
   for (const Slot& slot : setup_.kernel.slots) {
@@ -103,7 +102,7 @@ std::size_t Master::user_algorithm_count() const {
   return count;
 }
 
-/// position: below user_algorithm_count().
+/// Declaration of a user's algorithm. position: below user_algorithm_count().
 const Declaration& Master::user_algorithm(std::size_t position) const {
   const Slot* slot = setup_.kernel.slots.data();
   while (!is_user_slot(*slot) || position-- > 0) {
@@ -112,7 +111,8 @@ const Declaration& Master::user_algorithm(std::size_t position) const {
   return slot->algorithm->declaration();
 }
 
-/// Before the servos have power: whether the module measures its angle, and its speed. Afterwards: where it is.
+/// The requests before the servos have power: whether the module measures its angle, and its speed. The requests
+/// afterwards: the angle.
 std::optional<SdoStep> Master::ramp_in_step(unsigned joint, std::size_t position) const {
   if (!ramping_in_.contains(joint)) {
     return std::nullopt;
@@ -131,7 +131,8 @@ std::optional<SdoStep> Master::ramp_in_step(unsigned joint, std::size_t position
   }
 }
 
-/// The mode comes first: with it the module forgets the target that it had.
+/// The requests with which a joint holds its angle. The mode comes first: with it the module drops the target that it
+/// had.
 std::optional<SdoStep> Master::hold_step(unsigned joint, std::size_t position) const {
   const auto write = [](const Object& object, std::uint32_t value) {
     return SdoStep{true, object.address, size_of(object.type), value};
@@ -149,7 +150,8 @@ std::optional<SdoStep> Master::hold_step(unsigned joint, std::size_t position) c
   }
 }
 
-/// The request to take the pair comes before both reads, also if one of them is repeated: they belong together.
+/// The requests for a checksum. The request to take the pair of values comes before both reads, also if a read is
+/// repeated: the values belong together.
 std::optional<SdoStep> Master::checksum_step(std::size_t position) const {
   const Object& ticks = object::setpoint_ticks;
   switch (position) {
@@ -240,11 +242,11 @@ void Master::on_abort(unsigned joint, Address address, AbortCode code) {
     return;
   }
   if (phase_ == Phase::set_ramp_in && code == AbortCode::no_such_object) {
-    ramping_in_ -= JointMask::of(joint);  // its program is older
+    ramping_in_ -= JointMask::of(joint);  // the program of the module is older
     return;
   }
   if (phase_ == Phase::set_up && address.index == object::user_algorithms.index && code != AbortCode::timeout) {
-    // Its program is older than the object, so it has no algorithms of users.
+    // The program of the module is older than the object, so it has no algorithms of users.
     for (std::size_t i = 0; i < user_algorithm_count(); ++i) {
       if (object::user_algorithm_address(user_algorithm(i).id) == address) {
         static_cast<void>(algorithm_missing(joint, user_algorithm(i), 0));
@@ -258,7 +260,7 @@ void Master::on_abort(unsigned joint, Address address, AbortCode code) {
   static_cast<void>(joint_failed(problem));
 }
 
-/// Always false.
+/// Reports that a module has not this algorithm. Always returns false.
 bool Master::algorithm_missing(unsigned joint, const Declaration& algorithm, std::uint32_t found) {
   Problem problem = problem_of(ProblemCode::missing_algorithm, joint);
   problem.address = object::user_algorithm_address(algorithm.id);
@@ -268,7 +270,7 @@ bool Master::algorithm_missing(unsigned joint, const Declaration& algorithm, std
   return joint_failed(problem);
 }
 
-/// Ends the mission for the joint. Always false.
+/// Ends the mission for the joint. Always returns false.
 bool Master::joint_failed(const Problem& problem) {
   const JointMask self = JointMask::of(problem.joint);
   switch (mission_) {

@@ -30,7 +30,7 @@ bool SdoClientPool::done() const {
   return waiting_.empty();
 }
 
-/// Finds the channel's next step: the present joint's, or the next joint's if the present list is done.
+/// Finds the channel's next step: that of the present joint, or of the next joint if the present list is done.
 bool SdoClientPool::assign(Channel& channel, SdoStep& step, SdoWork& work) {
   for (;;) {
     if (!channel.is_busy) {
@@ -55,7 +55,7 @@ void SdoClientPool::send(Microseconds now, std::span<const std::uint8_t> nodes, 
     return;
   }
   pause_ends_ = 0;
-  // With pauses only one client works.
+  // If there are pauses, only one client works.
   for (Channel& channel : std::span(channels_).first(pause_us_ == 0 ? clients : 1)) {
     if (channel.client.state() == SdoClient::State::waiting) {
       continue;
@@ -69,7 +69,7 @@ void SdoClientPool::send(Microseconds now, std::span<const std::uint8_t> nodes, 
     const CanFrame request = step.is_write
                                  ? channel.client.write(now, node, step.address, step.size, step.value, timeout_us_)
                                  : channel.client.read(now, node, step.address, timeout_us_);
-    static_cast<void>(queue.push(request));  // there is room
+    static_cast<void>(queue.push(request));  // the queue has room
   }
 }
 

@@ -14,18 +14,18 @@ namespace proleg::canopen {
 struct SdoStep {
   bool is_write = false;
   Address address;
-  std::uint8_t size = 0;    ///< of a write: 1, 2 or 4 bytes
-  std::uint32_t value = 0;  ///< of a write
+  std::uint8_t size = 0;    ///< number of bytes of a write: 1, 2 or 4
+  std::uint32_t value = 0;  ///< value of a write
 };
 
-/// Gives the transfers and receives their results. Its functions must not begin new lists; all may cancel.
+/// The source of the transfers, which receives their results. Its functions must not begin new lists; all may cancel.
 class SdoWork {
  public:
   /// The transfer at a position in the list of a joint; nothing after the last one.
   [[nodiscard]] virtual std::optional<SdoStep> step(unsigned joint, std::size_t position) = 0;
-  /// The value that was read at a position. False ends the list of the joint.
+  /// Takes the value that was read at a position. False ends the list of the joint.
   [[nodiscard]] virtual bool on_value(unsigned joint, std::size_t position, std::uint32_t value) = 0;
-  /// A transfer was aborted, which ends the list of the joint.
+  /// Must be called when a transfer was aborted, which ends the list of the joint.
   virtual void on_abort(unsigned joint, Address address, AbortCode code) = 0;
 
  protected:
@@ -35,14 +35,13 @@ class SdoWork {
 class SdoClientPool {
  public:
   static constexpr std::size_t clients = 8;
-  /// Free places that the pool leaves in the transmit queue for other frames.
+  /// Number of places in the transmit queue that the pool leaves free for other frames.
   static constexpr std::size_t reserve = 5;
 
   /// Cancels the lists in progress and starts those of these joints. timeout_us: of each attempt. pause_us: if above 0,
-  /// transfers are made one by one with this pause between them, in which frames with higher identifiers get onto the
-  /// bus.
+  /// transfers are made one by one with this pause between them, in which frames with higher identifiers can be sent.
   void begin(JointMask joints, Microseconds timeout_us, Microseconds pause_us);
-  /// A transfer without an answer begins again until it was begun this many times, at least 1. All transfers may be
+  /// Sets the number of attempts, at least 1, after which a transfer without an answer has failed. All transfers may be
   /// repeated: their requests are handled in the order in which they are sent, and each sets or reads a value.
   void set_attempts(unsigned attempts) { attempts_ = attempts; }
   void cancel(unsigned joint);
@@ -51,7 +50,7 @@ class SdoClientPool {
 
   /// Sends as many requests as the queue has room for. nodes: node id of each joint.
   void send(Microseconds now, std::span<const std::uint8_t> nodes, TransmitQueue& queue, SdoWork& work);
-  /// A frame on 0x580 + node.
+  /// Takes a frame on 0x580 + node.
   void receive(Microseconds now, const CanFrame& frame, SdoWork& work);
   void poll(Microseconds now, SdoWork& work);
   [[nodiscard]] Microseconds next_deadline() const;
@@ -63,8 +62,8 @@ class SdoClientPool {
     bool is_busy = false;
     std::uint8_t joint = 0;
     std::size_t position = 0;
-    bool is_read = false;   ///< the present transfer
-    unsigned attempts = 0;  ///< that the present transfer has failed
+    bool is_read = false;   ///< whether the present transfer is a read
+    unsigned attempts = 0;  ///< number of attempts of the present transfer that have failed
   };
 
   [[nodiscard]] bool assign(Channel& channel, SdoStep& step, SdoWork& work);
@@ -75,7 +74,7 @@ class SdoClientPool {
   JointMask waiting_;  ///< joints whose lists have not begun
   Microseconds timeout_us_ = 0;
   Microseconds pause_us_ = 0;
-  Microseconds pause_ends_ = 0;  ///< 0: no pause
+  Microseconds pause_ends_ = 0;  ///< end of the pause; 0: no pause
 };
 
 }  // namespace proleg::canopen

@@ -8,13 +8,13 @@
 namespace proleg::canopen {
 namespace {
 
-/// As SdoServer does it: after this long the receiver of a block acknowledges what it has.
+/// Time after which the receiver of a block acknowledges the segments that it has, as SdoServer does.
 constexpr Microseconds silence_us = 200'000;
 constexpr unsigned max_silences = 5;
-/// The sender of a block waits longer for an acknowledgement than the receiver repeats it.
+/// Time for an acknowledgement. It is longer than the time in which the receiver repeats it.
 constexpr Microseconds acknowledgement_timeout_us = (max_silences + 1) * silence_us;
 
-/// Whether lost frames can be the reason.
+/// Whether lost frames can be the reason of an abort.
 bool may_be_lost_frames(AbortCode code) {
   switch (code) {
     case AbortCode::toggle_not_alternated:
@@ -28,7 +28,7 @@ bool may_be_lost_frames(AbortCode code) {
   }
 }
 
-/// Of `size` bytes in segments.
+/// Number of bytes without data in the last segment of a value with `size` bytes.
 std::uint8_t unused_in_last_segment(std::size_t size) {
   return static_cast<std::uint8_t>(size == 0 ? segment_bytes : (segment_bytes - size % segment_bytes) % segment_bytes);
 }
@@ -112,7 +112,7 @@ void SdoTransfer::fail(AbortCode code) {
   abort_code_ = code;
 }
 
-/// The server has aborted the attempt, or knows that the client has.
+/// Begins another attempt. The server has aborted this one, or knows that the client has.
 void SdoTransfer::retry(AbortCode code) {
   if (attempts_ < options_.attempts) {
     state_ = State::running;
@@ -199,7 +199,7 @@ void SdoTransfer::receive_abort(const CanFrame& frame) {
   const auto code = static_cast<AbortCode>(sdo::data(frame));
   const bool is_own = sdo::address(frame) == address_;
   if (step_ == Step::initiate && !is_own) {
-    return;  // of a transfer before
+    return;  // the frame belongs to a transfer before
   }
   if (step_ == Step::initiate && uses_block_ && code == AbortCode::unknown_command) {
     has_no_block_ = true;
@@ -270,7 +270,7 @@ void SdoTransfer::receive_upload(const CanFrame& frame) {
   }
 }
 
-// Segments.
+// Segmented transfers.
 
 void SdoTransfer::send_segment() {
   const std::size_t bytes = std::min<std::size_t>(segment_bytes, data_.size() - offset_);

@@ -5,7 +5,7 @@
 namespace proleg::canopen {
 namespace {
 
-/// Counts writes and keeps the one at a position.
+/// Counts writes and keeps the write at a position.
 class Picker {
  public:
   explicit Picker(std::size_t position) : position_(position) {}

@@ -14,12 +14,12 @@
 
 namespace proleg::canopen {
 
-/// Silence of the host after which a module stops.
+/// Time without a heartbeat of the host after which a module stops.
 inline constexpr std::uint32_t host_timeout_ms = 500;
 /// Period of a module's heartbeat.
 inline constexpr std::uint32_t heartbeat_period_ms = 100;
 
-/// A parameter of a joint that differs from its default.
+/// A parameter of a joint with a value that differs from its default.
 struct StartValue {
   std::uint8_t slot;
   std::uint8_t joint;
@@ -27,33 +27,33 @@ struct StartValue {
   std::int32_t value;
 };
 
-/// A robot on a bus.
+/// The set-up of a robot on a bus.
 struct RobotSetup : RobotConfiguration {
   std::uint32_t command_speed = default_command_speed;  ///< the greatest speed of commanded angles, degrees a second
-  std::span<const AngleLimits> limits;                  ///< of each joint, in kernel order
+  std::span<const AngleLimits> limits;                  ///< limits of each joint, in kernel order
   std::span<const StartValue> start_values;             ///< if an address occurs several times, the last value counts
 };
 
 struct SdoWrite {
   Address address;
-  std::uint8_t size;  ///< bytes
+  std::uint8_t size;  ///< number of bytes
   std::uint32_t value;
 
   friend bool operator==(const SdoWrite&, const SdoWrite&) = default;
 };
 
-/// The writes that configure a module for a joint, in the order in which they must be made: heartbeats, what the kernel
-/// needs, `activate`, then limits and parameters. The module is in Pre-operational after a reset, so values that equal
-/// the defaults are left out.
+/// The writes that configure a module for a joint, in the order in which they must be made: heartbeats, the
+/// configuration of the kernel, `activate`, then limits and parameters. The module is in Pre-operational after a reset,
+/// so values that equal the defaults are left out.
 ///
-/// setup: must outlive the list. The list is empty if there is no such joint, or if nodes or limits are missing. The
+/// setup: must outlive the list. The list is empty if the joint does not exist, or if nodes or limits are missing. The
 /// list leaves out a start value without a parameter of an algorithm that drives the joint.
 class SetupList {
  public:
   SetupList(const RobotSetup& setup, unsigned joint);
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// position: below size().
+  /// The write at a position below size().
   [[nodiscard]] SdoWrite at(std::size_t position) const;
 
  private:
@@ -67,7 +67,7 @@ class SetupList {
   unsigned joint_;
   JointMask second_channel_;
   Values start_values_{};
-  std::array<std::uint32_t, max_slots> to_write_{};  ///< of each slot, bit p: parameter p differs from its default
+  std::array<std::uint32_t, max_slots> to_write_{};  ///< for each slot, bit p: parameter p differs from its default
   std::size_t size_ = 0;
 };
 

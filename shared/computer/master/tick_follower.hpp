@@ -7,17 +7,17 @@
 
 namespace proleg::canopen {
 
-/// Follows the robot's tick by TICK, which announces the tick of the next SYNC, and by the counters of SYNC.
+/// Follows the robot's tick by TICK, which announces the tick of the next SYNC, and by the counter of SYNC.
 class TickFollower {
  public:
   void announce(std::uint32_t tick) { announced_ = tick; }
 
-  /// counter: 1 to 128.
+  /// Takes a SYNC. counter: 1 to 128.
   void sync(std::uint8_t counter) {
     if (announced_ && sync_counter(*announced_) == counter) {
       tick_ = announced_;
     } else if (tick_) {
-      *tick_ += ticks_until_counter(*tick_, counter);  // 0 for a repeated SYNC
+      *tick_ += ticks_until_counter(*tick_, counter);  // a repeated SYNC adds 0
     }
     announced_.reset();
   }

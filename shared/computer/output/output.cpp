@@ -18,7 +18,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& folder) {
 }
 
 std::filesystem::path follow_links(const std::filesystem::path& path) {
-  constexpr int max_links = 40;  // as the kernel follows
+  constexpr int max_links = 40;  // the limit of the kernel
   std::error_code error;
   if (std::filesystem::exists(path, error)) {
     const std::filesystem::path real = std::filesystem::canonical(path, error);
@@ -58,7 +58,7 @@ void Output::open_new_file() {
   constexpr mode_t permissions = 0777;
   struct stat before {};
   if (descriptor_ >= 0 && stat(path_.c_str(), &before) == 0) {
-    fchmod(descriptor_, before.st_mode & permissions);  // fails on file systems without permissions
+    fchmod(descriptor_, before.st_mode & permissions);  // it fails on file systems without permissions
   }
 }
 
@@ -92,7 +92,7 @@ void Output::finish() {
     }
   }
   if (descriptor_ > STDOUT_FILENO) {
-    // Some file systems report a full disk only here.
+    // Some file systems report a full disk only when a file is closed.
     const int result = close(descriptor_);
     descriptor_ = -1;
     if (result != 0) {

@@ -10,20 +10,20 @@ namespace proleg {
 /// canonical, so that equal results are one file. A path that cannot be followed is returned as it is.
 [[nodiscard]] std::filesystem::path follow_links(const std::filesystem::path& path);
 
-/// A name in a folder that no file of another program has, for a file that is renamed when it is complete. It does not
-/// depend on the final name, which may be as long as names can be.
+/// A name in a folder that no file of another program has. It is for a file that is renamed when it is complete. The
+/// name does not depend on the final name, which may be as long as names can be.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& folder);
 
 /// The file into which a tool writes its result. The file appears under its name only when it is complete: the data
-/// goes into a file without a name, which ends with the process, however that ends; finish() gives it the name. It gets
-/// the permissions of the file that it replaces. (A file system that has no such files gets a temporary one, which a
+/// goes into a file without a name, which ends with the process in any case; finish() gives it the name. It gets the
+/// permissions of the file that it replaces. (On a file system without such files it is a temporary file, which a
 /// signal can leave behind. An existing target that is not an ordinary file, such as a pipe or a device, is written
 /// directly.)
 class Output {
  public:
   /// Throws FileError if the file cannot be created.
   explicit Output(const std::filesystem::path& path);
-  /// Standard output.
+  /// Writes to standard output.
   Output();
   ~Output();
   Output(const Output&) = delete;
@@ -41,7 +41,7 @@ class Output {
 
   std::filesystem::path path_;
   bool is_unnamed_ = false;
-  std::filesystem::path temporary_;  ///< the name until finish(); empty if there is none
+  std::filesystem::path temporary_;  ///< the name of the temporary file until finish(); empty if the file has no name
   int descriptor_;
   std::string buffer_;
 };
@@ -49,7 +49,7 @@ class Output {
 /// Writes a whole file. Throws as Output does.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-/// The program that reads standard output has ended. This is no error to report.
+/// Exception: the program that reads standard output has ended. This is no error to report.
 class ReaderGone {};
 
 }  // namespace proleg

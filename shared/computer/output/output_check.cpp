@@ -53,7 +53,7 @@ void check(const PlannedOutput& output) {
   require_permission(output, folder, W_OK | X_OK);
 }
 
-/// Whether two names are those of one file, which need not exist yet. A device has room for several outputs.
+/// Whether two names are those of one file, which need not exist yet. A device may be the target of several outputs.
 bool is_one_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::exists(a, error) && fs::exists(b, error)) {
@@ -62,7 +62,7 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
   return follow_links(a) == follow_links(b);
 }
 
-/// The files of an output, itself the first.
+/// The files of an output: its own file first, then its companions.
 std::vector<fs::path> files_of(const PlannedOutput& output) {
   const fs::path target = follow_links(output.path);
   std::vector<fs::path> files{target};

@@ -11,12 +11,12 @@ namespace proleg {
 
 /// A file that a program is going to write.
 struct PlannedOutput {
-  std::string option;  ///< for messages: "--record"
+  std::string option;  ///< name for messages: "--record"
   std::filesystem::path path;
-  std::string kind;  ///< what the program writes: "CAN log"
-  /// Whether an existing file is of this kind, so that it may be replaced. Empty files always may.
+  std::string kind;  ///< kind of file that the program writes: "CAN log"
+  /// Whether an existing file is of this kind, so that it may be replaced. Empty files may always be replaced.
   std::function<bool(const std::filesystem::path&)> is_of_kind;
-  bool must_be_file = false;                 ///< a pipe or a device cannot be written
+  bool must_be_file = false;                 ///< whether the output cannot be a pipe or a device
   std::vector<std::string> companions = {};  ///< suffixes of files that are written beside it
 };
 

@@ -59,7 +59,7 @@ bool Statement::step() {
   return false;
 }
 
-// The result repeats the error of the last step, which was reported there.
+// The result is not checked: it repeats the error of the last step, which was reported there.
 void Statement::reset() { sqlite3_reset(statement_); }
 
 std::string Statement::text(int column) const {
@@ -73,7 +73,7 @@ void Statement::bind(int position, std::int64_t value) { check(sqlite3_bind_int6
 
 void Statement::bind(int position, double value) { check(sqlite3_bind_double(statement_, position, value)); }
 
-// Without a destructor SQLite takes no copy: the text outlives the run() or the row loop that binds it.
+// SQLite takes no copy if it is given no destructor. The text outlives the run() or the row loop that binds it.
 void Statement::bind(int position, std::string_view value) {
   check(sqlite3_bind_text64(statement_, position, value.data(), value.size(), nullptr, SQLITE_UTF8));
 }

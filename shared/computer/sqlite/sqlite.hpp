@@ -1,6 +1,6 @@
 #pragma once
 
-// A thin layer over SQLite: a connection, prepared statements, and errors as exceptions.
+// A small interface of SQLite: a connection, prepared statements, and errors as exceptions.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace proleg {
 class SqliteError : public std::runtime_error {
  public:
   SqliteError(int code, const std::string& what) : std::runtime_error(what), code_(code) {}
-  /// Primary result code, e.g. SQLITE_FULL.
+  /// Primary result code, such as SQLITE_FULL.
   [[nodiscard]] int code() const { return code_ & 0xFF; }
 
  private:
@@ -31,7 +31,7 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Runs statements whose results do not matter.
+  /// Runs statements whose results are not needed.
   void execute(const char* sql);
 
   [[nodiscard]] sqlite3* handle() const { return handle_; }
@@ -41,7 +41,7 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
-/// A prepared statement. Must not outlive its connection.
+/// A prepared statement. It must not outlive its connection.
 class Statement {
  public:
   Statement(Database& database, std::string_view sql);
@@ -58,19 +58,19 @@ class Statement {
     reset();
   }
 
-  /// Restarts the statement with these values; step() then gives row after row.
+  /// Restarts the statement with these values; each call of step() then gives a row.
   template <typename... Values>
   void bind_all(const Values&... values) {
     reset();
     int position = 0;
     (bind(++position, values), ...);
   }
-  /// The next row, or false at the end.
+  /// Goes to the next row; false at the end.
   bool step();
   void reset();
 
-  // Values one by one, for a statement whose number of values is known at run time only. Call reset() first. Positions
-  // count from 1. Text must remain valid until the statement has run.
+  // Binds single values, for a statement whose number of values is known at run time only. Call reset() first.
+  // Positions count from 1. Text must remain valid until the statement has run.
   void bind(int position, std::int64_t value);
   void bind(int position, std::int32_t value) { bind(position, std::int64_t{value}); }
   void bind(int position, std::uint32_t value) { bind(position, std::int64_t{value}); }
@@ -78,7 +78,7 @@ class Statement {
   void bind(int position, double value);  ///< SQLite stores "not a number" as NULL
   void bind(int position, std::string_view value);
 
-  // Columns of the current row, counted from 0.
+  // Values of the columns of the current row, which are counted from 0.
   [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
   [[nodiscard]] bool is_integer(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_INTEGER; }
   [[nodiscard]] bool is_real(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_FLOAT; }

@@ -15,8 +15,8 @@ constexpr std::string_view blanks = " \t\r\n";
 
 unsigned byte_at(std::string_view text, std::size_t position) { return static_cast<unsigned char>(text[position]); }
 
-/// Whether a terminal acts on the character instead of showing it: the control characters of ASCII and Latin-1, the
-/// line and the paragraph separator.
+/// Whether a terminal acts on the character instead of showing it. Such are the control characters of ASCII and
+/// Latin-1, the line separator and the paragraph separator.
 bool breaks_a_line(std::string_view character) {
   const unsigned first = byte_at(character, 0);
   return first < 0x20 || first == 0x7F || (first == 0xC2 && byte_at(character, 1) < 0xA0) ||

@@ -7,10 +7,10 @@
 
 namespace proleg::sim {
 
-/// The crystal of a chip: local time against true time, from the moment the chip was switched on. Integers only.
+/// The crystal of a chip converts between local and true time, from the moment the chip was switched on, in integers.
 class Oscillator {
  public:
-  /// parts_per_billion: how much faster than true time; within +-1,000,000.
+  /// parts_per_billion: by how much local time runs faster than true time; within +-1,000,000.
   explicit Oscillator(std::int32_t parts_per_billion)
       : rate_(std::uint64_t{local_time_per_us} * static_cast<std::uint64_t>(billion + parts_per_billion)) {}
 
@@ -29,7 +29,7 @@ class Oscillator {
  private:
   __extension__ using Wide = unsigned __int128;
   static constexpr std::int64_t billion = 1'000'000'000;
-  /// Local time passes by rate_ in this many nanoseconds.
+  /// Number of nanoseconds in which local time passes by rate_.
   static constexpr std::uint64_t ns_per_rate = 1'000'000'000'000;
 
   std::uint64_t rate_;

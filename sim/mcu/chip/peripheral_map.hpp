@@ -8,14 +8,14 @@
 
 namespace proleg::sim {
 
-/// Which peripheral answers an address of the AHB and APB buses (RM0090, table 1).
+/// The peripherals that answer the addresses of the AHB and APB buses (RM0090, table 1).
 class PeripheralMap {
  public:
   /// Adds a peripheral at its base(). It must outlive the map.
   void add(Peripheral& peripheral);
 
-  /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess where there is none, and for
-  /// an access that is not a whole word. size: bytes.
+  /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess if the address has no
+  /// peripheral, and for an access that is not a whole word. size: bytes.
   [[nodiscard]] std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const;
 
  private:

@@ -22,7 +22,7 @@ Pins::Pins(ChipServices& chip, BoardSignals& board, Timer& timer_2) : chip_(&chi
   }
 }
 
-/// Where an output of TIM2 can reach a pin.
+/// The pins that an output of TIM2 can reach.
 std::span<const Pins::Pin> Pins::timer_2_pins(unsigned channel) {
   static constexpr std::array<Pin, 3> first{{{port_a, 0}, {port_a, 5}, {port_a, 15}}};
   static constexpr std::array<Pin, 2> second{{{port_a, 1}, {port_b, 3}}};
@@ -108,7 +108,7 @@ void Pins::look() {
 
 void Pins::reset() {
   if (watched_) {
-    watched_->next_edge = never_on_chip;  // on the clock before the reset
+    watched_->next_edge = never_on_chip;  // the time is one of the clock before the reset
   }
   look();
 }

@@ -16,7 +16,7 @@ namespace proleg::sim {
 /// CAN1.
 class Pins {
  public:
-  /// All must outlive it.
+  /// The arguments must outlive the pins.
   Pins(ChipServices& chip, BoardSignals& board, Timer& timer_2);
   Pins(const Pins&) = delete;  // the ports refer to it
   Pins& operator=(const Pins&) = delete;
@@ -27,19 +27,18 @@ class Pins {
   [[nodiscard]] bool connect_can() const;
   /// Whether the edges of the transmit pin are too slow for a bit of 1 us.
   [[nodiscard]] bool has_slow_can_edges() const;
-  /// Of an output of TIM2 (1 to 4) that reaches a pin, as Timer::high_time(); nothing if it reaches none or is always
-  /// low.
+  /// Timer::high_time() of an output of TIM2 (1 to 4); nothing if the output reaches no pin or is always low.
   [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel);
 
   /// Called when the level of the watched pin changes, with the time of the edge. The pin is a plain input or output,
-  /// or an output of TIM2; one of another peripheral counts as low.
+  /// or an output of TIM2; a pin that another peripheral drives counts as low.
   using Watch = std::function<void(LocalTime edge, bool high)>;
   void watch(char port, unsigned number, Watch watch);
   /// To be called at next_edge(), and before and after each write of a register: two edges are never due at once.
   void look();
-  /// When the watched pin may change by itself; never_on_chip if nothing is watched.
+  /// Time at which the watched pin may change by itself; never_on_chip if no pin is watched.
   [[nodiscard]] LocalTime next_edge() const { return watched_ ? watched_->next_edge : never_on_chip; }
-  /// After a reset of the chip: time and timers start from 0.
+  /// To be called after a reset of the chip: time and timers start from 0.
   void reset();
 
  private:
@@ -55,13 +54,13 @@ class Pins {
     Pin pin;
     Watch watch;
     bool high = false;
-    LocalTime next_edge = never_on_chip;  ///< or when to look again, if no register is written before
+    LocalTime next_edge = never_on_chip;  ///< time of the edge, or to look again, if no register is written before
   };
 
   [[nodiscard]] static std::span<const Pin> timer_2_pins(unsigned channel);
   [[nodiscard]] bool has_function(const Pin& pin, unsigned function) const;
   [[nodiscard]] unsigned timer_output_at(const Pin& pin) const;
-  /// Of a pin that an output of TIM2 drives.
+  /// Level of a pin that an output of TIM2 drives.
   [[nodiscard]] std::optional<bool> timer_level(const Pin& pin);
   [[nodiscard]] bool level(const Pin& pin);
 

@@ -23,7 +23,7 @@
 namespace proleg::sim {
 namespace {
 
-/// DS8626, embedded reset and power control block: VBOR by BOR_LEV, then VPOR/PDR; typical.
+/// Typical thresholds (DS8626, embedded reset and power control block): VBOR by BOR_LEV, then VPOR/PDR.
 struct ResetThreshold {
   std::uint32_t falling_mv;
   std::uint32_t rising_mv;
@@ -136,7 +136,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     const LocalTime due = oscillator_.at(now_on_bus);
     const LocalTime horizon = std::max(due, oscillator_.at(quiet_until));
     if (cpu_.state() == Cpu::State::sleeping) {
-      // Something on the bus may have woken it, at `due`.
+      // An event of the bus may have woken the CPU at `due`.
       pass_to(std::max(now(), std::min(due, next_visible_event())));
     }
     while (!stands_still_) {
@@ -168,7 +168,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   void catch_up_before(BusTime time) {
     const bool executes = cpu_.state() != Cpu::State::sleeping && is_awake();
     if (!on_ || stands_still_ || is_held_ || time == 0 || executes) {
-      return;  // a CPU that executes takes each event in its time
+      return;  // a CPU that executes takes each event at its time
     }
     const LocalTime until = std::min(oscillator_.at(time - 1), next_visible_event());
     if (until > now()) {
@@ -177,7 +177,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
-  /// Does what is due and not visible.
+  /// Does the events that are due and not visible.
   void catch_up() {
     guard([this] {
       timer_3_.advance();
@@ -186,7 +186,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     next_internal_event_.reset();
   }
 
-  /// Something outside changes at the present time.
+  /// Applies a change outside of the chip at the present time.
   template <typename Action>
   void change_outside(const Action& action) {
     const LocalTime time = now();
@@ -257,7 +257,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
     return std::min(*next_internal_event_, cpu_.next_system_tick());
   }
-  /// Without those that only a CPU that executes can see.
+  /// Time of the next event, without events that only a CPU that executes can see.
   [[nodiscard]] LocalTime next_visible_event() const {
     if (!next_visible_event_) {
       LocalTime next = pins_.next_edge();
@@ -292,7 +292,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     static_cast<void>(follow_core_clock(time));
   }
 
-  /// To be called when the core may have a new clock, with the time before. True if it has.
+  /// To be called when the core may have a new clock, with the time before. True if the clock is new.
   bool follow_core_clock(LocalTime time) {
     if (core_period() == known_core_period_) {
       return false;
@@ -303,20 +303,20 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     return true;
   }
 
-  /// A CPU that has locked up waits for the watchdog.
+  /// Whether the CPU executes; a CPU that has locked up waits for the watchdog.
   [[nodiscard]] bool is_awake() const {
     const Cpu::State state = cpu_.state();
     return state != Cpu::State::locked_up && (state != Cpu::State::sleeping || cpu_.wakes()) &&
            !rcc_.core_stands_still();
   }
 
-  /// A flash operation is under way and the program runs from flash.
+  /// Whether a flash operation is under way and the program runs from flash.
   [[nodiscard]] bool stalls() const {
     if (flash_.busy_until() <= now()) {
       return false;
     }
     const std::uint32_t address = cpu_.core_register(program_counter);
-    return address >= Cpu::flash_start && address - Cpu::flash_start < Cpu::flash_size;
+    return address >= ChipMemory::flash_start && address - ChipMemory::flash_start < ChipMemory::flash_size;
   }
 
   void execute(LocalTime until) {
@@ -371,7 +371,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     faults_since_reset_ = 0;
   }
 
-  /// In reset, by the supply voltage.
+  /// Holds the chip in reset, because of the supply voltage.
   void hold() {
     pass_to(now());
     cut_flash();
@@ -406,7 +406,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   // Memory and registers of the CPU.
 
-  /// The peripheral at an address, which has a clock, and the offset of its register.
+  /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess if it has no clock.
   std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const {
     const auto found = map_.find(address, size);
     rcc_.require_clock(*found.first, found.second);
@@ -462,7 +462,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     return taken;
   }
 
-  /// Something happens at this time, which may be before the end of the run.
+  /// Ends the run at the time of an event if this is earlier.
   void shorten_run(LocalTime next) {
     if (run_end_ == 0 || next > run_end_) {
       return;
@@ -494,7 +494,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
-  /// For DMA.
+  /// The memory that DMA accesses.
   [[nodiscard]] Dma::Memory memory() {
     return {[this](std::uint32_t address, std::span<std::uint8_t> bytes) { cpu_.read(address, bytes); },
             [this](std::uint32_t address, std::span<const std::uint8_t> bytes) { cpu_.write(address, bytes); }};
@@ -540,7 +540,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
-  /// The program has left what is modelled.
+  /// Stops the chip because the program has used what the model does not have.
   void stand_still() {
     if (stands_still_) {
       return;
@@ -578,15 +578,15 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   static constexpr unsigned program_counter = 15;
 
   std::vector<Peripheral*> peripherals_;
-  std::vector<Peripheral*> timed_;  ///< those that act by themselves
+  std::vector<Peripheral*> timed_;  ///< the peripherals that act by themselves
   PeripheralMap map_;
-  mutable std::optional<LocalTime> next_internal_event_;  ///< nothing: not computed; without SysTick's
-  mutable std::optional<LocalTime> next_visible_event_;   ///< the same
+  mutable std::optional<LocalTime> next_internal_event_;  ///< nothing: not computed; without events of SysTick
+  mutable std::optional<LocalTime> next_visible_event_;   ///< nothing: not computed; without events of SysTick
   mutable std::optional<BusTime> next_event_;
   LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_
   std::uint64_t anchor_instructions_ = 0;
   LocalTime known_core_period_ = Clocks::hsi;
-  LocalTime run_end_ = 0;  ///< while instructions are executed
+  LocalTime run_end_ = 0;  ///< end of the run, while instructions are executed
   std::optional<ResetCause> reset_cause_;
   std::uint64_t cuts_ = 0;
   std::uint64_t memory_losses_ = 0;
@@ -594,7 +594,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   std::uint32_t faults_since_reset_ = 0;
   bool on_ = false;
   bool stands_still_ = false;  ///< the model has ended
-  bool is_held_ = false;       ///< in reset
+  bool is_held_ = false;       ///< the supply voltage holds it in reset
   ResetCause release_cause_ = ResetCause::brown_out;
   std::uint32_t supply_mv_ = Pwr::nominal_supply_mv;
   bool steps_ = false;

@@ -21,7 +21,7 @@ constexpr std::uint32_t peripheral_bits_start = 0x4200'0000;
 constexpr std::uint32_t peripheral_bits_end = 0x4400'0000;
 constexpr std::uint32_t peripherals_start = 0x4000'0000;
 constexpr std::uint32_t ram_bits_start = 0x2200'0000;
-constexpr std::uint32_t ram_bits_end = ram_bits_start + Cpu::ram_size * 32;
+constexpr std::uint32_t ram_bits_end = ram_bits_start + ChipMemory::ram_size * 32;
 
 /// The bit that a word of a bit-band alias region stands for (DDI 0403, B3.1; RM0090, 2.3.3).
 struct AliasedBit {
@@ -36,7 +36,7 @@ AliasedBit peripheral_bit(std::uint32_t alias) {
 
 AliasedBit ram_bit(std::uint32_t alias) {
   const std::uint32_t offset = alias - ram_bits_start;
-  return {Cpu::ram_start + (offset >> 5U), offset >> 2U & 7U};
+  return {ChipMemory::ram_start + (offset >> 5U), offset >> 2U & 7U};
 }
 
 void fill_with_noise(std::span<std::uint8_t> bytes, Pcg32& noise) {
@@ -55,15 +55,16 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
         system_control_(*this, nvic_),
         exceptions_(engine_, nvic_, system_control_) {
     lose_memory(0);
-    const std::vector<std::uint8_t> erased(flash_size, 0xFF);
-    static_cast<void>(engine_.write_memory(flash_start, erased));
-    static_cast<void>(engine_.write_memory(system_memory_start, std::span(erased).first(system_memory_size)));
+    const std::vector<std::uint8_t> erased(ChipMemory::flash_size, 0xFF);
+    static_cast<void>(engine_.write_memory(ChipMemory::flash_start, erased));
+    static_cast<void>(
+        engine_.write_memory(ChipMemory::system_memory_start, std::span(erased).first(ChipMemory::system_memory_size)));
   }
 
   void lose_memory(std::uint64_t seed) {
     Pcg32 noise(seed, 0);
-    fill_with_noise({engine_.ram(ram_start, ram_size), ram_size}, noise);
-    fill_with_noise({engine_.ram(ccm_start, ccm_size), ccm_size}, noise);
+    fill_with_noise({engine_.ram(ChipMemory::ram_start, ChipMemory::ram_size), ChipMemory::ram_size}, noise);
+    fill_with_noise({engine_.ram(ChipMemory::ccm_start, ChipMemory::ccm_size), ChipMemory::ccm_size}, noise);
   }
 
   void restart() {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 #include "sim/mcu/cpu/exception_frame.hpp"
 #include "sim/mcu/cpu/memory_instruction.hpp"
 #include "sim/mcu/cpu/thumb.hpp"
@@ -17,7 +17,7 @@ constexpr std::uint32_t peripherals_size = 0x2000'0000;
 constexpr std::uint32_t private_bus_start = 0xE000'0000;
 constexpr std::uint32_t private_bus_size = 0x0010'0000;
 constexpr std::uint32_t ram_bits_start = 0x2200'0000;
-constexpr std::uint32_t ram_bits_size = Cpu::ram_size * 32;
+constexpr std::uint32_t ram_bits_size = ChipMemory::ram_size * 32;
 constexpr std::uint32_t distance_start = 0xA000'0000;
 constexpr std::uint32_t distance_size = 4 * 1024 * 1024;
 
@@ -38,7 +38,7 @@ void check(uc_err error, const char* action) {
   }
 }
 
-bool is_flash(std::uint32_t address) { return address - Cpu::flash_start < Cpu::flash_size; }
+bool is_flash(std::uint32_t address) { return address - ChipMemory::flash_start < ChipMemory::flash_size; }
 
 bool lies_in(std::uint32_t address, std::uint64_t size, std::uint32_t start, std::uint32_t length) {
   return address >= start && std::uint64_t{address} + size <= std::uint64_t{start} + length;
@@ -49,12 +49,14 @@ bool lies_in(std::uint32_t address, std::uint64_t size, std::uint32_t start, std
 /// RAM belongs to the engine, so that stack frames can be copied; Unicorn has the flash, which it must map as
 /// read-only.
 struct Engine::Memory {
-  alignas(4096) std::array<std::uint8_t, Cpu::ram_size> ram;
-  alignas(4096) std::array<std::uint8_t, Cpu::ccm_size> ccm;
+  alignas(4096) std::array<std::uint8_t, ChipMemory::ram_size> ram;
+  alignas(4096) std::array<std::uint8_t, ChipMemory::ccm_size> ccm;
 };
 
 Engine::Engine(EngineClient& client)
-    : client_(client), flash_blocks_(Cpu::flash_start, Cpu::flash_size), memory_(std::make_unique<Memory>()) {
+    : client_(client),
+      flash_blocks_(ChipMemory::flash_start, ChipMemory::flash_size),
+      memory_(std::make_unique<Memory>()) {
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &uc_), "open");
   try {
     // The mode for microcontrollers would silently choose a Cortex-M33; the model brings the mode with it.
@@ -80,13 +82,15 @@ Engine::~Engine() { uc_close(uc_); }
 void Engine::map_memory() {
   // At every store Unicorn looks up the code in its page. That is a third faster if no code lies in the same 4 MB of
   // Unicorn's own memory, which it fills in the order of mapping.
-  check(uc_mem_map_ptr(uc_, Cpu::ram_start, Cpu::ram_size, UC_PROT_ALL, memory_->ram.data()), "map RAM");
+  check(uc_mem_map_ptr(uc_, ChipMemory::ram_start, ChipMemory::ram_size, UC_PROT_ALL, memory_->ram.data()), "map RAM");
   // The core-coupled memory is on the data bus alone.
-  check(uc_mem_map_ptr(uc_, Cpu::ccm_start, Cpu::ccm_size, UC_PROT_READ | UC_PROT_WRITE, memory_->ccm.data()),
+  check(uc_mem_map_ptr(uc_, ChipMemory::ccm_start, ChipMemory::ccm_size, UC_PROT_READ | UC_PROT_WRITE,
+                       memory_->ccm.data()),
         "map the core-coupled memory");
   check(uc_mem_map(uc_, distance_start, distance_size, UC_PROT_NONE), "map distance");
-  check(uc_mem_map(uc_, Cpu::flash_start, Cpu::flash_size, UC_PROT_READ | UC_PROT_EXEC), "map flash");
-  check(uc_mem_map(uc_, Cpu::system_memory_start, Cpu::system_memory_size, UC_PROT_READ), "map system memory");
+  check(uc_mem_map(uc_, ChipMemory::flash_start, ChipMemory::flash_size, UC_PROT_READ | UC_PROT_EXEC), "map flash");
+  check(uc_mem_map(uc_, ChipMemory::system_memory_start, ChipMemory::system_memory_size, UC_PROT_READ),
+        "map system memory");
 }
 
 void Engine::map_registers(std::uint32_t start, std::uint32_t size) {
@@ -130,20 +134,20 @@ void Engine::write(CoreRegister name, std::uint32_t value) {
 }
 
 std::uint8_t* Engine::ram(std::uint32_t address, std::uint32_t size) const {
-  if (lies_in(address, size, Cpu::ram_start, Cpu::ram_size)) {
-    return memory_->ram.data() + (address - Cpu::ram_start);
+  if (lies_in(address, size, ChipMemory::ram_start, ChipMemory::ram_size)) {
+    return memory_->ram.data() + (address - ChipMemory::ram_start);
   }
-  if (lies_in(address, size, Cpu::ccm_start, Cpu::ccm_size)) {
-    return memory_->ccm.data() + (address - Cpu::ccm_start);
+  if (lies_in(address, size, ChipMemory::ccm_start, ChipMemory::ccm_size)) {
+    return memory_->ccm.data() + (address - ChipMemory::ccm_start);
   }
   return nullptr;
 }
 
 bool Engine::is_memory(std::uint32_t address, std::uint64_t size) {
-  return lies_in(address, size, Cpu::ram_start, Cpu::ram_size) ||
-         lies_in(address, size, Cpu::ccm_start, Cpu::ccm_size) ||
-         lies_in(address, size, Cpu::flash_start, Cpu::flash_size) ||
-         lies_in(address, size, Cpu::system_memory_start, Cpu::system_memory_size);
+  return lies_in(address, size, ChipMemory::ram_start, ChipMemory::ram_size) ||
+         lies_in(address, size, ChipMemory::ccm_start, ChipMemory::ccm_size) ||
+         lies_in(address, size, ChipMemory::flash_start, ChipMemory::flash_size) ||
+         lies_in(address, size, ChipMemory::system_memory_start, ChipMemory::system_memory_size);
 }
 
 bool Engine::read_memory(std::uint32_t address, std::span<std::uint8_t> bytes) const {
@@ -173,7 +177,7 @@ bool Engine::write_memory(std::uint32_t address, std::span<const std::uint8_t> b
     return true;
   }
   check(uc_mem_write(uc_, address, bytes.data(), bytes.size()), "write memory");
-  if (lies_in(address, size, Cpu::flash_start, Cpu::flash_size)) {
+  if (lies_in(address, size, ChipMemory::flash_start, ChipMemory::flash_size)) {
     flash_blocks_.discard(address, size);
     discard_code(address, size);
   }
@@ -194,7 +198,7 @@ std::vector<std::uint8_t> Engine::code(std::uint32_t address, std::uint32_t size
 
 CodeBlock Engine::examine(std::uint32_t address, std::uint32_t size) {
   const CodeBlock block = examine_block(code(address, size));
-  if (lies_in(address, size, Cpu::flash_start, Cpu::flash_size)) {
+  if (lies_in(address, size, ChipMemory::flash_start, ChipMemory::flash_size)) {
     flash_blocks_.add(address, block);
   } else {
     code_in_ram_ = true;
@@ -318,7 +322,7 @@ bool Engine::on_bad_access(uc_engine* /*uc*/, uc_mem_type type, std::uint64_t ad
   if (engine.has_fault_) {
     return false;
   }
-  if (type == UC_MEM_WRITE_PROT && lies_in(address, bytes, Cpu::flash_start, Cpu::flash_size)) {
+  if (type == UC_MEM_WRITE_PROT && lies_in(address, bytes, ChipMemory::flash_start, ChipMemory::flash_size)) {
     const auto word = static_cast<std::uint32_t>(value);
     // True: Unicorn drops the store and continues.
     if (engine.client_.store_to_flash(address, bytes, bytes < 4 ? word & ((1U << 8U * bytes) - 1U) : word)) {

@@ -113,7 +113,7 @@ Exceptions::Vector Exceptions::vector(unsigned number) {
     return {true, vectors_[number]};
   }
   // After reset the table is at 0, where the chip shows the flash (RM0090, 2.4).
-  const std::uint32_t place = (table < Cpu::flash_size ? table + Cpu::flash_start : table) + 4 * number;
+  const std::uint32_t place = (table < ChipMemory::flash_size ? table + ChipMemory::flash_start : table) + 4 * number;
   std::array<std::uint8_t, 4> bytes{};
   if (!engine_->read_memory(place, bytes)) {
     return {false, 0};

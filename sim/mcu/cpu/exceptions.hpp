@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 #include "sim/mcu/cpu/engine.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_control.hpp"

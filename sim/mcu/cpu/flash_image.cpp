@@ -8,7 +8,7 @@
 #include <string>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -120,20 +120,22 @@ void check_processor(const ElfImage& image) {
 
 void check_segments(const ElfImage& image) {
   if (image.segments().empty()) {
-    refuse(image, "nothing to load", "a program for the flash at " + hexadecimal(Cpu::flash_start));
+    refuse(image, "nothing to load", "a program for the flash at " + hexadecimal(ChipMemory::flash_start));
   }
   std::vector<const ElfImage::Segment*> sorted;
   for (const ElfImage::Segment& segment : image.segments()) {
     const std::uint64_t end = std::uint64_t{segment.load_address} + segment.bytes.size();
-    if (segment.load_address < Cpu::flash_start || segment.load_address >= Cpu::flash_start + Cpu::flash_size) {
+    if (segment.load_address < ChipMemory::flash_start ||
+        segment.load_address >= ChipMemory::flash_start + ChipMemory::flash_size) {
       refuse(image, "a segment at " + hexadecimal(segment.load_address) + ", a program for another chip",
-             "all of it in the flash at " + hexadecimal(Cpu::flash_start));
+             "all of it in the flash at " + hexadecimal(ChipMemory::flash_start));
     }
-    if (end > Cpu::flash_start + Cpu::flash_size) {
+    if (end > ChipMemory::flash_start + ChipMemory::flash_size) {
       refuse(image,
              "a segment at " + hexadecimal(segment.load_address) + " of " + std::to_string(segment.bytes.size()) +
                  " bytes",
-             "at most " + std::to_string(Cpu::flash_size) + " bytes from " + hexadecimal(Cpu::flash_start) + " on");
+             "at most " + std::to_string(ChipMemory::flash_size) + " bytes from " +
+                 hexadecimal(ChipMemory::flash_start) + " on");
     }
     sorted.push_back(&segment);
   }
@@ -172,11 +174,12 @@ void check_vector_table(const ElfImage& image, std::uint32_t address) {
   const auto is_end_of = [&](std::uint32_t memory, std::uint32_t size) {
     return *stack > memory && *stack <= memory + size;
   };
-  if (*stack % 4 != 0 || !(is_end_of(Cpu::ram_start, Cpu::ram_size) || is_end_of(Cpu::ccm_start, Cpu::ccm_size))) {
+  if (*stack % 4 != 0 || !(is_end_of(ChipMemory::ram_start, ChipMemory::ram_size) ||
+                           is_end_of(ChipMemory::ccm_start, ChipMemory::ccm_size))) {
     refuse(image,
            "a vector table at " + hexadecimal(address) + " with the initial stack pointer " + hexadecimal(*stack),
-           "a multiple of 4 within RAM (" + hexadecimal(Cpu::ram_start) + ") or core-coupled memory (" +
-               hexadecimal(Cpu::ccm_start) + ")");
+           "a multiple of 4 within RAM (" + hexadecimal(ChipMemory::ram_start) + ") or core-coupled memory (" +
+               hexadecimal(ChipMemory::ccm_start) + ")");
   }
   if (*start % 2 == 0 || !word_at(image, (*start & ~3U))) {
     refuse(image, "a vector table at " + hexadecimal(address) + " with the start address " + hexadecimal(*start),
@@ -189,7 +192,7 @@ void check_vector_table(const ElfImage& image, std::uint32_t address) {
 FlashImage::FlashImage(const std::filesystem::path& file) : elf_(file) {
   check_processor(elf_);
   check_segments(elf_);
-  require_vector_table(Cpu::flash_start);
+  require_vector_table(ChipMemory::flash_start);
 }
 
 void FlashImage::require_vector_table(std::uint32_t address) const { check_vector_table(elf_, address); }

@@ -7,11 +7,11 @@ namespace proleg::sim {
 
 class Cpu;
 
-/// A program that stands still, for a debugger. The owner of the target steps and runs it, see
-/// gdb_server.hpp. No function may throw.
+/// A stopped program, as a debugger sees it. The owner of the target steps and runs it (gdb_server.hpp). No function
+/// may throw.
 class DebugTarget {
  public:
-  /// r0 to r12, sp, lr, pc, xpsr.
+  /// Number of registers: r0 to r12, sp, lr, pc, xpsr.
   static constexpr unsigned register_count = 17;
   static constexpr unsigned program_counter = 15;
 
@@ -19,19 +19,19 @@ class DebugTarget {
   [[nodiscard]] virtual std::uint32_t core_register(unsigned number) const = 0;
   virtual void set_core_register(unsigned number, std::uint32_t value) = 0;
 
-  /// False if there is no memory at one of the addresses; `bytes`, or the memory, may be changed in part then.
+  /// Both return false if one of the addresses has no memory; then a part of `bytes`, or of the memory, may have
+  /// changed.
   [[nodiscard]] virtual bool read_memory(std::uint32_t address, std::span<std::uint8_t> bytes) const = 0;
   [[nodiscard]] virtual bool write_memory(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
 
-  /// The program stops before these addresses. Replaces the breakpoints before. Even addresses, ascending, without
-  /// repetition.
+  /// Replaces the breakpoints: the program stops before these addresses, which are even and ascend without repetition.
   virtual void set_breakpoints(std::span<const std::uint32_t> addresses) = 0;
 
  protected:
   ~DebugTarget() = default;
 };
 
-/// A virtual CPU as a target. Peripheral registers cannot be read: looking at them would change them.
+/// A virtual CPU as a target. Peripheral registers cannot be read: a read would change them.
 class CpuTarget final : public DebugTarget {
  public:
   /// The CPU must outlive the target.

@@ -11,7 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-// Numbers as of errno; clients show them and do not interpret them.
+// Error numbers of errno; clients show them and do not interpret them.
 constexpr const char* malformed = "E16";  // EINVAL
 constexpr const char* no_memory = "E0e";  // EFAULT
 constexpr const char* done = "OK";
@@ -37,7 +37,7 @@ struct Range {
   std::uint32_t length = 0;
 };
 
-// "START,LENGTH"
+// Parses "START,LENGTH".
 std::optional<Range> range_of(std::string_view text) {
   const auto [before, after] = split(text, ',');
   const auto start = hex_number(before);
@@ -68,7 +68,7 @@ std::optional<std::uint32_t> register_value(std::string_view digits) {
   return value;
 }
 
-// Feature org.gnu.gdb.arm.m-profile: "Debugging with GDB", appendix G.5.3.
+// Describes the feature org.gnu.gdb.arm.m-profile ("Debugging with GDB", appendix G.5.3).
 std::string target_description() {
   std::string text =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target version=\"1.0\">\n"
@@ -134,7 +134,7 @@ GdbCommands::Answer GdbCommands::answer(std::string_view packet) {
       return resume(Resume::run, rest);
     case 's':
       return resume(Resume::step, rest);
-    // With a signal, which a bare CPU does not have.
+    // Resume with a signal, which a bare CPU does not have.
     case 'C':
       return resume(Resume::run, split(rest, ';').after.value_or(""));
     case 'S':
@@ -193,7 +193,7 @@ GdbCommands::Answer GdbCommands::resume(Resume how, std::string_view address) {
   return {std::nullopt, how};
 }
 
-// "ACTION[:THREAD];ACTION[:THREAD]...": the first that names the thread counts.
+// Parses "ACTION[:THREAD];ACTION[:THREAD]...": the first action that names the thread counts.
 GdbCommands::Answer GdbCommands::resume_threads(std::string_view actions) {
   for (std::optional<std::string_view> rest = actions; rest;) {
     const auto [item, others] = split(*rest, ';');
@@ -238,7 +238,7 @@ std::string GdbCommands::query(std::string_view packet) const {
     return "l";
   }
   if (head == "Attached") {
-    return "1";  // So that a client that quits detaches and does not kill.
+    return "1";  // A client that quits then detaches and does not kill.
   }
   return unknown;
 }
@@ -342,18 +342,18 @@ std::string GdbCommands::write_memory(std::string_view text, bool binary) {
   if (std::uint64_t{wanted->start} + wanted->length > std::uint64_t{1} << 32U) {
     return no_memory;
   }
-  // With no bytes a client asks whether the command is known.
+  // With no bytes a client asks whether the server knows the command.
   return bytes->empty() || target_->write_memory(wanted->start, *bytes) ? done : no_memory;
 }
 
-// "KIND,ADDRESS,SIZE[;CONDITIONS]"
+// Parses "KIND,ADDRESS,SIZE[;CONDITIONS]".
 std::string GdbCommands::change_breakpoint(std::string_view text, bool insert) {
   const auto [kind, rest] = split(text, ',');
   if (kind.size() != 1 || !rest) {
     return malformed;
   }
   if (kind != "0" && kind != "1") {
-    return unknown;  // Watchpoints.
+    return unknown;  // Kinds 2 to 4 are watchpoints.
   }
   const auto range = range_of(split(*rest, ';').before);
   if (!range) {

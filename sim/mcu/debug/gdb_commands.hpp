@@ -1,7 +1,7 @@
 #pragma once
 
 // The commands of the GDB remote serial protocol ("Debugging with GDB", appendix E.2 to E.4) for one ARMv7-M core,
-// which is thread 1. Without sockets: payload in, payload out.
+// which is thread 1. They map payload to payload, without sockets.
 
 #include <cstdint>
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace proleg::sim {
 
-/// Why a target stands still.
+/// Reasons why a target has stopped.
 enum class StopReason : std::uint8_t {
   attached,    ///< before its first instruction, or because a client has connected: SIGTRAP
   breakpoint,  ///< SIGTRAP
@@ -25,7 +25,7 @@ enum class StopReason : std::uint8_t {
   fault,       ///< SIGSEGV
 };
 
-/// How the client resumes a target that stood still.
+/// Ways in which the client resumes a stopped target.
 enum class Resume : std::uint8_t {
   run,          ///< until a breakpoint, a fault or interrupt_requested()
   step,         ///< one instruction, then serve() again
@@ -45,12 +45,12 @@ class GdbCommands {
     std::optional<std::string> reply;  ///< payload to send; an empty one means: unknown command
     std::optional<Resume> resume;
   };
-  /// Does not throw for a wrong packet: the answer is an error number then.
+  /// Answers a packet. A wrong packet gets an error number.
   [[nodiscard]] Answer answer(std::string_view packet);
 
   void set_monitor(MonitorCommand monitor) { monitor_ = std::move(monitor); }
   void set_stop_reason(StopReason reason) { reason_ = reason; }
-  /// The stop reply packet: signal, and the registers that a debugger looks at first.
+  /// The stop reply packet: the signal, and the registers that a debugger reads first.
   [[nodiscard]] std::string stop_reply() const;
   /// Removes all breakpoints, also from the target.
   void clear_breakpoints();

@@ -15,14 +15,14 @@ namespace proleg::sim {
 /// `$`, the payload with `# $ } *` escaped, `#`, and the sum of the bytes between modulo 256, in hexadecimal.
 [[nodiscard]] std::string gdb_packet(std::string_view payload);
 
-/// Bytes as hexadecimal digits, and back; nothing for an odd number of digits or for anything that is no digit.
+/// Convert bytes to hexadecimal digits, and back; nothing for an odd number of digits or another character.
 [[nodiscard]] std::string to_hex(std::span<const std::uint8_t> bytes);
 [[nodiscard]] std::optional<std::vector<std::uint8_t>> from_hex(std::string_view digits);
 
-/// A number in hexadecimal digits, nothing else around it, at most 0xFFFFFFFF.
+/// Parses a number of only hexadecimal digits, at most 0xFFFFFFFF.
 [[nodiscard]] std::optional<std::uint32_t> hex_number(std::string_view digits);
 
-/// What a client sends.
+/// One input that a client sends.
 struct GdbInput {
   enum class Kind : std::uint8_t {
     packet,
@@ -33,17 +33,17 @@ struct GdbInput {
     refused,    ///< `-`: the client wants the last packet again
   };
   Kind kind = Kind::packet;
-  std::string payload;  ///< of a packet, without escapes
+  std::string payload;  ///< payload of a packet, without escapes
 };
 
-/// Splits a stream of bytes into packets and signs. Ignores other bytes between packets; a `$` within a packet starts a
-/// new one.
+/// Splits a stream of bytes into packets and signs. It ignores other bytes between packets; a `$` within a packet
+/// starts a new one.
 class GdbDecoder {
  public:
-  /// Between `$` and `#`, as sent.
+  /// Largest number of bytes between `$` and `#`, with escapes.
   static constexpr std::size_t max_packet = 0x4000;
 
-  /// Appends what was received. Memory is bounded if the caller takes all inputs before it feeds more.
+  /// Appends received bytes. Memory is bounded if the caller takes all inputs before it feeds more.
   void feed(std::string_view bytes);
   [[nodiscard]] std::optional<GdbInput> next();
 

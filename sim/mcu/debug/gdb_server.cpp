@@ -154,7 +154,7 @@ std::optional<GdbInput> GdbServer::next_input() {
 
 std::optional<Resume> GdbServer::handle(const GdbInput& input) {
   switch (input.kind) {
-    case GdbInput::Kind::interrupt:  // It stands still already.
+    case GdbInput::Kind::interrupt:  // The target has stopped already.
     case GdbInput::Kind::accepted:
       break;
     case GdbInput::Kind::refused:

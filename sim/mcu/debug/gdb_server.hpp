@@ -1,6 +1,6 @@
 #pragma once
 
-// Lets GDB inspect a program that stands still: `gdb-multiarch IMAGE -ex 'target remote :PORT'`.
+// Lets GDB inspect a stopped program: `gdb-multiarch IMAGE -ex 'target remote :PORT'`.
 //
 // The owner of the target runs and stops it; the server communicates while it stands still:
 //
@@ -41,7 +41,7 @@ namespace proleg::sim {
 
 class GdbServer {
  public:
-  /// Whether to stop waiting; called at least every 100 ms.
+  /// Returns whether to stop waiting; called at least every 100 ms.
   using Interrupted = std::function<bool()>;
 
   /// Listens on 127.0.0.1. The target must outlive the server. Throws std::runtime_error with one line if the port
@@ -57,7 +57,7 @@ class GdbServer {
   /// Blocks until there is a client; false if `interrupted` was true before.
   [[nodiscard]] bool wait_for_client(const Interrupted& interrupted);
 
-  /// To be called when the target stands still. Reports the stop to the client, and answers it until it resumes the
+  /// To be called when the target has stopped. Reports the stop to the client, and answers it until it resumes the
   /// target.
   [[nodiscard]] Resume serve(StopReason reason, const Interrupted& interrupted);
 
@@ -65,8 +65,8 @@ class GdbServer {
   /// if the target must stop: the client requests it, or a new one has connected.
   [[nodiscard]] bool interrupt_requested();
 
-  /// Text for the user, while the target runs or before serve(): what caused a fault, say. It is dropped if no client
-  /// waits for the target, or if the client does not read.
+  /// Sends a text to the user, while the target runs or before serve(), for example the cause of a fault. The text is
+  /// dropped if no client waits for the target, or if the client does not read.
   void send_text(std::string_view text);
 
   /// The program has ended: reports this status to the client and disconnects it.

@@ -27,7 +27,7 @@ sockaddr* general(sockaddr_in& address) { return reinterpret_cast<sockaddr*>(&ad
 
 void set_option(int socket, int level, int option) {
   const int on = 1;
-  // Everything works without it, only slower.
+  // The socket works without the option, only slower.
   static_cast<void>(setsockopt(socket, level, option, &on, sizeof on));
 }
 

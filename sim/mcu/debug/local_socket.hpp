@@ -1,6 +1,6 @@
 #pragma once
 
-// TCP on 127.0.0.1, for one client, without waiting unless wait() is called. Linux; POSIX.1-2008 sockets.
+// TCP on 127.0.0.1 for one client; only wait() waits. It needs Linux and POSIX.1-2008 sockets.
 
 #include <cstddef>
 #include <cstdint>
@@ -33,7 +33,7 @@ class LocalConnection {
  public:
   explicit LocalConnection(FileDescriptor socket);
 
-  /// Number of bytes sent or received now, 0 if that has to wait or the connection is lost.
+  /// Send and receive return the number of bytes, 0 if the call would have to wait or the connection is lost.
   std::size_t send(std::string_view bytes);
   std::size_t receive(std::span<char> bytes);
   /// False once send() or receive() has found the connection closed or broken.
@@ -49,7 +49,7 @@ class LocalConnection {
 
 class LocalListener {
  public:
-  /// Port 0: any free one. Throws std::runtime_error with one line if the port cannot be had.
+  /// Listens on a port; 0: any free port. Throws std::runtime_error with one line if the port is not available.
   explicit LocalListener(std::uint16_t port);
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
@@ -61,13 +61,13 @@ class LocalListener {
   std::uint16_t port_ = 0;
 };
 
-/// Which of the two can be used without waiting.
+/// Shows which of the two can be used without waiting.
 struct Ready {
   bool listener = false;    ///< a client wants to connect
-  bool connection = false;  ///< bytes can be received (or sent, if that was asked for), or the connection is lost
+  bool connection = false;  ///< bytes can be received (or sent, if to_send), or the connection is lost
 };
 
-/// Waits until one of them is ready, at most this time; 0 does not wait. connection: may be null.
+/// Waits until one of them is ready, at most a given time; 0 does not wait. connection may be null.
 [[nodiscard]] Ready wait(const LocalListener& listener, const LocalConnection* connection, bool to_send,
                          int milliseconds);
 

@@ -29,7 +29,7 @@ std::vector<std::uint8_t> FirmwareImage::image() const {
   std::vector<std::uint8_t> image;
   for (const ElfImage::Segment& segment : flash_.elf().segments()) {
     if (segment.load_address < flash_layout::slot_a) {
-      continue;  // the start stub
+      continue;  // this is the start stub
     }
     const std::size_t offset = segment.load_address - flash_layout::slot_a;
     image.resize(std::max(image.size(), offset + segment.bytes.size()), erased);

@@ -15,7 +15,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/loop/crystal.hpp"
+#include "sim/hardware_loop/crystal.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -48,7 +48,7 @@ firmware::ModuleIdentity identity_of(const std::array<std::uint32_t, 3>& unique_
   return identity;
 }
 
-/// A slot with this image alone.
+/// A slot that contains only this image.
 std::vector<std::uint8_t> slot_with(std::span<const std::uint8_t> image) {
   constexpr std::uint8_t erased = 0xFF;
   std::vector<std::uint8_t> slot(layout::image_sector_a.size, erased);
@@ -103,7 +103,7 @@ class Flashing final : private BusListener {
   static constexpr BusTime question_period = 100 * ms;
 
   [[nodiscard]] ModuleParts parts(const firmware::ModuleIdentity& identity) {
-    const auto readings = [] { return firmware::ServoReadings{}; };
+    const auto readings = [] { return ServoReadings{}; };
     return {bus_, 0, identity, Crystal(), [] { return std::uint8_t{0}; }, readings, readings, false};
   }
 
@@ -138,7 +138,7 @@ class Flashing final : private BusListener {
                    with(stm32f405::board::id, layout::image_body));
   }
 
-  /// The program starts on trial.
+  /// Starts the program on trial; true if it confirms itself.
   [[nodiscard]] bool confirms_itself() {
     static_cast<void>(controller_.send(broadcast::leave_frame(session)));
     constexpr std::uint32_t word_at = layout::image_sector_a.address + layout::image_sector_a.size - Slots::words_size;
@@ -147,7 +147,7 @@ class Flashing final : private BusListener {
     for (BusTime next_question = bus_.now();
          bus_.now() < end && read_little_endian(word, 0, word.size()) != Slots::confirmed_word;) {
       if (bus_.now() >= next_question) {
-        // A program that hears nobody is not confirmed: it could not be replaced.
+        // A program that receives no frame is not confirmed: it could not be replaced.
         static_cast<void>(controller_.send(broadcast::status_frame(targets_[0].serial)));
         next_question = bus_.now() + question_period;
       }
@@ -157,7 +157,7 @@ class Flashing final : private BusListener {
     return bus_.now() < end;
   }
 
-  /// How long a start takes.
+  /// Starts the program and returns the duration of the start.
   [[nodiscard]] BusTime start() {
     boot_up_.reset();
     const BusTime begin = bus_.now();
@@ -170,7 +170,7 @@ class Flashing final : private BusListener {
     return *boot_up_ - begin - boot_up_delay_;
   }
 
-  /// The program has confirmed itself after one start on trial.
+  /// The slot's contents after the program has confirmed itself at its first start on trial.
   [[nodiscard]] std::vector<std::uint8_t> confirmed_slot() const {
     std::vector<std::uint8_t> slot = slot_with(image_);
     const std::size_t words = slot.size() - Slots::words_size;
@@ -197,7 +197,7 @@ class Flashing final : private BusListener {
 
   [[nodiscard]] bool target_is_lost() const { return targets_[0].is_lost; }
 
-  /// Whether it came true before the timeout.
+  /// Waits for a condition; returns whether it became true before the timeout.
   bool wait_for(const std::function<bool()>& wanted, BusTime timeout) {
     const BusTime end = bus_.now() + timeout;
     while (!wanted() && bus_.now() < end) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// A chip as those of a robot are flashed: its bootloader receives the image of a module over the bus and installs it,
-// the program starts on trial, and confirms itself (docs/flashing.md).
+// Flashes a chip like those of a robot: its bootloader receives the image of a module over the bus and installs it, the
+// program starts on trial, and confirms itself (docs/flashing.md).
 
 #include <array>
 #include <cstddef>
@@ -16,14 +16,14 @@
 namespace proleg::sim {
 
 struct FlashedChip {
-  /// The bootloader in sector 0, and slot A with its words. Without settings it is the same for each chip.
+  /// The bootloader in sector 0, and slot A with its status words. It has no settings, so it is the same for each chip.
   FlashContents flash;
   std::size_t image_size = 0;  ///< bytes, with the header
   BusTime flash_time = 0;      ///< from power on of a chip without a program until the program has confirmed itself
-  /// From power on to the start of the program, which sends its boot-up firmware::boot_up_delay_us() later. Nothing:
-  /// the program has not confirmed itself; it is in slot A and has its trial before it.
+  /// Time from power on to the start of the program, which sends its boot-up firmware::boot_up_delay_us() later.
+  /// Nothing if the program has not confirmed itself; then it is in slot A, and its trial is still to come.
   std::optional<BusTime> start_time;
-  /// What the chip has reported meanwhile, as JointModule::take_problem().
+  /// Problems that the chip has reported meanwhile (JointModule::take_problem()).
   std::vector<std::string> problems;
 };
 

@@ -20,11 +20,11 @@ namespace board = stm32f405::board;
 namespace flash_layout = stm32f405::flash_layout;
 
 constexpr unsigned program_counter = 15;
-constexpr unsigned servo_channel = 1;  ///< of TIM2
+constexpr unsigned servo_channel = 1;  ///< channel of TIM2
 constexpr std::uint32_t microvolts_per_ma = 1'000;
 constexpr std::uint32_t max_uv = board::vdda_millivolt * 1'000;
 
-// What a feedback potentiometer reads, 12 bits.
+// Readings of the feedback potentiometer, 12 bits.
 constexpr std::uint16_t feedback_at_minus_90 = 410;
 constexpr std::uint16_t feedback_at_plus_90 = 3686;
 
@@ -42,7 +42,7 @@ firmware::BoardRecord board_record(const ModuleParts& parts) {
   return record;
 }
 
-/// "1.234567 s", on the bus.
+/// A time of the bus as text: "1.234567 s".
 std::string at_time(BusTime time) {
   std::ostringstream text;
   text.precision(6);
@@ -215,7 +215,7 @@ void VirtualModule::note_sync(std::uint32_t tick) {
 std::optional<std::string> VirtualModule::take_problem() {
   while (const auto event = chip_.take_event()) {
     if (event->kind == ChipEvent::Kind::reset && event->cause == ResetCause::software) {
-      continue;  // of its fault handler, which was reported already, or on request
+      continue;  // the fault handler reset it, and the fault is reported; or the reset was requested
     }
     return describe(*event);
   }
@@ -248,7 +248,7 @@ std::string VirtualModule::describe(const ChipEvent& event) {
 std::vector<std::string> VirtualModule::trace(const ChipEvent& event) const {
   const auto read = [this](std::uint32_t address, std::span<std::uint8_t> bytes) { chip_.read(address, bytes); };
   const std::uint32_t pc = event.registers[program_counter];
-  if (options_.flash != nullptr && pc >= Cpu::flash_start && pc < flash_layout::slot_a) {
+  if (options_.flash != nullptr && pc >= ChipMemory::flash_start && pc < flash_layout::slot_a) {
     return trace_back(options_.flash->bootloader, event.registers, read);
   }
   image::HeaderBytes header{};
@@ -260,7 +260,7 @@ std::vector<std::string> VirtualModule::trace(const ChipEvent& event) const {
   return trace_back(image_.file(), event.registers, read);
 }
 
-// What the board has at the pins.
+// Signals of the board at the pins.
 
 std::optional<bool> VirtualModule::pin(char port, unsigned number) {
   for (unsigned i = 0; i < board::contacts.size(); ++i) {

@@ -10,28 +10,29 @@
 #include <utility>
 #include <vector>
 
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/mcu/chip/stm32f405.hpp"
 #include "sim/mcu/cpu/back_trace.hpp"
 #include "sim/mcu/module/firmware_image.hpp"
 
 namespace proleg::sim {
 
-/// What a program needed for a tick.
+/// Instructions that a program needed for a tick.
 struct TickCost {
   std::uint32_t tick;
   std::uint64_t to_state_frame;  ///< instructions from SYNC to the state frame in a mailbox; 0: none was sent
   std::uint64_t whole;           ///< instructions from SYNC to the next SYNC
 };
 
-/// What is in the flash of a chip, beside its settings.
+/// Contents of a chip's flash, without the settings.
 struct FlashContents {
-  std::filesystem::path bootloader;  ///< its ELF file, for back traces
+  std::filesystem::path bootloader;  ///< ELF file of the bootloader, for back traces
   std::vector<ElfImage::Segment> parts;
 };
 
 struct VirtualModuleOptions {
-  /// Null: all that the ELF file of the image has; its start stub starts it. Else it must outlive the module.
+  /// Contents of the flash, which must outlive the module. Null: all of the image's ELF file, which its start stub
+  /// starts.
   const FlashContents* flash = nullptr;
   /// Called with each line that the program prints on its console (USART2).
   std::function<void(const std::string&)> console{};
@@ -41,8 +42,8 @@ struct VirtualModuleOptions {
 
 class VirtualModule final : public JointModule, private BoardSignals {
  public:
-  /// image: must outlive the module. The board record with the node id is in flash, as a programmer writes it; with
-  /// node id 0 there is none. The flash keeps its contents over power_on().
+  /// image must outlive the module. The board record with the node id is in flash, as a programmer writes it; node id 0
+  /// means no board record. The flash keeps its contents over power_on().
   VirtualModule(const ModuleParts& parts, const FirmwareImage& image, VirtualModuleOptions options);
   ~VirtualModule() override = default;
   VirtualModule(const VirtualModule&) = delete;
@@ -84,16 +85,16 @@ class VirtualModule final : public JointModule, private BoardSignals {
   const FirmwareImage& image_;
   VirtualModuleOptions options_;
   std::function<std::uint8_t()> sensors_;
-  std::function<firmware::ServoReadings()> readings_;
-  std::uint16_t state_frame_;  ///< its identifier
+  std::function<ServoReadings()> readings_;
+  std::uint16_t state_frame_;  ///< identifier of the state frame
   Stm32f405 chip_;
   std::uint64_t start_of_program_ = 0;  ///< Stm32f405::starts() when the program has last sent a frame
-  std::string line_;                    ///< of the console, so far
+  std::string line_;                    ///< the part of a console line received so far
   std::optional<std::uint32_t> tick_;
   std::uint64_t sync_instructions_ = 0;
   std::uint64_t state_frame_instructions_ = 0;
   TickCost worst_{};
-  bool has_clock_ = true;  ///< crystal and PLL run, as far as the loop has not stopped them
+  bool has_clock_ = true;  ///< crystal and PLL run, unless a fault has stopped them
   bool is_pulse_whole_ = true;
   PulseWatch pulse_watch_;
   std::optional<BusTime> pulse_begin_;

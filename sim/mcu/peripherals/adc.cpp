@@ -71,7 +71,7 @@ constexpr std::uint32_t ccr_vbate = 1U << 22U;
 constexpr std::uint32_t ccr_tsvrefe = 1U << 23U;
 constexpr std::uint32_t ccr_kept = 0x0083'0F00;
 
-// RM0090, table 43.
+// The stream and the channel of ADC1 (RM0090, table 43).
 constexpr unsigned dma_stream = 0;
 constexpr unsigned dma_channel = 0;
 constexpr std::uint32_t adc1_dr = 0x4001'204C;
@@ -81,7 +81,7 @@ constexpr unsigned vrefint_channel = 17;
 constexpr unsigned vbat_channel = 18;
 constexpr LocalTime conversion_cycles = 12;
 
-// DS8626: 0.6 to 36 MHz.
+// The clock of the converter has 0.6 to 36 MHz (DS8626).
 constexpr LocalTime min_clock_period = 28;
 constexpr LocalTime max_clock_period = 1680;
 
@@ -222,10 +222,10 @@ unsigned Adc::channel(Group group, unsigned rank) const {
   constexpr unsigned ranks_in_register = 6;
   constexpr unsigned injected_ranks = 4;
   if (group == Group::regular) {
-    // SQR3 has the first ones.
+    // SQR3 has the first ranks.
     return field(sqr_[2 - rank / ranks_in_register], 5 * (rank % ranks_in_register), 5);
   }
-  // The last one is always JSQ4.
+  // The last rank is always JSQ4.
   return field(jsqr_, 5 * (injected_ranks - length(group) + rank), 5);
 }
 
@@ -326,7 +326,7 @@ void Adc::start_group(Group group, std::uint32_t value, LocalTime time) {
   }
   if (group == Group::regular) {
     if ((sr_ & sr_ovr) != 0) {
-      return;  // starts are ignored until it is cleared (RM0090, 13.8)
+      return;  // starts are ignored until OVR is cleared (RM0090, 13.8)
     }
     if (converting_ == Group::regular || regular_waits_) {
       reject_write(cr2, value, "SWSTART while the regular group is being converted");
@@ -438,7 +438,7 @@ void Adc::write(std::uint32_t offset, std::uint32_t value) {
     default:
       if (offset >= jofr1 && offset <= jofr4) {
         jofr_[(offset - jofr1) / 4] = value & 0xFFFU;
-      } else if ((offset < jdr1 || offset > dr) && offset != csr && offset != cdr) {  // those are read only
+      } else if ((offset < jdr1 || offset > dr) && offset != csr && offset != cdr) {  // data registers are read only
         reject_write(offset, value);
       }
   }

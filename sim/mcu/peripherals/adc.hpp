@@ -16,7 +16,8 @@ namespace proleg::sim {
 inline constexpr std::uint32_t vdda_uv = 3'300'000;
 inline constexpr std::uint32_t vrefint_uv = 1'210'000;  ///< DS8626, embedded reference voltage: typical
 
-/// 12 bits for a voltage, in microvolts: ideal, steps in the middle between the codes (DS8626, ADC accuracy).
+/// Code of 12 bits for a voltage in microvolts. The converter is ideal: steps lie in the middle between the codes
+/// (DS8626, ADC accuracy).
 [[nodiscard]] constexpr std::uint16_t adc_code(std::uint64_t uv) {
   constexpr std::uint64_t codes = 4096;
   const std::uint64_t code = (uv * codes + vdda_uv / 2) / vdda_uv;
@@ -30,20 +31,20 @@ inline constexpr std::uint32_t vrefint_uv = 1'210'000;  ///< DS8626, embedded re
   return static_cast<std::uint32_t>(uv < 0 ? 0 : uv);
 }
 
-/// A voltage is taken when advance(), or an access to a register, ends its conversion: whoever changes a voltage must
-/// call advance() before.
+/// The converter takes a voltage when advance(), or an access to a register, ends its conversion: the caller that
+/// changes a voltage must call advance() before.
 class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripheral {
  public:
   static constexpr unsigned interrupt_position = 18;
-  // DS8626, ADC characteristics.
+  // Durations (DS8626, ADC characteristics).
   static constexpr LocalTime stabilisation = 3 * local_time_per_us;     ///< after ADON
   static constexpr LocalTime sensor_start = 10 * local_time_per_us;     ///< after TSVREFE
   static constexpr LocalTime sensor_sampling = 10 * local_time_per_us;  ///< of channels 16 and 17, at least
 
-  /// dma: DMA2, which takes the results of the regular group; without it DMA is rejected. It must outlive the ADC.
+  /// dma: DMA2, which takes the results of the regular group, and must outlive the ADC. Without it DMA is rejected.
   Adc(ChipServices& chip, BoardSignals& board, Dma* dma = nullptr);
 
-  /// "ADC1_CR2", "ADC_CCR", and "ADC2 at offset 0x4" for those that the board does not use.
+  /// Name of a register: "ADC1_CR2", "ADC_CCR"; of a converter that the board does not use "ADC2 at offset 0x4".
   [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
@@ -54,11 +55,11 @@ class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripher
   void clocks_change(const Clocks& next) override;
   void clocks_fail(const Clocks& next) override;
 
-  /// TIM3's trigger output.
+  /// Receives the trigger output of TIM3.
   void trigger(LocalTime time) override;
   [[nodiscard]] bool works_unseen() const override;
 
-  /// For tests: a converter that hangs ends no conversion; the one under way is done again when it works.
+  /// A converter that hangs ends no conversion; when it works again, it repeats the one under way.
   void set_hanging(bool hangs);
 
  private:
@@ -104,10 +105,10 @@ class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripher
   Group converting_ = Group::none;
   bool hangs_ = false;
   LocalTime conversion_end_ = never_on_chip;
-  unsigned regular_rank_ = 0;  ///< that is converted, or continues after the injected group
+  unsigned regular_rank_ = 0;  ///< the rank that is converted, or continues after the injected group
   unsigned injected_rank_ = 0;
-  bool regular_waits_ = false;     ///< for the end of the injected group
-  bool accepts_triggers_ = false;  ///< a trigger has passed all checks since registers and clocks are as they are
+  bool regular_waits_ = false;     ///< it waits for the end of the injected group
+  bool accepts_triggers_ = false;  ///< a trigger has passed all checks with the present registers and clocks
 };
 
 }  // namespace proleg::sim

@@ -52,7 +52,7 @@ enum MasterStatus : std::uint32_t {
 
 enum InterruptEnable : std::uint32_t {
   tmeie = 1U << 0U,
-  fmpie0 = 1U << 1U,  ///< then FFIE0, FOVIE0, and the same of FIFO 1
+  fmpie0 = 1U << 1U,  ///< FFIE0, FOVIE0, FMPIE1, FFIE1 and FOVIE1 follow
   ewgie = 1U << 8U,
   epvie = 1U << 9U,
   bofie = 1U << 10U,
@@ -248,7 +248,7 @@ void BxCan::write_master_control(std::uint32_t value) {
   if ((value & software_reset) != 0) {
     const BxCanFilters filters = filters_;
     reset();
-    filters_ = filters;  // of CAN2, too
+    filters_ = filters;  // CAN2 shares the filters
     return;
   }
   const bool wants_normal = (value & (inrq | sleep)) == 0;

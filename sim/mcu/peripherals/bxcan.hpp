@@ -39,10 +39,11 @@ class BxCan final : public RegisterBlock, private BusListener {
   static constexpr unsigned rx1_interrupt = 21;
   static constexpr unsigned sce_interrupt = 22;
 
-  /// True time of a local time; must not run backwards.
+  /// Returns the true time of a local time; it must not run backwards.
   using TrueTime = std::function<BusTime(LocalTime)>;
 
-  /// Attaches to the bus, off. All must outlive it, and it must outlive the bus's next event: the bus calls it.
+  /// Attaches to the bus; the controller is off. The arguments must outlive it, and it must outlive the bus's next
+  /// event: the bus calls it.
   BxCan(ChipServices& chip, Bus& bus, TrueTime true_time);
   BxCan(const BxCan&) = delete;
   BxCan& operator=(const BxCan&) = delete;
@@ -50,14 +51,15 @@ class BxCan final : public RegisterBlock, private BusListener {
   [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// Also leaves the bus at once (a frame on the wire finishes) and drops all pending requests: also for power off.
+  /// Resets the registers, leaves the bus at once (a frame on the wire finishes) and drops all pending requests; also
+  /// called for power off.
   void reset() override;
   /// Frames of the self-test (LBKM and SILM) end by the chip's own clock.
   [[nodiscard]] LocalTime next_event() const override { return self_test_end_; }
   void advance() override;
-  /// Its clock must not change while it is on the bus.
+  /// Throws UnmodelledAccess if the clock of the controller changes while it is on the bus.
   void clocks_change(const Clocks& next) override;
-  /// It leaves the bus until its next reset. (At a wrong bit rate it would disturb the frames of others.)
+  /// The controller leaves the bus until its next reset. (At a wrong bit rate it would disturb the frames of others.)
   void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
@@ -66,7 +68,7 @@ class BxCan final : public RegisterBlock, private BusListener {
   /// Carries out the requests of times up to now, which must be Bus::now().
   void submit(BusTime now);
 
-  /// Index of its controller.
+  /// Index of its controller on the bus.
   [[nodiscard]] std::size_t controller() const { return controller_.index(); }
 
  private:
@@ -90,7 +92,7 @@ class BxCan final : public RegisterBlock, private BusListener {
 
   /// Adds a request at the present time of the program.
   void ask(BxCanRequests::Kind kind, std::uint32_t value);
-  /// Postpones it if a frame is on the wire.
+  /// Applies a new MCR, or postpones the request if a frame is on the wire.
   void apply_control(BusTime now, const BxCanRequests::Request& request);
   void enter(Mode mode);
   void leave_for_normal();
@@ -107,8 +109,8 @@ class BxCan final : public RegisterBlock, private BusListener {
   BxCanRequests requests_;
 
   Mode mode_ = Mode::sleep;
-  bool is_leaving_ = false;  ///< waits for 11 recessive bits, in the mode before
-  bool has_failed_ = false;  ///< its clock
+  bool is_leaving_ = false;  ///< it waits for 11 recessive bits; mode_ is still the one before
+  bool has_failed_ = false;  ///< its clock has failed
   bool has_timing_ = false;  ///< BTR was written since reset
   std::uint32_t control_ = 0;
   std::uint32_t status_ = 0;  ///< MSR: ERRI, WKUI, SLAKI

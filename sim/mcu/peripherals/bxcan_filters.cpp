@@ -18,7 +18,7 @@ constexpr std::uint32_t all_banks = (1U << BxCanFilters::bank_count) - 1;
 constexpr std::uint32_t finit = 1;
 constexpr std::uint32_t can2sb = 0x3F00;
 
-/// What a filter compares of a standard data frame: the identifier in the upper bits, the rest zeros.
+/// Bits of a standard data frame that a filter compares: the identifier in the upper bits, the rest zeros.
 constexpr std::uint32_t wide_image(std::uint16_t identifier) { return std::uint32_t{identifier} << 21U; }
 constexpr std::uint32_t narrow_image(std::uint16_t identifier) { return std::uint32_t{identifier} << 5U; }
 

@@ -21,11 +21,11 @@ class BxCanFilters {
   };
 
   [[nodiscard]] static bool contains(std::uint32_t offset);
-  /// "F13R2".
+  /// Name of a register: "F13R2".
   [[nodiscard]] static std::string register_name(std::uint32_t offset);
-  /// Of a register that exists.
+  /// Value of a register, which must exist.
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) const;
-  /// Nothing, or why it is rejected, and then nothing has changed.
+  /// Writes a register. Returns the reason if the write is rejected; then no register has changed.
   [[nodiscard]] std::optional<std::string> write(std::uint32_t offset, std::uint32_t value);
   void reset() { *this = BxCanFilters(); }
 
@@ -41,8 +41,8 @@ class BxCanFilters {
   std::uint32_t master_ = 0x2A1C'0E01;
   std::uint32_t list_mode_ = 0;   ///< FM1R: 1 for identifier list, 0 for mask
   std::uint32_t wide_ = 0;        ///< FS1R: 1 for 32 bits, 0 for 16
-  std::uint32_t assignment_ = 0;  ///< FFA1R
-  std::uint32_t active_ = 0;      ///< FA1R
+  std::uint32_t assignment_ = 0;  ///< FFA1R: the FIFO of each bank
+  std::uint32_t active_ = 0;      ///< FA1R: the banks in use
   std::array<std::array<std::uint32_t, 2>, bank_count> banks_{};
 };
 

@@ -17,7 +17,7 @@ class BxCanMailboxes {
  public:
   static constexpr std::size_t count = 3;
 
-  /// Bits of a mailbox in TSR, of mailbox 0.
+  /// Bits of mailbox 0 in TSR.
   enum Outcome : std::uint32_t { rqcp = 1U << 0U, txok = 1U << 1U, alst = 1U << 2U, terr = 1U << 3U };
 
   struct Mailbox {
@@ -25,7 +25,7 @@ class BxCanMailboxes {
     std::uint32_t length = 0;      ///< TDTxR
     std::uint32_t low = 0;         ///< TDLxR
     std::uint32_t high = 0;        ///< TDHxR
-    std::uint64_t request = 0;     ///< counts up
+    std::uint64_t request = 0;     ///< number of the request, counts up
     bool is_pending = false;       ///< TXRQ; TME is its opposite
     bool is_submitted = false;
     bool is_handed_over = false;
@@ -35,19 +35,20 @@ class BxCanMailboxes {
   [[nodiscard]] Mailbox& operator[](std::size_t number) { return mailboxes_.at(number); }
   [[nodiscard]] const Mailbox& operator[](std::size_t number) const { return mailboxes_.at(number); }
 
-  /// TIxR, TDTxR, TDLxR, TDHxR as words 0 to 3.
+  /// Value of a mailbox's register: TIxR, TDTxR, TDLxR, TDHxR are words 0 to 3.
   [[nodiscard]] std::uint32_t read(std::size_t number, std::uint32_t word) const;
-  /// Nothing, or why it is rejected, and then nothing has changed. TXRQ sets is_pending.
+  /// Writes a register. Returns the reason if the write is rejected; then no register has changed. TXRQ sets
+  /// is_pending.
   [[nodiscard]] std::optional<std::string> write(std::size_t number, std::uint32_t word, std::uint32_t value);
 
-  /// TSR; by_request: MCR.TXFP.
+  /// Register TSR. by_request: MCR.TXFP.
   [[nodiscard]] std::uint32_t status(bool by_request) const;
   /// Clears outcomes; returns the mailboxes whose abort is newly requested, as bits.
   [[nodiscard]] std::uint32_t write_status(std::uint32_t value);
 
-  /// The mailbox is empty again.
+  /// Empties a mailbox, and shows the outcome of its request in TSR.
   void complete(std::size_t number, std::uint32_t outcome);
-  /// The controller has dropped all of them.
+  /// To be called when the controller has dropped all requests that were handed over.
   void take_back();
   [[nodiscard]] bool any_completed() const;
 

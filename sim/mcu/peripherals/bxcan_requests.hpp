@@ -8,27 +8,27 @@
 
 namespace proleg::sim {
 
-/// What the program asked of bxCAN, in the order in which it asked. A chip computes ahead of the bus: a request is
-/// pending until the bus has reached its true time.
+/// The requests of the program to bxCAN, in their order. A chip computes ahead of the bus: a request is pending until
+/// the bus has reached its true time.
 class BxCanRequests {
  public:
   enum class Kind : std::uint8_t { transmit, abort, control };
   struct Request {
     BusTime time;
     Kind kind;
-    std::uint32_t value;  ///< mailbox, or MCR
+    std::uint32_t value;  ///< number of the mailbox, or value of MCR
   };
 
-  /// Adds a request. One that is earlier than the last pending one is due with that.
+  /// Adds a request. A request that is earlier than the last pending one is due together with that one.
   void add(BusTime time, Kind kind, std::uint32_t value);
-  /// Makes a request that was taken the next one again, due at another time. Later requests wait for it.
+  /// Puts a request that was taken back to the front, due at another time. Later requests wait for it.
   void postpone(const Request& request, BusTime time);
   /// Takes the next request if it is due.
   [[nodiscard]] std::optional<Request> take_due(BusTime now);
   void clear() { pending_.clear(); }
 
   [[nodiscard]] bool empty() const { return pending_.empty(); }
-  /// Of the next request; never_on_bus if none is pending.
+  /// True time of the next request; never_on_bus if none is pending.
   [[nodiscard]] BusTime next_time() const { return empty() ? never_on_bus : pending_.front().time; }
 
  private:

@@ -17,7 +17,7 @@ class BxCanTransmitter {
   [[nodiscard]] const BxCanMailboxes& mailboxes() const { return mailboxes_; }
   void reset() { mailboxes_ = {}; }
 
-  // What the program asked, at bus time.
+  // Requests of the program, at bus time.
   void submit(std::size_t mailbox);
   void abort(std::size_t mailbox);
   /// Gives the controller the submitted requests, oldest first, as far as it accepts them.
@@ -25,9 +25,9 @@ class BxCanTransmitter {
   /// The controller has emptied its mailboxes: hand_over() gives it the requests again.
   void take_back() { mailboxes_.take_back(); }
 
-  // What the controller reports.
+  // Reports of the controller.
   void transmitted();
-  /// An error frame ended, in which the controller was sending. one_shot: MCR.NART.
+  /// An error frame has ended the controller's transmission. one_shot: MCR.NART.
   void failed(bool one_shot);
   /// A request that is tried once only has lost the arbitration.
   void lost_arbitration();

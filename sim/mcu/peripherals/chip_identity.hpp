@@ -1,6 +1,6 @@
 #pragma once
 
-// What distinguishes chips, in system memory (RM0090, section 39; DS8626).
+// The data in system memory that distinguish chips (RM0090, section 39; DS8626).
 
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace proleg::sim {
 
-// Converted at 3.3 V when the chip was made.
+// Calibration values, converted at 3.3 V when the chip was made.
 inline constexpr std::uint32_t vrefin_cal_address = 0x1FFF'7A2A;
 inline constexpr std::uint32_t ts_cal1_address = 0x1FFF'7A2C;  ///< at 30 degrees Celsius
 inline constexpr std::uint32_t ts_cal2_address = 0x1FFF'7A2E;  ///< at 110 degrees
@@ -22,14 +22,14 @@ inline constexpr std::uint32_t unique_id_address = 0x1FFF'7A10;
 inline constexpr std::uint32_t flash_kib_address = 0x1FFF'7A22;
 inline constexpr std::uint16_t flash_kib = 1024;
 
-/// The bytes from system_memory_address on that are not 0xFF: unique id, size of the flash, calibration.
+/// System memory from this address on; the bytes that are not 0xFF: unique id, size of the flash, calibration.
 inline constexpr std::uint32_t system_memory_address = 0x1FFF'7A00;
 inline constexpr std::uint32_t system_memory_bytes = 0x30;
 [[nodiscard]] std::array<std::uint8_t, system_memory_bytes> system_memory(
     const std::array<std::uint32_t, 3>& unique_id);
 
-/// Describes an address that belongs to no peripheral of this room: "DMA1 at offset 0x10", "0x40000C04" where the chip
-/// has nothing (RM0090, table 1).
+/// Describes an address that belongs to no peripheral of the model: "DMA1 at offset 0x10"; "0x40000C04" where the chip
+/// has no peripheral (RM0090, table 1).
 [[nodiscard]] std::string describe_address(std::uint32_t address);
 
 }  // namespace proleg::sim

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint64_t local_time_hz = local_time_per_us * 1'000'000;
 constexpr std::uint32_t one_mhz = 1'000'000;
 
-/// "168 MHz", "171.428 MHz".
+/// A frequency as text: "168 MHz", "171.428 MHz".
 std::string mhz(std::uint64_t hz) {
   std::string text = std::to_string(hz / one_mhz);
   const std::uint64_t khz = hz / 1000 % 1000;
@@ -27,7 +27,7 @@ unsigned ahb_divisor(std::uint32_t cfgr) {
   return hpre < 8 ? 1 : divisors[hpre - 8];
 }
 
-/// lowest: of PPRE1 (10) or PPRE2 (13).
+/// Divisor of an APB bus. lowest: first bit of PPRE1 (10) or PPRE2 (13).
 unsigned apb_divisor(std::uint32_t cfgr, unsigned lowest) {
   const unsigned ppre = field(cfgr, lowest, 3);
   return ppre < 4 ? 1 : 2U << (ppre - 4);
@@ -48,7 +48,7 @@ struct Pll {
   std::uint64_t input_hz;
 };
 
-/// Of the system clock, a fraction of local time.
+/// Period of the system clock, as a fraction of local time.
 struct Period {
   std::uint64_t numerator;
   std::uint64_t denominator;
@@ -112,7 +112,7 @@ ClockOutcome clocks_of(const ClockSettings& settings, const ClockLimits& limits)
   next.core = core / system.denominator;
   next.apb1 = next.core * apb1_divisor;
   next.apb2 = next.core * apb2_divisor;
-  // Timers count with the clock of their bus, twice as fast if that is divided.
+  // Timers count with the clock of their bus, or with twice this clock if it is divided.
   next.apb1_timers = apb1_divisor == 1 ? next.apb1 : next.apb1 / 2;
   next.apb2_timers = apb2_divisor == 1 ? next.apb2 : next.apb2 / 2;
 

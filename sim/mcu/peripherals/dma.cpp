@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -12,7 +12,7 @@ constexpr std::uint32_t lisr = 0x00;
 constexpr std::uint32_t hisr = 0x04;
 constexpr std::uint32_t lifcr = 0x08;
 constexpr std::uint32_t hifcr = 0x0C;
-// Of stream 0; of stream n, n * stream_bytes further on.
+// Registers of stream 0; those of stream n lie n * stream_bytes further on.
 constexpr std::uint32_t cr = 0x10;
 constexpr std::uint32_t ndtr = 0x14;
 constexpr std::uint32_t par = 0x18;
@@ -58,7 +58,7 @@ constexpr unsigned flag_shift(unsigned stream) {
 }
 
 std::array<InterruptLine, Dma::stream_count> interrupt_lines(ChipServices& chip, unsigned number) {
-  // RM0090, table 61.
+  // Positions of the streams' interrupts (RM0090, table 61), for DMA1 and DMA2.
   constexpr std::array<std::array<unsigned, Dma::stream_count>, 2> positions{
       {{11, 12, 13, 14, 15, 16, 17, 47}, {56, 57, 58, 59, 60, 68, 69, 70}}};
   const auto& of = positions.at(number - 1);
@@ -252,8 +252,8 @@ void Dma::check_enable(const Stream& stream, unsigned number, std::uint32_t offs
   }
   const std::uint64_t end = std::uint64_t{stream.memory_address} + connection->bytes * std::uint64_t{stream.length};
   if (stream.peripheral_address != connection->data_register || stream.count == 0 ||
-      stream.memory_address % connection->bytes != 0 || stream.memory_address < Cpu::ram_start ||
-      end > Cpu::ram_start + Cpu::ram_size) {
+      stream.memory_address % connection->bytes != 0 || stream.memory_address < ChipMemory::ram_start ||
+      end > ChipMemory::ram_start + ChipMemory::ram_size) {
     reject_write(offset, value, "only the peripheral's data register and a buffer in RAM are modelled");
   }
   if (!stream.enabled() && ((flags_.at(number / 4) >> flag_shift(number)) & all_flags) != 0) {

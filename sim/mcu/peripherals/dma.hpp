@@ -20,7 +20,7 @@ class DmaPeripheral {
  public:
   /// Whether it requests a transfer now.
   [[nodiscard]] virtual bool requests_dma() const = 0;
-  /// The transfer: reads the data register, or writes it.
+  /// Transfers read the data register, or write it.
   [[nodiscard]] virtual std::uint16_t dma_read() { return 0; }
   virtual void dma_write(std::uint16_t /*data*/) {}
 
@@ -40,12 +40,12 @@ class Dma final : public RegisterBlock {
   Dma(ChipServices& chip, unsigned number, Memory memory);
 
   enum class Direction : std::uint8_t { from_peripheral, to_peripheral };
-  /// A place in the manual's tables 42 and 43, and what the peripheral's data register is.
+  /// A place in the manual's tables 42 and 43, and the data register of the peripheral there.
   struct Connection {
     unsigned stream;
     unsigned channel;
     Direction direction;
-    unsigned bytes;               ///< of a transfer: 1 or 2
+    unsigned bytes;               ///< bytes of a transfer: 1 or 2
     std::uint32_t data_register;  ///< its address
   };
   /// The peripheral must outlive this.
@@ -56,7 +56,8 @@ class Dma final : public RegisterBlock {
   void reset() override;
   [[nodiscard]] bool is_idle() const override;
 
-  /// To be called when a peripheral requests a transfer. Makes transfers as long as it does and its stream is enabled.
+  /// To be called when a peripheral requests a transfer. Makes transfers while the peripheral requests them and its
+  /// stream is enabled.
   void serve(unsigned stream);
 
  private:

@@ -16,7 +16,7 @@ class Exti final : public RegisterBlock {
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// The lines keep their level.
+  /// Resets the registers; the lines keep their level.
   void reset() override;
 
   /// The level of line 16: 1 while the supply is below the detector's threshold.

@@ -317,7 +317,7 @@ void FlashInterface::start_erase(std::uint32_t value) {
   std::uint32_t address = flash_start;
   std::uint32_t size = flash_bytes;
   bool writable = not_protected == 0xFFF;
-  // With both of them it is a mass erase (RM0090, 3.6.3).
+  // SER and MER together are a mass erase (RM0090, 3.6.3).
   if ((value & cr_mer) == 0) {
     if ((value & cr_ser) == 0) {
       reject_write(cr, value, "STRT without SER or MER: unpredictable (RM0090, 3.6.3)");

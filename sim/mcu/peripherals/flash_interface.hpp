@@ -1,7 +1,7 @@
 #pragma once
 
-// The flash memory interface FLASH (RM0090, section 3): unlocking, erasing, programming. The caller has the contents.
-// Durations are those of the datasheet (DS8626, table "Flash memory programming").
+// The flash memory interface FLASH (RM0090, section 3): unlocking, erasing, programming. The caller stores the
+// contents. Durations are those of the datasheet (DS8626, table "Flash memory programming").
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace proleg::sim {
 
-/// The cells. Addresses from flash_start on.
+/// The cells of the flash, at addresses from flash_start on.
 class FlashMemory {
  public:
   virtual void read(std::uint32_t address, std::span<std::uint8_t> bytes) = 0;
@@ -42,7 +42,7 @@ inline constexpr std::array<FlashSector, 12> flash_sectors = [] {
   return sectors;
 }();
 
-/// Wait states that HCLK needs at 2.7 to 3.6 V (RM0090, table 10): one more for every 30 MHz.
+/// Wait states that HCLK needs at 2.7 to 3.6 V (RM0090, table 10): one more for each 30 MHz.
 [[nodiscard]] constexpr unsigned flash_wait_states(LocalTime core_period) {
   constexpr LocalTime mhz_per_state = 30;
   // f <= 30 MHz * (states + 1), with f = 1008 MHz / period.
@@ -53,42 +53,44 @@ inline constexpr std::array<FlashSector, 12> flash_sectors = [] {
 class FlashInterface final : public RegisterBlock {
  public:
   static constexpr unsigned interrupt_position = 4;
-  /// An access during an operation waits; contents change when the operation ends.
+  /// Time to program a word. An access during an operation waits; contents change when the operation ends.
   static constexpr LocalTime program_time = 16 * local_time_per_us;  ///< typical; 100 us at most
 
-  /// protected_sectors: bit n: sector n cannot be erased or programmed (option bytes nWRP, which a programmer set).
+  /// protected_sectors: if bit n is 1, sector n cannot be erased or programmed (option bytes nWRP, which a programmer
+  /// set).
   FlashInterface(ChipServices& chip, FlashMemory& memory, std::uint16_t protected_sectors = 0);
 
-  /// Option bytes BOR_LEV: 0: level 3, the highest, 1: level 2, 2: level 1, 3: off. A programmer writes them.
+  /// Sets the option bytes BOR_LEV, as a programmer does: 0: level 3, the highest, 1: level 2, 2: level 1, 3: off.
   void set_brown_out_level(unsigned level);
   [[nodiscard]] unsigned brown_out_level() const;
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// Drops an operation that is under way: call cut() first.
+  /// Resets the registers and drops an operation that is under way: call cut() first.
   void reset() override;
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
   [[nodiscard]] bool is_idle() const override { return true; }  // its own oscillator times the operations
 
-  /// A store of the program to flash; size: 1, 2, 4. FLASH_SR reports what the hardware rejects; the store itself ends
-  /// without a fault (RM0090, 3.6.4): true. False: the address is not in flash. A store during an operation is done
-  /// after it, as if the bus had stalled the program.
+  /// Stores a value of the program to flash; size: 1, 2, 4. Returns false if the address is not in flash. FLASH_SR
+  /// reports what the hardware rejects; the store itself ends without a fault (RM0090, 3.6.4). A store during an
+  /// operation is done after it, as if the bus had stalled the program.
   [[nodiscard]] bool program(std::uint32_t address, unsigned size, std::uint32_t value);
 
-  /// Until then a read, a fetch or another store of flash stalls the bus (single bank). Not busy if not in the future.
+  /// End of the operations under way: until then a read, a fetch or another store of flash stalls the bus (single
+  /// bank). The flash is not busy if this time is not in the future.
   [[nodiscard]] LocalTime busy_until() const;
 
-  /// Called when the program has begun an operation, with its address; erase: of the sector there.
+  /// Called when the program has begun an operation at an address. erase: it erases the sector there; else it programs.
   using Watch = std::function<void(std::uint32_t address, bool erase)>;
   void set_watch(Watch watch) { watch_ = std::move(watch); }
 
   /// Power fails, or a reset comes (RM0090, 3.6.3: contents are not guaranteed): the operation under way stays half
-  /// done. Erase: some bits of every word are 1 already. Program: some of the bits that must become 0 are 0. The same
+  /// done. An erase leaves some bits of each word 1; programming leaves 0 some of the bits that must become 0. The same
   /// seed leaves the same bits. Changes nothing if no operation is under way.
   void cut(std::uint64_t seed);
 
-  /// FLASH_ACR.LATENCY.
+  /// Wait states that the program has set (FLASH_ACR.LATENCY).
   [[nodiscard]] unsigned wait_states() const { return acr_ & 0x7U; }
 
  private:
@@ -96,7 +98,7 @@ class FlashInterface final : public RegisterBlock {
   struct Operation {
     std::uint32_t address;
     std::uint32_t size;  ///< bytes
-    bool erase;          ///< else: bits of `value` that are 0 are cleared
+    bool erase;          ///< else the bits of `value` that are 0 are cleared
     std::uint32_t value;
     LocalTime end;
   };

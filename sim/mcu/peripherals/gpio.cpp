@@ -40,7 +40,7 @@ Gpio::Gpio(ChipServices& chip, BoardSignals& board, char port)
   reset();
 }
 
-// Pins of the debug port on A and B are alternate functions.
+// After reset the pins of the debug port on A and B have their alternate functions.
 void Gpio::reset() {
   moder_ = port_ == 'A' ? 0xA800'0000 : port_ == 'B' ? 0x0000'0280 : 0;
   otyper_ = 0;

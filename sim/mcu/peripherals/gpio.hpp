@@ -18,18 +18,18 @@ class Gpio final : public RegisterBlock {
   enum class Mode : std::uint8_t { input = 0, output = 1, alternate = 2, analog = 3 };
   static constexpr unsigned pin_count = 16;
 
-  /// port: 'A' to 'I'; else std::invalid_argument.
+  /// port: 'A' to 'I'; throws std::invalid_argument for another one.
   Gpio(ChipServices& chip, BoardSignals& board, char port);
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
   void reset() override;
 
-  // Of a pin, 0 to 15.
+  // State of a pin, 0 to 15.
   [[nodiscard]] Mode mode(unsigned pin) const;
-  /// AF0 to AF15, as selected; it matters in Mode::alternate.
+  /// Number of the selected alternate function, 0 to 15; it has effect in Mode::alternate.
   [[nodiscard]] unsigned alternate_function(unsigned pin) const;
-  /// OSPEEDR: 0 is low, with edges of up to 100 ns (DS8626, I/O AC characteristics).
+  /// Output speed (OSPEEDR): 0 is low, with edges of up to 100 ns (DS8626, I/O AC characteristics).
   [[nodiscard]] unsigned output_speed(unsigned pin) const;
   /// Level that the port itself drives; nothing unless it is an output (open drain: only low is driven).
   [[nodiscard]] std::optional<bool> output(unsigned pin) const;

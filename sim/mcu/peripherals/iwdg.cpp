@@ -25,7 +25,7 @@ constexpr std::uint32_t slowest_lsi = 17'000;
 constexpr std::uint32_t fastest_lsi = 47'000;
 constexpr std::uint64_t local_time_per_s = local_time_per_us * 1'000'000;
 
-/// LSI cycles in a count: 4 to 256; 6 and 7 are the same.
+/// LSI cycles in a count: 4 to 256; prescalers 6 and 7 have the same effect.
 std::uint64_t divider(std::uint32_t prescaler) { return std::uint64_t{4} << std::min(prescaler, 6U); }
 
 }  // namespace

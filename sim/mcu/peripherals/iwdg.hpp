@@ -10,23 +10,23 @@ namespace proleg::sim {
 
 class Iwdg final : public RegisterBlock {
  public:
-  /// lsi_hz: frequency of the chip's LSI, 17,000 to 47,000 (DS8626, LSI oscillator characteristics); else
-  /// std::invalid_argument.
+  /// lsi_hz: frequency of the chip's LSI, 17,000 to 47,000 (DS8626, LSI oscillator characteristics); throws
+  /// std::invalid_argument for another one.
   explicit Iwdg(ChipServices& chip, std::uint32_t lsi_hz = 32'000);
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// LSI is off as well: a reset is one of the whole chip.
+  /// Stops the watchdog and LSI: a reset resets the whole chip.
   void reset() override;
-  /// When it resets the chip, unless the program reloads it before.
+  /// Time at which the watchdog resets the chip, unless the program reloads it before.
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
 
-  /// Started: nothing but a reset stops it, and LSI runs with it.
+  /// Whether the watchdog has been started: only a reset stops it, and LSI runs with it.
   [[nodiscard]] bool is_running() const { return running_; }
-  /// LSI runs for another reason (RCC_CSR.LSION). Without LSI an update of PR or RLR does not end.
+  /// Switches LSI for another reason (RCC_CSR.LSION). Without LSI an update of PR or RLR does not end.
   void lsi_switched(bool on);
-  /// LSI cycles in local time, rounded up.
+  /// Duration of LSI cycles in local time, rounded up.
   [[nodiscard]] LocalTime lsi_cycles(std::uint64_t count) const;
 
  private:
@@ -37,7 +37,7 @@ class Iwdg final : public RegisterBlock {
   [[nodiscard]] bool lsi_runs() const { return running_ || lsi_on_; }
   void schedule_updates();
 
-  /// A register on its way into the domain of LSI.
+  /// A register value on its way into the clock domain of LSI.
   struct Update {
     bool pending = false;
     std::uint32_t value = 0;
@@ -54,7 +54,7 @@ class Iwdg final : public RegisterBlock {
   Update prescaler_update_;
   Update reload_update_;
   LocalTime since_ = 0;      ///< when `count_` began
-  std::uint32_t count_ = 0;  ///< of the down counter at `since_`
+  std::uint32_t count_ = 0;  ///< value of the down counter at `since_`
 };
 
 }  // namespace proleg::sim

@@ -1,6 +1,6 @@
 #include "sim/mcu/peripherals/peripheral.hpp"
 
-#include "sim/mcu/peripherals/register_block.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {
 

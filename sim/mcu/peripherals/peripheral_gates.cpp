@@ -5,7 +5,7 @@
 namespace proleg::sim {
 namespace {
 
-// The registers of a group, one for each bus, and the bits that they have.
+// First registers of the groups; a group has one for each bus. Then the bits that these registers have.
 constexpr std::uint32_t first_rstr = 0x10;
 constexpr std::uint32_t first_enr = 0x30;
 constexpr std::uint32_t first_lpenr = 0x50;
@@ -59,7 +59,7 @@ const PeripheralGates::Gate* PeripheralGates::gate_of(const Peripheral& peripher
       {0x4001'2000, apb2, 8},   // ADC1
       {0x4001'3800, apb2, 14},  // SYSCFG
   };
-  // This is called at each access to a register. No two peripherals share a block.
+  // The table makes the look-up at each register access fast. No two peripherals share a block.
   constexpr std::uint32_t start = 0x4000'0000;
   constexpr std::uint32_t block_bytes = 0x400;
   static constexpr auto gate_of_block = [] {

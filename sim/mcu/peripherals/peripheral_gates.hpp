@@ -14,26 +14,26 @@ namespace proleg::sim {
 /// Reset and clock of each peripheral: the registers AHB1RSTR to APB2LPENR of RCC (RM0090, 7.3.5 to 7.3.19).
 class PeripheralGates {
  public:
-  /// The peripherals are known by their base(). They must outlive this.
+  /// Adds a peripheral, known by its base(). It must outlive the gates.
   void attach(Peripheral& peripheral) { attached_.push_back(&peripheral); }
   [[nodiscard]] const std::vector<Peripheral*>& attached() const { return attached_; }
 
-  /// Registers as after reset. The chip resets the attached peripherals.
+  /// Sets the registers as after a reset of the chip, which resets the attached peripherals itself.
   void reset();
   [[nodiscard]] static bool contains(std::uint32_t offset);
-  /// Of a register that exists.
+  /// Value of a register, which must exist.
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) const;
-  /// Nothing, or why it is rejected, and then nothing has changed.
+  /// Writes a register. Returns the reason if the write is rejected; then no register has changed.
   [[nodiscard]] std::optional<std::string> write(std::uint32_t offset, std::uint32_t value);
 
   [[nodiscard]] bool is_clocked(const Peripheral& peripheral) const;
   /// A bit that keeps the registers of a peripheral from answering.
   struct Obstacle {
-    std::uint32_t offset;  ///< of its register
+    std::uint32_t offset;  ///< offset of its register
     unsigned bit;
-    bool is_reset;  ///< held in reset; else without clock
+    bool is_reset;  ///< the peripheral is held in reset; else it has no clock
   };
-  /// Nothing if the registers answer. Those of peripherals without a gate (RCC, FLASH, IWDG) always do.
+  /// The obstacle for a peripheral; nothing if its registers answer. Those of RCC, FLASH and IWDG always answer.
   [[nodiscard]] std::optional<Obstacle> obstacle(const Peripheral& peripheral) const;
 
  private:

@@ -20,7 +20,7 @@ constexpr std::uint32_t csr_vosrdy = 1U << 14U;
 constexpr std::uint32_t scale_1_mhz = 168;
 constexpr std::uint32_t scale_2_mhz = 144;
 
-/// DS8626, embedded reset and power control block: VPVD, typical, by PLS.
+/// Typical thresholds VPVD for each PLS (DS8626, embedded reset and power control block).
 struct Threshold {
   std::uint32_t falling_mv;
   std::uint32_t rising_mv;

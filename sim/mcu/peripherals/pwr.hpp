@@ -12,10 +12,11 @@ class Pwr final : public RegisterBlock {
  public:
   static constexpr std::uint32_t nominal_supply_mv = 3'300;
 
-  /// exti: gets the detector's output; may be null.
+  /// exti: receives the detector's output; may be null.
   explicit Pwr(ChipServices& chip, Exti* exti = nullptr);
 
-  /// VOSRDY is set always, by reset too: the manual (rev 21) gives neither a condition nor a time for it.
+  /// Reads a register. VOSRDY is always set, also after reset: the manual (rev 21) gives no condition and no time for
+  /// it.
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
   void reset() override;
@@ -23,7 +24,7 @@ class Pwr final : public RegisterBlock {
   /// The maximum HCLK at the core voltage, in MHz (DS8626, general operating conditions).
   [[nodiscard]] std::uint32_t max_core_mhz() const;
 
-  /// VDD at ChipServices::now(); it lasts over a reset. The thresholds are typical ones.
+  /// Sets VDD at ChipServices::now(); it lasts over a reset.
   void set_supply(std::uint32_t mv);
 
  private:

@@ -48,7 +48,7 @@ constexpr std::uint32_t cr_csson = 1U << 19U;
 constexpr std::uint32_t cr_pllon = 1U << 24U;
 constexpr std::uint32_t cr_pllrdy = 1U << 25U;
 constexpr std::uint32_t cr_plli2son = 1U << 26U;
-/// HSICAL differs from chip to chip; what matters is that it is not 0.
+/// HSICAL differs from chip to chip, but is not 0.
 constexpr std::uint32_t cr_hsical = 0x80U << 8U;
 constexpr std::uint32_t hsi_trim_reset = 0x10;
 
@@ -64,7 +64,7 @@ constexpr std::uint32_t cir_enables = 0x3F00;
 constexpr std::uint32_t cir_cssf = 1U << 7U;
 constexpr std::uint32_t cir_cssc = 1U << 23U;
 
-/// Clocks without a source. They are not infinite, so that products of them fit.
+/// Period of a clock without a source. It is not infinite, so that products of it fit.
 constexpr LocalTime lost = 1'000 * local_time_per_us;
 constexpr Clocks lost_clocks{.core = lost, .apb1 = lost, .apb2 = lost, .apb1_timers = lost, .apb2_timers = lost};
 
@@ -360,7 +360,7 @@ void Rcc::write_cr(std::uint32_t value) {
   const bool uses_pll = current_ == ClockSource::pll;
   const bool uses_hse = current_ == ClockSource::hse || (uses_pll && from_hse);
   const bool uses_hsi = current_ == ClockSource::hsi || (uses_pll && !from_hse);
-  // What the system clock comes from cannot be switched off.
+  // The source of the system clock cannot be switched off.
   const bool hsi_on = (value & cr_hsion) != 0 || uses_hsi;
   const bool hse_on = (value & cr_hseon) != 0 || uses_hse;
   const bool pll_on = (value & cr_pllon) != 0 || uses_pll;
@@ -405,7 +405,7 @@ void Rcc::write_cfgr(std::uint32_t value) {
   if ((next & cfgr_sw) == cfgr_sw) {
     reject_write(cfgr, value, "SW = 3 is not allowed");
   }
-  // A clock that is not ready takes over when it is.
+  // A clock that is not ready takes over when it becomes ready.
   const auto selected = static_cast<ClockSource>(next & cfgr_sw);
   const ClockSource source = oscillator(selected).ready(chip().now()) ? selected : current_;
   const Clocks clocks = clocks_of(source, next, value);

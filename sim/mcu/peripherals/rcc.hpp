@@ -16,7 +16,8 @@ namespace proleg::sim {
 
 class Rcc final : public RegisterBlock {
  public:
-  // Until an oscillator is ready: crystal of the board; HSI, LSI and PLL: DS8626 (the PLL: 75 to 300 us).
+  // Times until an oscillator is ready, for the crystal of the board, and for HSI, LSI and PLL (DS8626; PLL: 75 to 300
+  // us).
   static constexpr LocalTime hse_start = 2'000 * local_time_per_us;
   static constexpr LocalTime hsi_start = 2 * local_time_per_us;
   static constexpr LocalTime pll_start = 200 * local_time_per_us;
@@ -25,24 +26,24 @@ class Rcc final : public RegisterBlock {
   /// 80 periods of the crystal.
   static constexpr LocalTime failure_detection = 10 * local_time_per_us;
 
-  /// flash, power: limit the core clock. iwdg: keeps LSI on while it runs.
+  /// flash and power limit the core clock; iwdg keeps LSI on while it runs.
   Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg);
 
-  /// Peripherals whose clock and reset are switched here, or that count clocks; by their base(). They must outlive
-  /// this.
+  /// Adds a peripheral whose clock and reset are switched here, or that counts clocks; known by its base(). It must
+  /// outlive RCC.
   void attach(Peripheral& peripheral) { gates_.attach(peripheral); }
 
-  // What fails, or works again, at ChipServices::now(). It stays so over a reset. As long as the system clock has lost
-  // its source the core stands still, and nothing else counts but LSI. The manual does not say which frequency a PLL
-  // without its input has; here it has none.
+  // Parts that fail, or work again, at ChipServices::now(); the state lasts over a reset. While the system clock has
+  // no source, the core stands still, and only LSI counts. The manual does not say which frequency a PLL without its
+  // input has; here it has none.
   void set_crystal(bool runs);
-  /// Whether the PLL can lock.
+  /// Sets whether the PLL can lock.
   void set_pll(bool locks);
   [[nodiscard]] bool core_stands_still() const { return stands_still_; }
 
-  /// For ChipServices::clocks().
+  /// The present clocks, for ChipServices::clocks().
   [[nodiscard]] const Clocks& clocks() const { return clocks_; }
-  /// Whether its registers answer. Those that have no gate (RCC, FLASH, IWDG) always do.
+  /// Whether a peripheral's registers answer. Those of RCC, FLASH and IWDG always answer.
   [[nodiscard]] bool is_clocked(const Peripheral& peripheral) const { return gates_.is_clocked(peripheral); }
   /// Rejects an access to a peripheral without clock, or one that is held in reset:
   /// "USART2_BRR: its clock is off (RCC_APB1ENR bit 17)".
@@ -54,9 +55,9 @@ class Rcc final : public RegisterBlock {
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// All registers except the flags of note_start(). The chip resets the attached peripherals.
+  /// Resets all registers except the flags of note_start(). The chip resets the attached peripherals.
   void reset() override;
-  /// When a selected clock becomes ready and takes over, and when the clock security system reacts (7.2.7).
+  /// Time at which a selected clock becomes ready and takes over, or the clock security system reacts (7.2.7).
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
   [[nodiscard]] bool is_idle() const override { return false; }
@@ -65,14 +66,14 @@ class Rcc final : public RegisterBlock {
   struct Oscillator {
     bool on = false;
     LocalTime ready_at = never_on_chip;
-    LocalTime not_ready_at = 0;  ///< after it was switched off
+    LocalTime not_ready_at = 0;  ///< time from which the clock that was switched off is not ready
 
     void switch_to(bool wanted, LocalTime now, LocalTime start, LocalTime stop);
     [[nodiscard]] bool ready(LocalTime now) const { return on ? now >= ready_at : now < not_ready_at; }
   };
 
   void start_registers(LocalTime now);
-  /// Whether an oscillator that is on has what it needs.
+  /// Whether an oscillator that is on can run: its crystal and its input work.
   [[nodiscard]] bool works(ClockSource source) const;
   void oscillator_failed_or_works();
   void watch_crystal();
@@ -84,7 +85,7 @@ class Rcc final : public RegisterBlock {
   void write_cfgr(std::uint32_t value);
   void write_csr(std::uint32_t value);
   [[nodiscard]] const Oscillator& oscillator(ClockSource source) const;
-  /// Rejects what the manual forbids, naming the write to CFGR that led there.
+  /// Computes the clocks. Rejects a setting that the manual forbids, and names the write to CFGR that caused it.
   [[nodiscard]] Clocks clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const;
   void change_clocks(const Clocks& next);
   [[nodiscard]] bool lsi_ready() const;
@@ -110,7 +111,7 @@ class Rcc final : public RegisterBlock {
   bool stands_still_ = false;
   bool is_secured_ = false;                    ///< CSSON
   bool has_reported_ = false;                  ///< CSSF
-  LocalTime failure_seen_at_ = never_on_chip;  ///< of a failure of the crystal
+  LocalTime failure_seen_at_ = never_on_chip;  ///< time of the reaction to a failure of the crystal
 };
 
 }  // namespace proleg::sim

@@ -13,7 +13,7 @@ std::string RegisterBlock::register_name(std::uint32_t offset) const {
 
 namespace {
 
-/// The offset behind the name of a register; the name of an offset without a register contains it already.
+/// Text of the offset behind the name of a register; the name of an offset without a register contains it already.
 std::string place(const std::string& name, std::uint32_t offset) {
   return name.find(" at offset ") == std::string::npos ? " at offset " + hexadecimal(offset) : std::string();
 }

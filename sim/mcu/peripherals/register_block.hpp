@@ -1,6 +1,6 @@
 #pragma once
 
-// What the models of this room have in common: names of registers, rejections, a line into the NVIC.
+// Common parts of the peripherals: names of registers, rejections, a line into the NVIC.
 
 #include <cstdint>
 #include <span>
@@ -13,14 +13,14 @@
 namespace proleg::sim {
 
 [[nodiscard]] constexpr bool bit(std::uint32_t value, unsigned number) { return ((value >> number) & 1U) != 0; }
-/// `width` bits from bit `lowest` on.
+/// Value of the `width` bits from bit `lowest` on.
 [[nodiscard]] constexpr std::uint32_t field(std::uint32_t value, unsigned lowest, unsigned width) {
   return (value >> lowest) & ((std::uint32_t{1} << width) - 1);
 }
 
 struct RegisterName {
   std::uint32_t offset;
-  std::string_view name;  ///< without that of the peripheral: "BRR"
+  std::string_view name;  ///< without the name of the peripheral: "BRR"
 };
 
 /// A peripheral with names for its registers.
@@ -32,17 +32,17 @@ class RegisterBlock : public Peripheral {
   [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
 
  protected:
-  /// registers: must outlive the block. Constructors do not use the chip, which may be under construction.
+  /// registers must outlive the block. Constructors do not use the chip, which may be under construction.
   RegisterBlock(ChipServices& chip, std::string_view name, std::uint32_t base, std::uint32_t size,
                 std::span<const RegisterName> registers)
       : chip_(&chip), name_(name), base_(base), size_(size), registers_(registers) {}
 
   [[nodiscard]] ChipServices& chip() const { return *chip_; }
 
-  /// Throw UnmodelledAccess: "USART2_CR3 = 0x40 at offset 0x14: DMA is not modelled".
+  /// Both throw UnmodelledAccess: "USART2_CR3 = 0x40 at offset 0x14: DMA is not modelled".
   [[noreturn]] void reject_write(std::uint32_t offset, std::uint32_t value, std::string_view why) const;
   [[noreturn]] void reject_read(std::uint32_t offset, std::string_view why) const;
-  /// For an offset that read() or write() does not model.
+  /// Both throw UnmodelledAccess for an offset that read() or write() does not model.
   [[noreturn]] void reject_read(std::uint32_t offset) const;
   [[noreturn]] void reject_write(std::uint32_t offset, std::uint32_t value) const;
   /// Rejects a write that sets one of the bits of `mask`.
@@ -56,7 +56,7 @@ class RegisterBlock : public Peripheral {
   std::span<const RegisterName> registers_;
 };
 
-/// The line of a peripheral into the NVIC; passes on changes only.
+/// The line of a peripheral into the NVIC; it passes on only changes.
 class InterruptLine {
  public:
   InterruptLine(ChipServices& chip, unsigned position) : chip_(&chip), position_(position) {}

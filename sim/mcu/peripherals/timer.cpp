@@ -39,19 +39,19 @@ constexpr std::uint32_t cr1_arpe = 1U << 7U;
 constexpr std::uint32_t cr1_bits = 0x3FF;
 constexpr std::uint32_t cr2_trigger_by_update = 2U << 4U;  // MMS
 
-/// UIF, CC1IF to CC4IF, and their enables in DIER.
+/// Flags UIF, CC1IF to CC4IF in SR, and their enable bits in DIER.
 constexpr std::uint32_t flags = 0x1F;
 constexpr std::uint32_t flag_update = 1U << 0U;
 constexpr std::uint32_t flag_of(unsigned channel) { return 2U << channel; }
 constexpr std::uint32_t egr_ug = 1U << 0U;
 constexpr std::uint32_t egr_tg = 1U << 6U;
 
-// Of a channel, in its half of CCMR.
+// Bits of a channel in its half of CCMR.
 constexpr std::uint32_t ccmr_selection = 0x3;
 constexpr std::uint32_t ccmr_clear = 1U << 7U;
 enum Mode : std::uint8_t { frozen = 0, toggle = 3, force_inactive = 4, force_active = 5, pwm1 = 6, pwm2 = 7 };
 
-// Of a channel, in its quarter of CCER.
+// Bits of a channel in its quarter of CCER.
 constexpr unsigned ccer_enable = 0;
 constexpr unsigned ccer_polarity = 1;
 
@@ -62,14 +62,14 @@ unsigned checked(unsigned number) {
   return number;
 }
 
-/// TIM2 to TIM5 lie one behind the other.
+/// Names of the timers, whose registers lie one behind the other.
 constexpr const char* names[] = {"TIM2", "TIM3", "TIM4", "TIM5"};
 constexpr unsigned interrupts[] = {28, 29, 30, 50};
 constexpr std::uint32_t block_bytes = 0x400;
 
 }  // namespace
 
-// Channels count from 0 inside, from 1 outside.
+// Channels have numbers from 0 in this file, from 1 in the interface.
 
 Timer::Timer(ChipServices& chip, unsigned number)
     : RegisterBlock(chip, names[checked(number) - 2], 0x4000'0000 + block_bytes * (number - 2), block_bytes, registers),
@@ -125,7 +125,7 @@ LocalTime Timer::overflow_time() const { return time_of(std::uint64_t{arr_} - co
 std::optional<LocalTime> Timer::match_time(unsigned channel) const {
   const std::uint32_t compare = channels_[channel].compare;
   if (compare <= count_ || compare > arr_) {
-    return std::nullopt;  // not in this period
+    return std::nullopt;  // the edge is not in this period
   }
   return time_of(compare - count_);
 }
@@ -175,7 +175,8 @@ void Timer::settle() {
     match(count_, arr_);
     since_ += static_cast<std::int64_t>(to_overflow) * period;
     overflow();
-    // After two of them all preloaded values are in effect, and every flag that a period sets is set. Triggers count.
+    // After two overflows all preloaded values are in effect, and each flag that a period sets is set; the rest can be
+    // skipped, unless each overflow triggers.
     if (++overflows == 2 && counts() && !triggers()) {
       const auto whole = static_cast<std::int64_t>(count_period() * (std::uint64_t{arr_} + 1));
       since_ += (now - since_) / whole * whole;

@@ -11,10 +11,10 @@
 
 namespace proleg::sim {
 
-/// What the trigger output of a timer starts.
+/// A peripheral that the trigger output of a timer starts.
 class TriggerInput {
  public:
-  /// time: of the trigger, ChipServices::now() or earlier. They come in the order of time.
+  /// Receives a trigger. time: its time, ChipServices::now() or earlier. Triggers come in the order of their times.
   virtual void trigger(LocalTime time) = 0;
   /// Whether the next triggers start something that is no visible event (Peripheral::next_visible_event).
   [[nodiscard]] virtual bool works_unseen() const = 0;
@@ -28,7 +28,7 @@ class Timer final : public RegisterBlock {
   static constexpr unsigned channel_count = 4;
   static constexpr std::uint32_t ccr1 = 0x34;  ///< offset of the compare register of channel 1
 
-  /// number: 2, 3 or 5; else std::invalid_argument.
+  /// number: 2, 3 or 5; throws std::invalid_argument for another one.
   Timer(ChipServices& chip, unsigned number);
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
@@ -40,29 +40,30 @@ class Timer final : public RegisterBlock {
   void clocks_change(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override { return !enabled(); }
 
-  /// What gets the trigger output (TRGO) that CR2.MMS = 2 makes of an update. Without it MMS stays rejected.
+  /// Sets the receiver of the trigger output (TRGO), which CR2.MMS = 2 makes of an update. Without it MMS is rejected.
   void connect_trigger_output(TriggerInput& input) { trigger_input_ = &input; }
 
-  // For a channel, 1 to 4:
+  // Outputs of a channel, 1 to 4.
 
   /// Counts for which its PWM output is active in each period, as the program wrote them last (with preload: they hold
   /// from the next update on). Nothing unless the counter runs, the channel is in a PWM mode and its output is enabled.
   [[nodiscard]] std::optional<std::uint32_t> pulse_width(unsigned channel) const;
-  /// How long the output is high in each period, at ChipServices::now(): in the period that runs; or, if the program
-  /// wrote another width while the output was active, in the next one. Nothing where pulse_width() has none.
+  /// Time for which the output is high in each period, at ChipServices::now(): in the period that runs; or, if the
+  /// program wrote another width while the output was active, in the next one. Nothing where pulse_width() is nothing.
   [[nodiscard]] std::optional<LocalTime> high_time(unsigned channel);
   struct Output {
     bool driven = false;  ///< CCxE
     bool high = false;    ///< low if it is not driven
     friend bool operator==(const Output&, const Output&) = default;
   };
-  /// At ChipServices::now().
+  /// Output at ChipServices::now().
   [[nodiscard]] Output output(unsigned channel);
-  /// When its level changes next, after ChipServices::now(), if no register is written before; or an earlier time, at
-  /// which the caller must ask again (an update loads preloaded registers). never_on_chip if it never does.
+  /// Time after ChipServices::now() at which the level of the output changes next if no register is written before; or
+  /// an earlier time, at which the caller must ask again (an update loads preloaded registers). never_on_chip if the
+  /// level stays.
   [[nodiscard]] LocalTime next_edge(unsigned channel);
 
-  /// Local time of a count: (PSC + 1) clocks of the timer, with the prescaler that is in effect.
+  /// Duration of a count in local time: (PSC + 1) clocks of the timer, with the prescaler that is in effect.
   [[nodiscard]] LocalTime count_period() const { return clock() * (LocalTime{prescaler_} + 1); }
   /// Counts in a period: ARR + 1, as the program wrote it last.
   [[nodiscard]] std::uint64_t period() const { return std::uint64_t{arr_preload_} + 1; }
@@ -70,9 +71,9 @@ class Timer final : public RegisterBlock {
  private:
   struct Channel {
     std::uint32_t preload = 0;
-    std::uint32_t compare = 0;   ///< in effect
+    std::uint32_t compare = 0;   ///< the value that is in effect
     bool frozen_active = false;  ///< OCxREF in frozen mode
-    bool asked_in_time = true;   ///< `preload` was written while the output was active, so that it comes next
+    bool asked_in_time = true;   ///< `preload` was written while the output was active, so that the next period has it
   };
 
   /// Period of the timer's clock.
@@ -116,11 +117,11 @@ class Timer final : public RegisterBlock {
   std::array<Channel, channel_count> channels_;
 
   // While it is enabled, the counter had `count_` at `since_`, and has one more after each further count_period().
-  // Signed: a change of clocks can put `since_` before power-on.
+  // `since_` is signed: a change of clocks can put it before power-on.
   std::uint32_t count_ = 0;
   std::int64_t since_ = 0;
   LocalTime counting_from_ = 0;  ///< one clock after CEN (RM0090, 18.3.1)
-  LocalTime phase_ = 0;          ///< how far the prescaler had come when it was enabled or disabled
+  LocalTime phase_ = 0;          ///< progress of the prescaler when it was enabled or disabled
 };
 
 }  // namespace proleg::sim

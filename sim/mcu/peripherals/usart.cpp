@@ -44,15 +44,15 @@ constexpr std::uint32_t cr3_dmar = 1U << 6U;
 constexpr std::uint32_t cr3_dmat = 1U << 7U;
 constexpr std::uint32_t cr3_refused = 0xF3E;
 
-/// Cleared by a read of SR and one of DR.
+/// Flags that a read of SR and then of DR clears.
 constexpr std::uint32_t receiver_flags = sr_fe | sr_ore | sr_idle;
 
-// RM0090, table 42.
+// The channel and the streams of USART2 (RM0090, table 42).
 constexpr unsigned dma_channel = 4;
 constexpr unsigned receive_stream = 5;
 constexpr unsigned transmit_stream = 6;
 
-/// Clocks of the bus in a bit: USARTDIV times 16, or times 8 (RM0090, 30.3.4). Nothing below a USARTDIV of 1.
+/// Clocks of the bus in a bit: USARTDIV times 16, or times 8 (RM0090, 30.3.4). Nothing for a USARTDIV below 1.
 std::optional<std::uint32_t> clocks_of_bit(std::uint32_t divider, bool over8) {
   const std::uint32_t clocks = over8 ? (divider >> 4U) * 8 + (divider & 0x7U) : divider;
   return clocks >= (over8 ? 8U : 16U) ? std::optional(clocks) : std::nullopt;
@@ -325,7 +325,7 @@ void Usart::put_data(std::uint8_t byte) {
   sr_ &= ~(flags_read_ & sr_tc);
   flags_read_ &= ~sr_tc;
   if (sends()) {
-    waiting_ = byte;  // replaces one that waits
+    waiting_ = byte;  // replaces a byte that waits
     sr_ &= ~sr_txe;
   } else {
     shifting_ = byte;

@@ -18,7 +18,7 @@ class Usart final : public RegisterBlock {
   static constexpr unsigned number = 2;
   static constexpr unsigned interrupt_position = 38;
 
-  /// dma: DMA1, which must outlive the USART; without it DMA is rejected.
+  /// dma: DMA1, which must outlive the USART; without DMA1 the use of DMA is rejected.
   Usart(ChipServices& chip, BoardSignals& board, Dma* dma = nullptr);
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
@@ -30,17 +30,17 @@ class Usart final : public RegisterBlock {
   void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
-  /// A character begins on the line to the receiver, at this time, with the sender's bit time. Lost while the receiver
-  /// is off.
+  /// A character begins on the line to the receiver at a time, with the sender's bit time. It is lost while the
+  /// receiver is off.
   void begin_receive(LocalTime start, const SerialCharacter& character, LocalTime bit);
-  /// Called with each byte that is sent, and the end of its stop bit, beside BoardSignals::serial_output().
+  /// Called with each byte that is sent, and the end of its stop bit, in addition to BoardSignals::serial_output().
   using OutputWatch = std::function<void(LocalTime end, std::uint8_t byte)>;
   void watch_output(OutputWatch watch) { output_watch_ = std::move(watch); }
-  /// Local time of a bit; nothing while BRR holds no baud rate.
+  /// Duration of a bit in local time; nothing while BRR holds no baud rate.
   [[nodiscard]] std::optional<LocalTime> bit_time() const;
 
  private:
-  /// The requests of the transmitter and of the receiver.
+  /// The transmitter as a peripheral of the DMA; the receiver follows.
   struct TransmitRequest final : DmaPeripheral {
     explicit TransmitRequest(Usart& its_port) : port(its_port) {}
     [[nodiscard]] bool requests_dma() const override;
@@ -84,11 +84,11 @@ class Usart final : public RegisterBlock {
   std::uint32_t cr3_ = 0;
   std::uint32_t gtpr_ = 0;
   std::uint8_t received_ = 0;
-  std::optional<std::uint8_t> waiting_;   ///< in the transmit data register
-  std::optional<std::uint8_t> shifting_;  ///< nothing: an idle frame
+  std::optional<std::uint8_t> waiting_;   ///< byte in the transmit data register
+  std::optional<std::uint8_t> shifting_;  ///< byte in the shift register; nothing: an idle frame
   LocalTime frame_end_ = never_on_chip;
   SerialReceiver receiver_;
-  /// Flags that a read of SR has found set: an access to DR clears them.
+  /// Flags that a read of SR has found set; an access to DR clears them.
   std::uint32_t flags_read_ = 0;
 };
 

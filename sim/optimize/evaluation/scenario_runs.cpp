@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "sim/loop/simulation.hpp"
 #include "sim/loop/simulation_batch.hpp"
 #include "sim/physics/physics_error.hpp"
 

@@ -1,15 +1,31 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "sim/loop/simulation.hpp"
-#include "sim/optimize/evaluation/task.hpp"
+#include "sim/measure/measure.hpp"
 #include "sim/scenario/scenario.hpp"
 
+namespace proleg::sim {
+class Simulation;
+}
+
 namespace proleg::optimize {
+
+/// The result of a simulation.
+struct TrialResult {
+  sim::MeasureValues measures;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;               ///< what the worker needed, its share of a batch; processor time would not
+                                     ///< include waiting
+  bool given_up = false;             ///< racing stopped it; distance and speed are extrapolated
+  std::string failure;               ///< why the simulation failed (PhysicsError); empty if it did not
+  std::uint32_t limited_joints = 0;  ///< whose servos cannot follow the gait; only sweeps count them
+};
 
 /// What becomes of a simulation's result. i: place of its scenario.
 struct RunWatch {

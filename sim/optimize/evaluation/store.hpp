@@ -4,28 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 
 namespace proleg::optimize {
-
-/// A store cannot be used. what() is one line: file, what was found, what was expected.
-class StoreError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// What a store says of its search: enough to read the experiment again.
-struct StoredExperiment {
-  std::string path;      ///< of the experiment's file, as the search that made the store had it
-  std::string scenario;  ///< path of its top-level file
-  std::uint64_t seed = 0;
-  std::uint64_t evaluations = 0;         ///< of the latest search; 0: until the method ends
-  std::vector<sim::SourceFile> sources;  ///< every file that was read
-};
 
 /// Reads the description of a store's experiment, and nothing else. Throws StoreError.
 [[nodiscard]] StoredExperiment read_stored_experiment(const std::filesystem::path& path);

@@ -11,8 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/store_schema.hpp"
 #include "sim/optimize/experiment/experiment_parts.hpp"
 
 namespace proleg::optimize {

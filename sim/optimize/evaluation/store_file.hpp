@@ -2,15 +2,36 @@
 
 // Creates, locks and checks the file of a store. All functions throw StoreError or SqliteError.
 
+#include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "shared/computer/sqlite/sqlite.hpp"
-#include "sim/optimize/evaluation/store.hpp"
-#include "sim/optimize/evaluation/store_schema.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
+namespace proleg {
+class Database;
+}
+
 namespace proleg::optimize {
+
+struct StoreColumns;
+
+/// A store cannot be used. what() is one line: file, what was found, what was expected.
+class StoreError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a store says of its search: enough to read the experiment again.
+struct StoredExperiment {
+  std::string path;      ///< of the experiment's file, as the search that made the store had it
+  std::string scenario;  ///< path of its top-level file
+  std::uint64_t seed = 0;
+  std::uint64_t evaluations = 0;         ///< of the latest search; 0: until the method ends
+  std::vector<sim::SourceFile> sources;  ///< every file that was read
+};
 
 /// The lock of the one program that writes to a store. The system releases it when the process ends, in any way.
 /// Readers do not need it. (SQLite's own locks exist only while it writes.) The lock is on an empty file beside the

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/optimize/evaluation/scenario_runs.hpp"
 
 namespace proleg::optimize {
 namespace {

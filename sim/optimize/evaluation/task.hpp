@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/measure/measure.hpp"
+#include "sim/optimize/evaluation/scenario_runs.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg::optimize {
@@ -40,17 +41,6 @@ struct Task {
 
 /// Whether two evaluations of a candidate in one repetition may differ.
 [[nodiscard]] bool differs_between_evaluations(const Experiment& experiment);
-
-/// The result of a task.
-struct TrialResult {
-  sim::MeasureValues measures;
-  double simulated_s = 0.0;
-  double wall_s = 0.0;               ///< what the worker needed, its share of a batch; processor time would not
-                                     ///< include waiting
-  bool given_up = false;             ///< racing stopped it; distance and speed are extrapolated
-  std::string failure;               ///< why the simulation failed (PhysicsError); empty if it did not
-  std::uint32_t limited_joints = 0;  ///< whose servos cannot follow the gait; only sweeps count them
-};
 
 /// Simulates tasks, together if the engine can. Each result, except wall_s, depends only on experiment and task. Throws
 /// only if the system fails (out of memory).

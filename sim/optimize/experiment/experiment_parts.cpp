@@ -12,7 +12,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// "name=value name=value ..."
+/// A text "name=value name=value ...".
 class SettingsText {
  public:
   template <typename Number>
@@ -29,7 +29,7 @@ class SettingsText {
     text_ += (text_.empty() ? "" : " ") + std::string(name) + "=" + value;
     return *this;
   }
-  /// As a number: the texts are only compared.
+  /// Writes an enumeration's value as a number: the texts are only compared.
   template <typename Enumeration>
   requires std::is_enum_v<Enumeration> SettingsText& add(const char* name, Enumeration value) {
     return add(name, static_cast<int>(value));

@@ -13,11 +13,11 @@ struct ExperimentPart {
   std::string text;
 };
 
-/// All that determines the results, except the scenario. The fingerprint is made of it, and a store keeps it to name
-/// differences.
+/// All parts that determine the results, except the scenario. The fingerprint is made of them, and a store keeps them
+/// to name differences.
 [[nodiscard]] std::vector<ExperimentPart> parts_of(const Experiment& experiment);
 
-/// weight * measure + ...
+/// Text of an objective: weight * measure + ...
 [[nodiscard]] std::string terms_text(const Objective& objective);
 
 }  // namespace proleg::optimize

@@ -117,7 +117,7 @@ Objective read_objective(const XmlElement& element) {
   return objective;
 }
 
-/// Reads the <objective>s of a <fitness>: 1 to 8, each of one measure (`measure`) or a weighted sum (<term>s).
+/// Reads the 1 to 8 <objective>s of a <fitness>: each has one measure (`measure`) or a weighted sum (<term>s).
 std::vector<Objective> read_objectives(const XmlElement& fitness) {
   std::vector<Objective> objectives;
   for (const XmlElement& child : fitness.children()) {
@@ -137,7 +137,7 @@ std::vector<Objective> read_objectives(const XmlElement& fitness) {
   return objectives;
 }
 
-/// Without a <fitness>: the distance, as in the thesis.
+/// The objective of a file without <fitness>: the distance, as in the thesis.
 std::vector<Objective> default_objectives() {
   Objective distance;
   distance.name = declaration_of(sim::Measure::distance).name;
@@ -161,7 +161,7 @@ sim::Scenario read_named_scenario(const XmlElement& section, const std::filesyst
   if (!mention) {
     section.refuse("no <simulation> in " + section.label(), "the scenario, named there or with --simulation");
   }
-  // Opened here first, so that the message for a missing file names this line.
+  // The file is opened here first, so that the message for a missing file names this line.
   std::vector<sim::SourceFile> record;
   const std::filesystem::path found = sim::SourceSet(files, path, record).open(*mention, mention->text())->path();
   return read_scenario(found, files);
@@ -191,7 +191,7 @@ Trials read_trials(const XmlElement& element) {
   return trials;
 }
 
-/// Whether the score is a positive multiple of the distance or the speed: these can be extrapolated.
+/// Whether the score can be extrapolated: it is a positive multiple of the distance or the speed.
 bool can_be_extrapolated(const std::vector<Objective>& objectives) {
   if (objectives.size() != 1 || objectives.front().terms.size() != 1) {
     return false;

@@ -9,7 +9,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// A text that is equal for two experiments only if they are: every item has a mark at its end.
+/// A text that is equal for two experiments only if the experiments are equal: each item has a mark at its end.
 class CanonicalText {
  public:
   void add(std::string_view text) {
@@ -41,7 +41,7 @@ void add_setting(CanonicalText& text, const sim::Setting& setting) {
   text.add_all(setting.slot, setting.joint, setting.index, setting.internal, setting.value);
 }
 
-/// The texts of the files, and what the command line may change.
+/// Adds the texts of the files, and the settings that the command line may change.
 void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
   text.add(scenario.sources.size());
   for (const sim::SourceFile& source : scenario.sources) {

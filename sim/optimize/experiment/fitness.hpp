@@ -25,15 +25,15 @@ struct Objective {
   /// Score of a candidate whose run failed or lacks a measure.
   double failed = 0.0;
 
-  /// The score; `failed` if it is not a finite number.
+  /// The score of a run; `failed` if it is not a finite number.
   [[nodiscard]] double score(const sim::MeasureValues& measures) const;
-  /// Whether a score can be below 0: that of a failed run, a term with a weight below 0, or a measure with both signs.
+  /// Whether a score can be below 0, because of a failed run, a weight below 0, or a measure with both signs.
   [[nodiscard]] bool may_be_negative() const;
   /// Whether score a is better than b.
   [[nodiscard]] bool better(double a, double b) const { return goal == Goal::maximise ? a > b : a < b; }
-  /// Unit of the score: that of its measure; empty for a sum.
+  /// Unit of the score: the unit of its measure; empty for a sum.
   [[nodiscard]] std::string_view unit() const;
-  /// The number that pagmo minimises: the score or its negative. The same function turns it into the score.
+  /// The number that pagmo minimises: the score or its negative. The same function turns a cost into the score.
   [[nodiscard]] double cost(double score) const { return goal == Goal::maximise ? -score : score; }
 };
 

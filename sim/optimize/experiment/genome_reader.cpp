@@ -131,7 +131,7 @@ class SpaceBuilder {
   [[nodiscard]] SearchSpace release_space() { return std::move(space_); }
 
  private:
-  /// Settings of the thesis's program. Its files show one value of each, and the text does not explain them.
+  /// Checks settings of the thesis's program. Its files show one value of each, and the text does not explain them.
   static void check_types(const XmlElement& config) {
     for (const std::string_view name : {"genomeType", "valueType"}) {
       if (const auto type = config.attribute(name); type && *type != "1") {
@@ -189,7 +189,8 @@ class SpaceBuilder {
     }
   }
 
-  /// As in `--set`: "amplitude", "amplitude:J5", with "1." in front if another module of these joints has the name too.
+  /// Name as in `--set`: "amplitude", "amplitude:J5", with "1." in front if another module of these joints has the name
+  /// too.
   [[nodiscard]] std::string name_of(const Registration& registration, const Parameter& parameter,
                                     const std::vector<unsigned>& joints) const {
     JointMask mask;
@@ -245,7 +246,7 @@ class SpaceBuilder {
 
   const sim::Scenario* scenario_;
   SearchSpace space_;
-  std::map<std::tuple<unsigned, unsigned, unsigned>, int> claimed_;  ///< slot, joint, parameter: line
+  std::map<std::tuple<unsigned, unsigned, unsigned>, int> claimed_;  ///< line of each slot, joint and parameter
   std::set<std::string> names_;
   std::size_t value_count_ = 0;
 };

@@ -43,7 +43,7 @@ class SettingsReader {
       value = read_number(*element, range);
     }
   }
-  /// words: for the enumeration's values, in their order.
+  /// Reads an enumeration. words: the words for its values, in their order.
   template <typename Enumeration>
   void read(std::string_view tag, Enumeration& value, std::initializer_list<std::string_view> words) const {
     if (const auto element = properties_->child(tag)) {
@@ -149,7 +149,7 @@ std::vector<std::string> pagmo_options(std::string_view algorithm) {
   if (algorithm == "nsga2" || algorithm == "sga") {
     return {"crossover", "mutation"};
   }
-  return {};  // population and generations only
+  return {};  // the method has only population and generations
 }
 
 std::string method_name(const MethodSettings& method) {

@@ -10,7 +10,7 @@
 
 namespace proleg::optimize {
 
-/// The method sections: what the outermost tag of an experiment file may be.
+/// The tags of the method sections: an experiment file has one as its outermost tag.
 inline constexpr std::array<std::string_view, 6> method_tags{"geneticAlgorithm",      "greatDeluge", "cmaEs",
                                                              "differentialEvolution", "nsga2",       "pagmo"};
 

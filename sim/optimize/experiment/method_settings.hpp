@@ -31,8 +31,8 @@ struct GreatDelugeSettings {
     sign,     ///< -radius or +radius
     uniform,  ///< any step from -radius to +radius
   } neighbour = Neighbour::three;
-  Start start = Start::random;      ///< scenario: all chains start there
-  bool first_must_pass = true;      ///< whether the start itself must reach the water level to be accepted
+  Start start = Start::random;      ///< scenario: all chains start at its values
+  bool first_must_pass = true;      ///< whether the start must reach the water level to be accepted
   std::uint32_t reevaluations = 0;  ///< further evaluations of a candidate that would be accepted; the mean decides
   std::uint32_t chains = 1;         ///< searches side by side, each with its own water; the best of all counts
   std::optional<double> target;     ///< stops when a score reaches it
@@ -55,10 +55,10 @@ struct GeneticSettings {
 struct PagmoSettings {
   std::string algorithm;  ///< pagmo's name: cmaes, de, nsga2, sade, de1220, pso, sga, xnes, ...
   std::uint32_t population = 20;
-  std::uint32_t generations = 1000;  ///< at most
+  std::uint32_t generations = 1000;  ///< largest number of generations
   /// After this number of generations in which the best score improves by less than a thousandth, the search restarts
-  /// from another random population: for landscapes with several summits. It then ends with its generations or
-  /// evaluations. Only for algorithms that evolve by generation. 0: never.
+  /// from another random population, for landscapes with several summits. It then ends with its generations or
+  /// evaluations. 0: it never restarts. The setting is only for algorithms that evolve by generation.
   std::uint32_t restart_after = 0;
   Start start = Start::random;      ///< scenario: its values are in the first population; not after a restart
   std::optional<double> sigma0;     ///< cmaes, xnes: first step size, as a share of the ranges

@@ -11,7 +11,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Distance of two raw values; of phases the shorter way around.
+/// Distance of two raw values; the distance of phases is the shorter way around.
 std::int64_t distance_between(std::int32_t left, std::int32_t right, Unit unit) {
   if (wraps(unit)) {
     const std::uint32_t ahead = static_cast<std::uint32_t>(left) - static_cast<std::uint32_t>(right);
@@ -58,7 +58,7 @@ std::string SearchSpace::value_text(const Candidate& candidate, std::size_t dime
 }
 
 double SearchSpace::value(const Candidate& candidate, std::size_t dimension) const {
-  // From the text: 50, and not 50.0000000372529, which the raw value times the step of the unit gives.
+  // The text gives 50; the raw value times the step of the unit would give 50.0000000372529.
   const std::string text = value_text(candidate, dimension);
   double value = 0.0;
   std::from_chars(text.data(), text.data() + text.size(), value);

@@ -10,7 +10,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Whether the values go around the whole turn: the way from the last one to the first is no longer than any other
+/// Whether the values go around the whole turn: the step from the last one to the first is no longer than any other
 /// step.
 bool goes_around(const Dimension& dimension) {
   const auto distance = [](std::int32_t from, std::int32_t to) {

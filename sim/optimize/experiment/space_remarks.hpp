@@ -1,6 +1,6 @@
 #pragma once
 
-// What the value sets of an experiment leave out.
+// Values that the value sets of an experiment leave out.
 
 #include <cstddef>
 #include <string>
@@ -16,14 +16,14 @@ struct ValueAtBound {
   bool is_highest;
 };
 
-/// Those of a candidate, in the order of the dimensions. Without dimensions that have one value, and without phases
+/// The values at bounds of a candidate, in the order of the dimensions, without dimensions of one value and phases
 /// whose values go around the whole turn.
 [[nodiscard]] std::vector<ValueAtBound> values_at_bounds(const Experiment& experiment, const Candidate& candidate);
 
 /// A value of the scenario that is not in the set of its dimension.
 struct MovedValue {
   std::string name;     ///< "amplitude:J5"
-  std::string own;      ///< the scenario's: "41"
+  std::string own;      ///< the scenario's value: "41"
   std::string nearest;  ///< the value in the set: "40"
   std::string unit;
 };

@@ -12,10 +12,10 @@
 namespace proleg::optimize {
 namespace {
 
-/// Uniform between 0 and 1, both excluded.
+/// Draws a uniform number between 0 and 1, both excluded.
 double draw(Pcg32& random) { return (random.next() + 0.5) / 4294967296.0; }
 
-/// Uniform between 1 - spread and 1 + spread.
+/// Draws a uniform factor between 1 - spread and 1 + spread.
 double draw_factor(Pcg32& random, double spread) { return 1.0 + spread * (2.0 * draw(random) - 1.0); }
 
 void scale_friction(std::vector<sim::Geometry>& geometries, double factor) {

@@ -8,14 +8,14 @@ namespace proleg::optimize {
 
 struct SearchSpace;
 
-/// How far trials of a candidate differ from the scenario, so that results hold for more than one friction. Factors are
-/// drawn uniformly from 1 - x to 1 + x.
+/// Differences between a candidate's trials and the scenario, so that results hold for more than one friction. Factors
+/// are drawn uniformly from 1 - x to 1 + x.
 struct Spread {
   double friction = 0.0;    ///< x of one factor on all coefficients of friction; 0 to 0.9
   double mass = 0.0;        ///< x of a factor on mass and inertia, for each link; 0 to 0.9
   double servo_gain = 0.0;  ///< x of one factor on the servo's gain; 0 to 0.9
   double latency_ms = 0.0;  ///< additional latency of the servos, uniform from 0 to this; 0 to 100
-  /// Probability that a touch sensor is wrong at a tick; replaces the scenario's. 0 to 1; 0: the scenario's.
+  /// Probability that a touch sensor is wrong at a tick, 0 to 1. It replaces the scenario's if it is not 0.
   double contact_noise = 0.0;
 
   [[nodiscard]] bool any() const {
@@ -23,14 +23,14 @@ struct Spread {
   }
 };
 
-/// Variations that a gait for a real robot stands: friction and servo gain by a fifth, masses by a tenth, up to 10 ms
-/// of latency.
+/// Variations that a gait for a real robot must stand: friction and servo gain by a fifth, masses by a tenth, up to
+/// 10 ms of latency.
 [[nodiscard]] constexpr Spread usual_spread() { return {0.2, 0.1, 0.2, 10.0, 0.0}; }
 
 enum class Aggregate : std::uint8_t { mean, worst };
 
-/// Whether all candidates of a repetition meet the same worlds (trial 3 of one candidate has the friction of trial 3 of
-/// another), so that scores differ through the candidates only; or each evaluation draws its own.
+/// Common: all candidates of a repetition meet the same worlds (trial 3 of one candidate has the friction of trial 3 of
+/// another), so that scores differ only through the candidates. Fresh: each evaluation draws its own worlds.
 enum class RandomNumbers : std::uint8_t { common, fresh };
 
 inline constexpr std::uint32_t max_trials = 1000;
@@ -50,7 +50,7 @@ void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed);
 /// touch sensors. (A candidate may set the noise: a dimension of that name counts.)
 [[nodiscard]] bool depends_on_seed(const sim::Scenario& scenario, const SearchSpace& space, const Spread& spread);
 
-/// Seed of a trial; depends on nothing else.
+/// Seed of a trial, which depends only on these numbers.
 [[nodiscard]] std::uint64_t trial_seed(std::uint64_t experiment_seed, std::uint32_t run, std::uint64_t individual,
                                        std::uint32_t trial);
 

@@ -30,7 +30,7 @@ Decimal parse_decimal_word(std::string_view word, const XmlElement& element) {
   return *number;
 }
 
-/// An element that holds one word for all joints, or one for each.
+/// An element with one word for all joints, or one word for each joint.
 class WordPerJoint {
  public:
   WordPerJoint(const XmlElement& element, std::size_t joints) : element_(element) {
@@ -53,7 +53,7 @@ class WordPerJoint {
   std::vector<std::string> words_;
 };
 
-/// Whether the bounds of a side belong to the values; GAlib's numbers. Without the tag they do.
+/// Whether the bounds of a side belong to the values, with GAlib's numbers. Without the tag they belong to them.
 class BoundTypes {
  public:
   BoundTypes(const XmlElement& config, std::string_view tag, std::size_t joints) {
@@ -115,7 +115,7 @@ class RangeReader {
   }
 
  private:
-  /// The values number first to end - 1.
+  /// The values with the numbers first to end - 1.
   [[nodiscard]] std::vector<std::int32_t> between(const DecimalRange& range, std::uint64_t first,
                                                   std::uint64_t end) const {
     if (first >= end) {

@@ -13,8 +13,8 @@ namespace proleg::optimize {
 /// Returns the raw values of a joint, in ascending order of the numbers in the file. Throws InputError.
 using ValuesOfJoint = std::function<std::vector<std::int32_t>(std::size_t joint)>;
 
-/// Reads which values a <genomeConfig> allows a parameter: a range with a step (valueSpace 1) or a list (0). The file
-/// has one set for all joints, or one for each of `joints`, in its order. The sets are not empty and within the
+/// Reads the values that a <genomeConfig> allows a parameter: a range with a step (valueSpace 1) or a list (0). The
+/// file has one set for all joints, or one for each of `joints`, in its order. The sets are not empty and within the
 /// parameter's declared range. `config` must outlive the result.
 [[nodiscard]] ValuesOfJoint read_values(const sim::XmlElement& config, const Parameter& parameter, std::size_t joints);
 

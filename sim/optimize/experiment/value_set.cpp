@@ -20,13 +20,13 @@ bool skip(std::string_view& text, std::string_view characters) {
   return found;
 }
 
-/// The digits of a number without the point, and how many are after it.
+/// The digits of a number without the point, and the number of digits after it.
 struct Digits {
   Decimal::Wide value = 0;
   int after_point_count = 0;
 };
 
-/// Reads and removes the digits at the front of the text; nothing if there are none or too many.
+/// Reads and removes the digits at the front of the text; nothing if digits are absent or too many.
 std::optional<Digits> read_digits(std::string_view& text) {
   Digits digits;
   bool any = false;
@@ -41,7 +41,7 @@ std::optional<Digits> read_digits(std::string_view& text) {
       break;
     }
     any = true;
-    // A Decimal has fewer digits than this. More could only be zeros at the end.
+    // A Decimal has fewer digits. Further digits could only be zeros at the end.
     if (digits.value > limit * 10'000'000'000 || digits.after_point_count > 4 * places) {
       return std::nullopt;
     }
@@ -51,7 +51,7 @@ std::optional<Digits> read_digits(std::string_view& text) {
   return any ? std::optional(digits) : std::nullopt;
 }
 
-/// Reads and removes an e and the exponent after it at the front of the text; 0 without them.
+/// Reads and removes an "e" and the exponent after it at the front of the text; 0 without them.
 std::optional<int> read_exponent(std::string_view& text) {
   if (!skip(text, "eE")) {
     return 0;

@@ -22,14 +22,14 @@ class Decimal {
   Decimal() = default;
   explicit constexpr Decimal(Wide quanta) : quanta_(quanta) {}
 
-  /// The whole text as a number, written as for shared/fixed/decimal.hpp; nothing for anything else.
+  /// Parses a whole text, written as for shared/fixed/decimal.hpp; nothing for another text.
   [[nodiscard]] static std::optional<Decimal> parse(std::string_view text);
   /// The shortest text of the number.
   [[nodiscard]] std::string text() const;
-  /// The raw value in that unit, equal to parse_decimal of the text. The number must fit, or the unit wraps.
+  /// The raw value in a unit, equal to parse_decimal of the text. The number must fit, or the unit wraps.
   [[nodiscard]] std::int32_t raw(Unit unit) const;
 
-  /// Units of 10^-15.
+  /// The number in units of 10^-15.
   [[nodiscard]] constexpr Wide quanta() const { return quanta_; }
   friend constexpr bool operator==(const Decimal&, const Decimal&) = default;
   friend constexpr std::strong_ordering operator<=>(const Decimal& left, const Decimal& right) {
@@ -40,13 +40,13 @@ class Decimal {
   Wide quanta_ = 0;
 };
 
-/// min, min + step, ..., max.
+/// The numbers min, min + step, ..., max.
 class DecimalRange {
  public:
-  /// step above 0, min not above max.
+  /// step must be above 0, min not above max.
   DecimalRange(Decimal min, Decimal max, Decimal step);
 
-  /// Whether the step divides the range, to 10^-9 of it: a rounded step (0.3333333333) needs about ten digits.
+  /// Whether the step divides the range to within 10^-9 of it: a rounded step (0.3333333333) needs about ten digits.
   [[nodiscard]] bool step_fits() const;
   /// Number of values, at most 2^64 - 1.
   [[nodiscard]] std::uint64_t count() const;
@@ -63,7 +63,7 @@ class DecimalRange {
   Decimal::Wide steps_;  ///< the whole number nearest to (max - min) / step
 };
 
-/// The raw values of numbers in ascending order, in that order, each once.
+/// The raw values of ascending numbers, in their order, each once.
 [[nodiscard]] std::vector<std::int32_t> raw_values(const std::vector<Decimal>& numbers, Unit unit);
 
 }  // namespace proleg::optimize

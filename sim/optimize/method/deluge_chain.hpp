@@ -8,13 +8,13 @@
 
 namespace proleg::optimize {
 
-/// Bounds of the variables.
+/// The bounds of the variables.
 struct DelugeBox {
   std::vector<double> lower;
   std::vector<double> upper;
 };
 
-/// One great deluge among several that take turns: its place, its water and what is left of its retries and credits.
+/// One great deluge among several that take turns: its place, its water, and its remaining retries and credits.
 struct DelugeChain {
   std::uint32_t index;
   std::vector<double> current;
@@ -25,7 +25,7 @@ struct DelugeChain {
   double acceptance_rate = 0.0;  ///< share of the latest candidates that were accepted, 0 to 1
   bool ended = false;
 
-  /// The next candidate.
+  /// Draws the next candidate.
   [[nodiscard]] std::vector<double> draw(const GreatDelugeSettings& settings, std::uint64_t seed, const DelugeBox& box);
 
   void count_outcome(bool accepted) { acceptance_rate += 0.25 * ((accepted ? 1.0 : 0.0) - acceptance_rate); }
@@ -36,8 +36,8 @@ struct DelugeChain {
 /// Radius of the search after this number of used retries.
 [[nodiscard]] std::uint32_t radius_after(const GreatDelugeSettings& settings, std::uint32_t used);
 
-/// The random numbers of a chain's candidate with this number, from 0. They depend on nothing else, so a candidate can
-/// be predicted. Drawn in this order: the variable (Move::one only); then U for each variable that moves.
+/// The random numbers of a chain's candidate; number: from 0. They depend on nothing else, so a candidate can be
+/// predicted. They are drawn in this order: the variable (Move::one only); then U for each variable that moves.
 [[nodiscard]] Pcg32 candidate_noise(std::uint64_t seed, std::uint32_t chain, std::uint64_t number);
 
 }  // namespace proleg::optimize

@@ -22,7 +22,7 @@ double GaitProblemHub::last_index(std::size_t i) const {
 Candidate GaitProblemHub::candidate(const std::vector<double>& x) const {
   Candidate result(space_.dimensions.size(), 0);
   for (std::size_t i = 0; i < choices_.size(); ++i) {
-    if (x[i] > 0.0) {  // false for what is not a number
+    if (x[i] > 0.0) {  // false for NaN
       result[choices_[i]] = static_cast<std::uint32_t>(std::floor(std::fmin(x[i], last_index(i)) + 0.5));
     }
   }

@@ -10,27 +10,27 @@
 
 namespace proleg::optimize {
 
-/// What all copies that pagmo makes of a GaitProblem share: it turns a vector of numbers into a candidate and its
+/// All copies that pagmo makes of a GaitProblem share one hub. It turns a vector of numbers into a candidate and its
 /// costs.
 ///
 /// The vector has one number for each dimension that has a choice (more than one value): the index of its value, as a
 /// real number from 0 to n - 1. The candidate is at the nearest index. So the step of every value set is 1.
 class GaitProblemHub {
  public:
-  /// All three must outlive this.
+  /// All three arguments must outlive the hub.
   GaitProblemHub(const SearchSpace& space, const std::vector<Objective>& objectives, FitnessSource& source);
 
-  [[nodiscard]] std::size_t size() const { return choices_.size(); }  ///< of the vectors
+  [[nodiscard]] std::size_t size() const { return choices_.size(); }  ///< length of the vectors
   [[nodiscard]] std::size_t objectives() const { return objectives_.size(); }
   [[nodiscard]] double last_index(std::size_t i) const;  ///< n - 1 of the i-th dimension that has a choice
-  /// The nearest candidate. Numbers outside the range count as its end, and "not a number" as 0.
+  /// The candidate nearest to x. Numbers outside the range count as its end, and NaN as 0.
   [[nodiscard]] Candidate candidate(const std::vector<double>& x) const;
   [[nodiscard]] std::vector<double> numbers(const Candidate& candidate) const;
-  /// What pagmo minimises, for each objective. The same function turns costs into scores.
+  /// The costs that pagmo minimises, one for each objective. The same function turns costs into scores.
   [[nodiscard]] std::vector<double> costs(const std::vector<double>& scores) const;
   [[nodiscard]] FitnessSource& source() const { return source_; }
 
-  /// Answers a GaitProblem: costs of x. By default it asks the source.
+  /// Answers a GaitProblem with the costs of x. By default it requests them from the source.
   std::function<std::vector<double>(const std::vector<double>&)> answer;
 
  private:
@@ -45,7 +45,7 @@ class GaitProblemHub {
 class GaitProblem {
  public:
   GaitProblem() = default;  ///< required by pagmo; never evaluated
-  /// hub: must outlive all copies; its size() is at least 1.
+  /// hub must outlive all copies; its size() is at least 1.
   explicit GaitProblem(GaitProblemHub& hub) : hub_(&hub) {}
 
   [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const { return hub_->answer(x); }

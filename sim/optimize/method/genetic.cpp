@@ -45,7 +45,7 @@ class Rating {
     return 0.0F;
   }
 
-  /// GAGenome::Initializer: random values; for the first individual the start, if there is one.
+  /// GAGenome::Initializer: sets random values; the first individual has the start, if this exists.
   static void initialise(GAGenome& genome) {
     Genome::UniformInitializer(genome);
     auto& self = *static_cast<Rating*>(genome.userData());
@@ -58,9 +58,9 @@ class Rating {
     }
   }
 
-  std::optional<Candidate> start;  ///< for the next individual that is initialised
+  std::optional<Candidate> start;  ///< values of the next individual that is initialised
 
-  /// What ended the search; null while it runs. An exception through GAlib would leak its memory.
+  /// The exception that ended the search; null while it runs. An exception through GAlib would leak its memory.
   [[nodiscard]] const std::exception_ptr& ended() const { return ended_; }
 
  private:
@@ -131,7 +131,7 @@ unsigned galib_seed(const Experiment& experiment, std::uint32_t run) {
   return upper << 18U | lower;
 }
 
-/// When GAlib minimises, it compares the inverse quotient.
+/// Limit of the quotient of best scores. When GAlib minimises, it compares the inverse quotient.
 float convergence_limit(const GeneticSettings& settings, Goal goal) {
   if (goal == Goal::maximise) {
     return static_cast<float>(settings.convergence);
@@ -147,8 +147,9 @@ std::unique_ptr<GAGeneticAlgorithm> make_algorithm(const GAPopulation& populatio
   return std::make_unique<GASimpleGA>(population);
 }
 
-/// GAlib's end: the best score of N - 1 generations ago over the best now is at least `convergence`. GAlib does not
-/// divide by 0 and would continue for ever, so N generations with a best of 0 also end the search.
+/// GAlib's criterion: the search ends when the best score of N - 1 generations ago over the best now is at least
+/// `convergence`. GAlib does not divide by 0 and would continue for ever, so N generations with a best of 0 also end
+/// the search.
 class RatioConvergence {
  public:
   RatioConvergence(const GeneticSettings& settings, Goal goal, GAGeneticAlgorithm& algorithm)
@@ -166,11 +167,11 @@ class RatioConvergence {
  private:
   GAGeneticAlgorithm& algorithm_;
   std::uint32_t generations_;
-  std::uint32_t zeros_ = 0;  ///< latest generations with a best of 0
+  std::uint32_t zeros_ = 0;  ///< number of the latest generations with a best of 0
 };
 
-/// The same end for scores of both signs: in N - 1 generations the best score has improved by no more than the share
-/// 1 - `convergence` of its size. For scores above 0 that are maximised, both are the same condition.
+/// The criterion for scores of both signs: in N - 1 generations the best score has improved by no more than the share
+/// 1 - `convergence` of its size. For scores above 0 that are maximised it equals the condition of RatioConvergence.
 class GainConvergence {
  public:
   GainConvergence(const GeneticSettings& settings, GAGeneticAlgorithm& algorithm)
@@ -189,7 +190,7 @@ class GainConvergence {
  private:
   GAGeneticAlgorithm& algorithm_;
   const GeneticSettings& settings_;
-  std::deque<double> best_;  ///< of the latest generations
+  std::deque<double> best_;  ///< best scores of the latest generations
 };
 
 std::string evolve(GAGeneticAlgorithm& algorithm, const Rating& rating, const std::function<bool()>& has_converged) {
@@ -227,7 +228,7 @@ std::string search_genetic(const Experiment& experiment, std::uint32_t run, Fitn
   algorithm->pMutation(static_cast<float>(settings.mutation));
   algorithm->pCrossover(static_cast<float>(settings.crossover));
 
-  // Not initialize(seed): with the seed of the search before, it would continue the sequence.
+  // initialize(seed) would continue the sequence if the search before had the same seed.
   GAResetRNG(galib_seed(experiment, run));
   if (objective.may_be_negative()) {
     GainConvergence convergence(settings, *algorithm);

@@ -14,13 +14,14 @@ namespace proleg::optimize {
 /// - Genome: one gene for each dimension, the index of its value (GA1DArrayAlleleGenome<int>). The thesis used
 ///   GARealGenome with ranges and increments. That is the same class with another number type. Its Gaussian mutator
 ///   draws a gene again from the whole range if there is an increment, as the flip mutator here does. The crossover is
-///   uniform, as there; the default of this class is another one.
+///   uniform, as in the thesis; the default of this class is another one.
 /// - Selection and scaling are GAlib's defaults: roulette wheel, linear scaling by 1.2, in single precision.
 /// - The source receives a whole generation before it is evaluated. A child that equals its parent is not evaluated
 ///   again: GAlib keeps its score.
 /// - If mutation * length is 1 or more, GAlib draws ceil(mutation * length) genes again, at random places, and may draw
 ///   one twice. Otherwise it draws each gene again with the probability `mutation`.
-/// - Ends ("converged") when the best score of N - 1 generations ago, divided by the best score now, is at least
+/// - The search ends ("converged") when the best score of N - 1 generations ago, divided by the best score now, is at
+/// least
 ///   `convergence`. N is generations_to_convergence; it never ends before generation N - 1. The best individual always
 ///   survives. To minimise, the inverse quotient counts.
 /// - Linear scaling needs scores of 0 or more. After N generations with a best of 0 the search counts as converged.

@@ -14,7 +14,7 @@
 
 namespace proleg::optimize {
 
-/// One call of evolve().
+/// The search of one call of evolve().
 class GreatDeluge::DelugeSearch {
  public:
   DelugeSearch(const GreatDeluge& algorithm, const pagmo::population& population)
@@ -37,7 +37,7 @@ class GreatDeluge::DelugeSearch {
     }
   }
 
-  /// Returns why it ended.
+  /// Runs the search and returns why it ended.
   std::string run() {
     for (DelugeChain& chain : chains_) {
       const double level = best_levels_[chain.index];
@@ -129,9 +129,9 @@ class GreatDeluge::DelugeSearch {
     }
   }
 
-  /// Announces to the source: `again`, `times` times, and then the next candidates of the chains from that turn on.
-  /// Assumes that each is accepted if most of its chain's latest candidates were: far above the water nearly all are
-  /// accepted, near the top nearly none.
+  /// Announces requests to the source: `again`, `times` times, and then the next candidates of the chains from that
+  /// turn on. It assumes that a candidate is accepted if most of its chain's latest candidates were: far above the
+  /// water nearly all are accepted, near the top nearly none.
   void expect(const std::vector<double>& again, std::uint32_t times, std::vector<DelugeChain> chains,
               std::size_t turn) {
     if (gait_ == nullptr) {
@@ -172,8 +172,8 @@ class GreatDeluge::DelugeSearch {
   const GreatDelugeSettings& settings_;
   const pagmo::problem& problem_;
   const GaitProblem* gait_;
-  std::vector<std::vector<double>> best_places_;  ///< of each chain
-  std::vector<double> best_levels_;               ///< of best_places_
+  std::vector<std::vector<double>> best_places_;  ///< best place of each chain
+  std::vector<double> best_levels_;               ///< levels of best_places_
   DelugeBox box_;
   std::vector<DelugeChain> chains_;
   std::optional<double> announced_water_;

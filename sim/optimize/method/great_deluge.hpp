@@ -25,7 +25,7 @@ namespace proleg::optimize {
 ///              if used = retries:  end if credits = 0;  credits -= 1; used = 0
 ///
 /// The step of a variable is 1, so the candidates of a GaitProblem are whole numbers. A candidate is compared with the
-/// water alone: it may be worse than the current place.
+/// water only: it may be worse than the current place.
 ///
 /// The thesis leaves some points open. This algorithm reads them as follows:
 /// - The start is evaluated, but it is no candidate: if it is below the water, it uses no retry. The search continues
@@ -49,10 +49,10 @@ class GreatDeluge {
   [[nodiscard]] pagmo::population evolve(pagmo::population population) const;
 
   void set_seed(unsigned seed) { seed_ = seed; }
-  /// Whether scores may depend on the water level that the source received (racing). Predictions for after an
-  /// acceptance are then useless, because it raises the level, and are left out.
+  /// Sets whether scores may depend on the water level that the source received (racing). An acceptance raises the
+  /// level, so predictions for the time after it are then useless and are left out.
   void set_scores_depend_on_level(bool depend) { scores_depend_on_level_ = depend; }
-  /// Above 0: evolve() keeps a log.
+  /// Sets the verbosity; above 0, evolve() keeps a log.
   void set_verbosity(unsigned level) { verbosity_ = level; }
   [[nodiscard]] std::string get_name() const { return "modified great deluge"; }
   [[nodiscard]] std::string get_extra_info() const;
@@ -61,15 +61,15 @@ class GreatDeluge {
   struct LogLine {
     std::uint32_t chain;
     std::vector<double> place;
-    double level;  ///< with reevaluations: their mean, if there were any
-    double water;  ///< that it was compared with
+    double level;  ///< mean of the evaluations, if there were reevaluations
+    double water;  ///< water that the level was compared with
     std::uint32_t used;
     std::uint32_t credits;
-    double radius;  ///< 0: a start
+    double radius;  ///< radius of the draw; 0: this is a start
     bool accepted;
   };
   [[nodiscard]] const std::vector<LogLine>& get_log() const { return log_; }
-  /// Why the last evolve() ended.
+  /// Reason why the last evolve() ended.
   [[nodiscard]] const std::string& ending() const { return ending_; }
 
  private:
@@ -79,7 +79,7 @@ class GreatDeluge {
   bool scores_depend_on_level_ = false;
   std::uint64_t seed_;
   unsigned verbosity_ = 0;
-  // pagmo requires a const evolve().
+  // These are mutable because pagmo requires a const evolve().
   mutable std::vector<LogLine> log_;
   mutable std::string ending_;
 };

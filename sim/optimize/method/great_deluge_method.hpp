@@ -9,8 +9,7 @@
 namespace proleg::optimize {
 
 /// search() for an experiment whose method is GreatDelugeSettings, with one objective and more than one candidate.
-///
-/// Ends "no credit left" or "target reached".
+/// It returns "no credit left" or "target reached".
 [[nodiscard]] std::string search_great_deluge(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
 }  // namespace proleg::optimize

@@ -6,7 +6,7 @@
 
 namespace proleg::optimize {
 
-/// Seed of what an optimiser draws in a run of an experiment. It differs from the seeds of the trials.
+/// Seed of the random numbers of an optimiser in a run of an experiment. It differs from the seeds of the trials.
 [[nodiscard]] constexpr std::uint64_t method_seed(std::uint64_t experiment_seed, std::uint32_t run) {
   return scatter(scatter(experiment_seed ^ 0x6D6574686F64U) + run);
 }

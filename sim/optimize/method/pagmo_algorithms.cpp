@@ -53,7 +53,7 @@ algorithm make_cmaes(const PagmoSetup& setup) {
 }
 
 algorithm make_compass_search(const PagmoSetup& setup) {
-  // It ends at half a step of the widest variable: it has tried all neighbours then.
+  // The search ends at half a step of the widest variable: then it has tried all neighbours.
   return algorithm{pagmo::compass_search(evaluations(setup), 0.5, 0.5 / (setup.max_index + 1.0), 0.5)};
 }
 
@@ -93,7 +93,7 @@ algorithm make_moead(const PagmoSetup& setup) {
 }
 
 algorithm make_nsga2(const PagmoSetup& setup) {
-  const double below_one = std::nextafter(1.0, 0.0);  // pagmo accepts nothing above
+  const double below_one = std::nextafter(1.0, 0.0);  // pagmo accepts no larger number
   return algorithm{pagmo::nsga2(one_generation, std::min(setup.settings.crossover.value_or(0.95), below_one), 10.0,
                                 setup.settings.mutation.value_or(0.01), 50.0, setup.seed)};
 }
@@ -116,7 +116,7 @@ algorithm make_sade(const PagmoSetup& setup) {
 }
 
 algorithm make_sea(const PagmoSetup& setup) {
-  // Its generation is one evaluation.
+  // A generation of this algorithm is one evaluation.
   return algorithm{pagmo::sea(setup.settings.population, setup.seed)};
 }
 
@@ -127,7 +127,8 @@ algorithm make_sga(const PagmoSetup& setup) {
 }
 
 algorithm make_simulated_annealing(const PagmoSetup& setup) {
-  // The temperature has the unit of the cost: from the differences in the first population down to a hundredth of them.
+  // The temperature has the unit of the cost. It falls from the differences in the first population to a hundredth of
+  // them.
   constexpr unsigned bin = 20;
   const std::uint64_t evaluations_each = bin * setup.variables;
   const std::uint64_t temperatures = (evaluations(setup) + evaluations_each - 1) / evaluations_each;
@@ -141,7 +142,7 @@ algorithm make_xnes(const PagmoSetup& setup) {
 }
 
 constexpr std::array<PagmoAlgorithm, 19> table = {{
-    // name, objectives, min_population, population_multiple, evolves_by_generation, stagnates
+    // Columns: name, objectives, min_population, population_multiple, evolves_by_generation, stagnates.
     {"bee_colony", one, 2, 1, false, false, make_bee_colony},
     {"cmaes", one, 5, 1, true, true, make_cmaes},
     {"compass_search", one, 1, 1, false, false, make_compass_search},

@@ -39,7 +39,7 @@ bool is_one_candidate(const pagmo::population& population, const GaitProblemHub&
   return std::ranges::all_of(places, [&](const auto& place) { return hub.candidate(place) == first; });
 }
 
-/// Searches one after another, each from its own population, until the generations are used up.
+/// Runs searches one after another, each from its own population, until the generations are used up.
 class PagmoSearch {
  public:
   PagmoSearch(const Experiment& experiment, std::uint64_t seed, FitnessSource& source)
@@ -65,7 +65,7 @@ class PagmoSearch {
   }
 
  private:
-  /// Uses at least one generation, until none is left or nothing more is gained. Returns why it ended.
+  /// Searches for at least one generation, until none is left or the search converges. Returns why it ended.
   std::string run_from(std::uint64_t seed) {
     RequestPredictor predictor(hub_, settings_.population, chosen_.stagnates);
     try {
@@ -112,7 +112,7 @@ class PagmoSearch {
     return population;
   }
 
-  /// Of the first objective.
+  /// Best cost of the first objective.
   static double best_cost(const pagmo::population& population) {
     return std::ranges::min(population.get_f(), {}, [](const auto& costs) { return costs[0]; })[0];
   }
@@ -121,9 +121,9 @@ class PagmoSearch {
   const PagmoAlgorithm& chosen_;
   std::uint64_t seed_;
   GaitProblemHub hub_;
-  std::optional<std::vector<double>> own_values_;  ///< for the first population of the first start
+  std::optional<std::vector<double>> own_values_;  ///< values in the first population of the first start
   pagmo::problem problem_;
-  std::uint64_t generations_;  ///< left
+  std::uint64_t generations_;  ///< number of generations left
 };
 
 }  // namespace

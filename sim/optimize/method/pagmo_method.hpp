@@ -11,9 +11,9 @@ namespace proleg::optimize {
 /// search() for an experiment whose method is PagmoSettings that check_method() accepts, and that has more than one
 /// candidate.
 ///
-/// Ends "generations used up", or earlier "converged": when the algorithm asks for nothing more. An algorithm that
-/// stagnates also converges when the whole population is one candidate, or when all requests of a generation lie within
-/// half a step of each value set.
+/// It returns "generations used up", or earlier "converged": when the algorithm has no further requests. An algorithm
+/// that stagnates also converges when the whole population is one candidate, or when all requests of a generation lie
+/// within half a step of each value set.
 [[nodiscard]] std::string search_with_pagmo(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
 }  // namespace proleg::optimize

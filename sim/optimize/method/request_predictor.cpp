@@ -6,7 +6,7 @@ namespace proleg::optimize {
 
 namespace {
 
-/// Worse than any possible cost, and small enough that algorithms can calculate with it.
+/// A cost worse than any possible one, and small enough that algorithms can calculate with it.
 constexpr double very_bad_cost = 1e30;
 
 /// Thrown through the algorithm to end a rehearsal.
@@ -69,7 +69,7 @@ std::vector<double> RequestPredictor::answer_rehearsal(const std::vector<double>
 }
 
 bool RequestPredictor::raise_needed_score() {
-  if (hub_.objectives() > 1 || !has_new_best_) {  // with several scores none is the one that matters
+  if (hub_.objectives() > 1 || !has_new_best_) {  // with several scores none of them decides
     return false;
   }
   has_new_best_ = false;
@@ -89,7 +89,8 @@ void RequestPredictor::predict(const Candidate& wanted) {
     expected_all_ = false;
   }
   is_rehearsing_ = false;
-  if (expected_.empty() || expected_[0] != wanted) {  // it does not repeat, so it cannot be predicted
+  if (expected_.empty() ||
+      expected_[0] != wanted) {  // the algorithm does not repeat its requests, so they cannot be predicted
     expected_.assign(1, wanted);
     expected_all_ = true;
   }

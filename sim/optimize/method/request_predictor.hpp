@@ -9,33 +9,33 @@
 
 namespace proleg::optimize {
 
-/// Predicts what an algorithm of pagmo will ask for, so that workers can simulate ahead. (pagmo asks for one fitness
+/// Predicts the requests of an algorithm of pagmo, so that workers can simulate ahead. (pagmo requests one fitness
 /// after the other.)
 ///
 /// It rehearses the algorithm on copies. A copy receives the answers that the algorithm has received since the copy was
-/// made, and then a very bad fitness for everything else. What the copy asks for then is what the algorithm will ask
-/// for if nothing good turns up. Most algorithms do not use a fitness before the end of a generation, so the prediction
-/// is right until there. Where it is wrong, the algorithm is rehearsed again. The algorithm itself sees no difference.
+/// made, and then a very bad fitness for all other requests. These requests are those of the algorithm if no good
+/// candidate is found. Most algorithms do not use a fitness before the end of a generation, so the prediction is right
+/// until then. When it is wrong, the algorithm is rehearsed again. The algorithm itself does not see the rehearsals.
 class RequestPredictor {
  public:
   /// Thrown through an algorithm that stagnates, when its candidates no longer differ.
   struct Stagnated {};
 
-  /// hub: what the algorithm's problem asks; must outlive this, which answers it from now on. population: number of
-  /// evaluations in a generation. stagnates: whether to end when all requests of a generation lie within half a step,
-  /// or are the same candidate.
+  /// hub receives the requests of the algorithm's problem; it must outlive the predictor, which answers them from now
+  /// on. population: number of evaluations in a generation. stagnates: whether to end when all requests of a generation
+  /// lie within half a step, or are the same candidate.
   RequestPredictor(GaitProblemHub& hub, std::uint32_t population, bool stagnates);
 
-  /// Runs `perform`. rehearse: does the same on copies, any number of times, and changes nothing else.
+  /// Runs `perform`. rehearse: does the work of `perform` on copies, any number of times, and changes nothing else.
   void run(const std::function<void()>& rehearse, const std::function<void()>& perform);
 
-  [[nodiscard]] std::uint64_t asked() const { return asked_; }  ///< in all runs
+  [[nodiscard]] std::uint64_t asked() const { return asked_; }  ///< number of requests in all runs
 
  private:
   std::vector<double> answer(const std::vector<double>& x);
   std::vector<double> answer_rehearsal(const std::vector<double>& x);
   void predict(const Candidate& wanted);
-  bool raise_needed_score();  ///< whether it did
+  bool raise_needed_score();  ///< returns whether it raised the score
   void check_stagnation(const std::vector<double>& x);
   [[nodiscard]] std::size_t remaining() const { return expected_.size() - next_; }
 
@@ -44,17 +44,17 @@ class RequestPredictor {
   bool stagnates_;
   std::uint64_t asked_ = 0;
   std::optional<double> best_cost_;
-  bool has_new_best_ = false;  ///< since the source last received the needed score
+  bool has_new_best_ = false;  ///< a new best since the source last received the needed score
 
   const std::function<void()>* rehearse_ = nullptr;
-  std::vector<std::vector<double>> answered_;  ///< in this run
-  std::vector<Candidate> expected_;            ///< from next_ on: the predicted requests
+  std::vector<std::vector<double>> answered_;  ///< costs of the requests in this run
+  std::vector<Candidate> expected_;            ///< the predicted requests, from next_ on
   std::size_t next_ = 0;
   bool is_rehearsing_ = false;
-  std::size_t repeated_ = 0;   ///< of answered_, in the rehearsal
+  std::size_t repeated_ = 0;   ///< number of answered_ that the rehearsal has repeated
   bool expected_all_ = false;  ///< whether expected_ reaches to the end of the run
 
-  // The requests since the generation began.
+  // Bounds of the requests since the generation began.
   std::vector<double> min_;
   std::vector<double> max_;
   Candidate first_;

@@ -8,17 +8,17 @@
 
 namespace proleg::optimize {
 
-/// Evaluates the baseline, if the experiment has one, and runs the method until it ends; returns why ("no credit left",
-/// "converged", ...). Its requests
-/// depend only on the experiment, the run and the scores. SearchEnded passes through. Throws InputError for settings
-/// that the method rejects (a population that is too small, several objectives for a method with one).
+/// Evaluates the baseline, if the experiment has one, and runs the method until it ends; returns why it ended ("no
+/// credit left", "converged", ...). Its requests depend only on the experiment, the run and the scores. SearchEnded
+/// passes through. Throws InputError for settings that the method rejects (a population that is too small, several
+/// objectives for a method with one).
 [[nodiscard]] std::string search(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
-/// Evaluations that a search makes if it does not end earlier: those of its budget, or of its generations if they are
-/// fewer. 0: unknown.
+/// Number of evaluations that a search makes if it does not end earlier: its budget, or that of its generations if it
+/// is lower. 0: unknown.
 [[nodiscard]] std::uint64_t planned_evaluations(const Experiment& experiment);
 
-/// Throws the InputError that search() would throw. Evaluates nothing.
+/// Throws the InputError that search() would throw, without an evaluation.
 void check_method(const Experiment& experiment);
 
 }  // namespace proleg::optimize

@@ -7,7 +7,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Never null, even without bytes: Boost makes a reference to the first one.
+/// Pointer to the bytes, never null, even without bytes: Boost makes a reference to the first one.
 unsigned char* characters(Bytes& bytes) {
   static unsigned char nothing = 0;
   return bytes.empty() ? &nothing : reinterpret_cast<unsigned char*>(bytes.data());

@@ -16,27 +16,27 @@ namespace proleg::optimize {
 /// hundreds of times as long.
 inline constexpr std::chrono::milliseconds poll_interval{1};
 
-/// Kinds of messages between ranks; MPI's tags.
+/// Kinds of messages between ranks, as MPI's tags.
 enum class MpiTag : int {
-  // From rank 0.
+  // Messages from rank 0.
   tasks = 1,
   stop,
-  // To rank 0.
+  // Messages to rank 0.
   results,
-  failure,  ///< text: why a task cannot be done
-  message,  ///< text: a message for the user
+  failure,  ///< text with the reason why a task failed
+  message,  ///< text for the user
   stopped,  ///< the answer to stop
 };
 
 struct MpiMessage {
-  int rank;  ///< that sent it
+  int rank;  ///< rank that sent the message
   MpiTag tag;
   Bytes content;
 
   [[nodiscard]] std::string text() const;
 };
 
-/// Sends and receives bytes over MPI; initialises MPI and ends it.
+/// Sends and receives bytes over MPI. The constructor initialises MPI, the destructor ends it.
 class MpiChannel {
  public:
   MpiChannel() : environment_(false) {}
@@ -46,7 +46,7 @@ class MpiChannel {
 
   void send(int rank, MpiTag tag, const Bytes& content = {}) const;
   void send(int rank, MpiTag tag, const std::string& text) const;
-  /// A message that has arrived; nothing if none has.
+  /// Takes a message that has arrived; nothing if none has.
   [[nodiscard]] std::optional<MpiMessage> receive() const;
 
   /// Sends this rank's identity to all and returns all identities, by rank. All ranks must call it.
@@ -59,7 +59,7 @@ class MpiChannel {
   boost::mpi::communicator world_;
 };
 
-/// Experiment and build, which all ranks must agree on.
+/// Text of experiment and build, on which all ranks must agree.
 [[nodiscard]] std::string mpi_identity(const Experiment& experiment, const std::string& build_id);
 
 }  // namespace proleg::optimize

@@ -47,7 +47,7 @@ class MpiWorkers::Implementation {
     const std::vector<std::string> identities = channel_.exchange(mpi_identity(experiment, build_id));
     for (std::size_t rank = 1; rank < identities.size(); ++rank) {
       if (identities[rank] != identities[0]) {
-        // The other ranks have seen it, too, and have ended.
+        // The other ranks have seen the difference, too, and have ended.
         throw std::runtime_error("rank " + std::to_string(rank) + " has " + identities[rank] + ", rank 0 has " +
                                  identities[0] +
                                  "; all computers need the same files and the same build of the program");
@@ -71,7 +71,7 @@ class MpiWorkers::Implementation {
   }
 
   void start(std::span<const TicketedTask> batch) {
-    // The other ranks first: a message over MPI takes longer than one over a socket.
+    // The other ranks receive tasks first: a message over MPI takes longer than one over a socket.
     const auto rank = std::ranges::find_if(ranks_, &Rank::is_idle);
     if (rank == ranks_.end()) {
       local_.start(batch);
@@ -102,7 +102,7 @@ class MpiWorkers::Implementation {
   }
 
  private:
-  /// The next result, or nothing after the timeout.
+  /// Waits for the next result; nothing after the timeout.
   std::optional<Done> next_result(milliseconds timeout) {
     const Clock::time_point end = Clock::now() + timeout;
     while (true) {
@@ -126,13 +126,13 @@ class MpiWorkers::Implementation {
 
   using Batch = std::vector<TicketedTask>;
   struct Rank {
-    Batch batch;                ///< the tasks that it has; may be empty
-    Clock::duration silence{};  ///< with its tasks, within wait()
+    Batch batch;                ///< the tasks that the rank has; may be empty
+    Clock::duration silence{};  ///< time without a message while it has tasks, within wait()
     bool lost = false;          ///< it receives no more tasks
     [[nodiscard]] bool is_idle() const { return !lost && batch.empty(); }
   };
 
-  /// Counts only time within wait().
+  /// Counts the silence of ranks, only within wait().
   void count_silence(Clock::duration waited) {
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
       Rank& its = ranks_[rank];
@@ -159,7 +159,7 @@ class MpiWorkers::Implementation {
   void handle(const MpiMessage& message) {
     Rank& rank = ranks_[static_cast<std::size_t>(message.rank)];
     if (rank.lost) {
-      return;  // too late
+      return;  // the message comes too late
     }
     const std::string place = "rank " + std::to_string(message.rank) + ": ";
     if (message.tag == MpiTag::message) {
@@ -196,10 +196,10 @@ class MpiWorkers::Implementation {
     }
   }
 
-  LocalWorkers local_;  // forks before MPI is initialised
+  LocalWorkers local_;  // the constructor forks before MPI is initialised
   MpiChannel channel_;
   std::vector<Rank> ranks_;
-  std::vector<Batch> orphaned_;  ///< of lost ranks
+  std::vector<Batch> orphaned_;  ///< tasks of lost ranks
   std::deque<Done> finished_;    ///< results of other ranks that wait() has not given yet
   Clock::duration max_silence_;
   std::vector<std::string> messages_;

@@ -19,16 +19,17 @@ struct MpiRank {
   int size = 1;
 };
 
-/// This process's rank among those that mpirun started; nothing if it was started in another way. It comes from Open
-/// MPI's environment variables, so MPI need not be initialised.
+/// This process's rank among those that mpirun started; nothing if it was started in another way. The rank comes from
+/// Open MPI's environment variables, so MPI need not be initialised.
 [[nodiscard]] std::optional<MpiRank> mpi_rank();
 
-/// The processes that mpirun started, seen from rank 0; worker k is rank k. It initialises and ends MPI, so a process
-/// may make only one.
+/// The processes that mpirun started, as rank 0 sees them; worker k is rank k. The object initialises and ends MPI, so
+/// a process may make only one.
 class MpiWorkers final : public Workers {
  public:
-  /// The process must have one thread. experiment: must outlive this. Throws std::runtime_error if another rank has
-  /// another experiment or build; all ranks end then. run, limit: as for LocalWorkers.
+  /// The process must have one thread. experiment must outlive this object. Throws std::runtime_error if another rank
+  /// has another experiment or build; then all ranks end. run and limit have the meaning that they have for
+  /// LocalWorkers.
   MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTasks run = run_trials,
              TaskLimit limit = {});
   /// Ends the other ranks, even in the middle of a task. If one does not answer within seconds, calls MPI_Abort, which
@@ -50,7 +51,7 @@ class MpiWorkers final : public Workers {
 
 /// The work of ranks above 0: simulates the tasks of rank 0 until it sends stop. Ignores the signals that ask a program
 /// to end: rank 0 handles them. Returns whether all ranks had the same experiment and build; if not, rank 0 reports it.
-/// Arguments as for MpiWorkers.
+/// The arguments are those of MpiWorkers.
 [[nodiscard]] bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTasks run = run_trials,
                              TaskLimit limit = {});
 

@@ -11,7 +11,7 @@ namespace proleg::optimize {
 namespace {
 
 void serve(const MpiChannel& channel, LocalWorkers& worker) {
-  std::vector<TrialResult> results;  // of the tasks that the worker has, in their order
+  std::vector<TrialResult> results;  // results of the tasks that the worker has, in their order
   std::size_t missing = 0;
   while (true) {
     if (const std::optional<MpiMessage> message = channel.receive()) {
@@ -64,7 +64,7 @@ bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTas
   const std::vector<std::string> identities = channel.exchange(mpi_identity(experiment, build_id));
   for (const std::string& identity : identities) {
     if (identity != identities.front()) {
-      return false;  // rank 0 reports it
+      return false;  // rank 0 reports the difference
     }
   }
   try {

@@ -14,18 +14,19 @@ namespace proleg::optimize {
 
 /// All repetitions of the experiment with one method.
 struct MethodRuns {
-  std::string method;                         ///< as method_name() says
-  SearchSpace space;                          ///< of its candidates
+  std::string method;                         ///< method_name()
+  SearchSpace space;                          ///< search space of the candidates
   std::vector<std::vector<Evaluation>> runs;  ///< the evaluations of each repetition, in order
-  /// Of judged searches: the best of each repetition, with the score that the judging engine gave it. Otherwise empty.
+  /// The best of each repetition of judged searches, with the score that the judging engine gave it. Otherwise empty.
   std::vector<Evaluation> judged{};
-  std::string engine{};  ///< that simulated the evaluations, if it is not the judging one
+  std::string engine{};  ///< the engine of the evaluations, if it is not the judging one
 };
 
 /// Best score so far after each evaluation of a run.
 [[nodiscard]] std::vector<double> best_so_far(std::span<const Evaluation> run);
 
-/// Over all repetitions, after each evaluation of the longest one. A repetition that has ended keeps its last best.
+/// Best scores over all repetitions, after each evaluation of the longest one. A repetition that has ended keeps its
+/// last best.
 struct BestCurves {
   std::vector<double> min;
   std::vector<double> mean;
@@ -33,8 +34,8 @@ struct BestCurves {
 };
 [[nodiscard]] BestCurves best_curves(const MethodRuns& method);
 
-/// Number of the last evaluation, from 1, at which the mean of `follower` is not above that of `leader`: after it, it
-/// stays above. 0: it is above from the start. Nothing: it does not end above.
+/// Number of the last evaluation, from 1, at which the mean of `follower` is not above that of `leader`. 0: `follower`
+/// is above from the start. Nothing: it does not end above.
 [[nodiscard]] std::optional<std::size_t> overtaking(const BestCurves& follower, const BestCurves& leader);
 
 /// Number of evaluations, from 1, after which the mean is at least `score`.

@@ -15,7 +15,7 @@ using sim::Polyline;
 using sim::Svg;
 using sim::TextAnchor;
 
-/// From the robot's right side: y to the right, z upwards.
+/// View from the robot's right side: y to the right, z upwards.
 const sim::View side_view{Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
 
 constexpr const char* obstacle_style = R"(fill="#b9a58c" stroke="#b9a58c" stroke-width="0.8" stroke-linejoin="round")";
@@ -140,7 +140,7 @@ std::string draw_distances(const sim::Scenario& scenario, std::span<const RulerM
   std::ranges::stable_sort(sorted, std::ranges::greater{}, &RulerMark::distance_m);
   const double zero = window.pixel({start, 0.0}).x;
   for (int metre = 0; metre < static_cast<int>(farthest); ++metre) {
-    // Yellow to red, as the thesis's scale.
+    // The colours go from yellow to red, as in the thesis's scale.
     const int green = 220 - static_cast<int>(200.0 * metre / farthest);
     svg.rectangle({zero + metre * scale, ruler_top}, scale, ruler_height,
                   "fill=\"rgb(235," + std::to_string(green) + ",40)\" stroke=\"#777777\"");

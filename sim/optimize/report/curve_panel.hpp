@@ -23,7 +23,7 @@ inline constexpr const char* dashed = "7 4";
 /// SVG attributes of a line.
 [[nodiscard]] std::string line_style(const std::string& colour, double width, const std::string& dashes = {});
 
-/// A score that others are compared with, drawn from edge to edge.
+/// A score for comparison, drawn from edge to edge.
 struct Level {
   double value;
   std::string text;
@@ -36,16 +36,16 @@ struct CurvePanel {
   sim::Axis y;
 };
 
-/// A panel that all these curves and levels fit into.
+/// Makes a panel in which all curves and levels fit.
 [[nodiscard]] CurvePanel make_panel(double top, double height, std::span<const BestCurves> curves,
                                     std::span<const Level> levels);
 
 void draw_levels(sim::Svg& svg, const CurvePanel& panel, std::span<const Level> levels);
-/// One curve, as steps. style: from line_style().
+/// Draws one curve as steps. style: from line_style().
 void draw_curve(sim::Svg& svg, const CurvePanel& panel, const std::vector<double>& best, const std::string& style);
-/// The best so far of every repetition.
+/// Draws the best so far of each repetition.
 void draw_every_curve(sim::Svg& svg, const CurvePanel& panel, const MethodRuns& method, const std::string& colour);
-/// The names of levels and curves, at the right edge.
+/// Draws the names of levels and curves at the right edge.
 void draw_names(sim::Svg& svg, const CurvePanel& panel, std::span<const Level> levels,
                 std::vector<sim::LineName> names);
 

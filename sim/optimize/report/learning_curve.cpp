@@ -24,7 +24,7 @@ using sim::TextAnchor;
 constexpr double panel_bottom = 470.0;
 constexpr double page_height = panel_bottom + 56.0;
 
-/// Fewer dots are larger.
+/// SVG attributes of the dots, which are larger if there are fewer of them.
 std::string dot_style(std::size_t evaluations) {
   const double size = evaluations <= 300 ? 5.0 : evaluations <= 3000 ? 3.4 : 2.4;
   return R"(stroke="#8fb3c9" stroke-linecap="round" stroke-width=")" + sim::plain_number(size, 1) + "\"";
@@ -38,14 +38,14 @@ constexpr const char* dot = "h0";
 constexpr const char* cross = "m-2 -2l4 4m0 -4l-4 4";
 constexpr const char* failure_mark = "v-7";
 
-/// What the figure shows. x: number of the evaluation, from 1; y: score.
+/// Contents of the figure. x: number of the evaluation, from 1; y: score.
 struct Contents {
   Polyline rated;
   Polyline given_up;
   std::vector<double> failed;  ///< numbers of evaluations that have no score of measures
   Polyline best;               ///< a step for each improvement
   std::optional<Point> winner;
-  Polyline mean;  ///< over the last `window` with a score
+  Polyline mean;  ///< mean of the last `window` scores
   std::size_t window = 1;
   std::optional<double> baseline;
 };

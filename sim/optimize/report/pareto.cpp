@@ -21,7 +21,8 @@ bool dominates(const Experiment& experiment, const std::vector<double>& a, const
   return better;
 }
 
-/// Best first by the first objective, then by the second, and so on. A candidate comes before those that it dominates.
+/// Orders scores, best first: by the first objective, then by the second, and so on. A candidate comes before those
+/// that it dominates.
 bool comes_before(const Experiment& experiment, const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     if (a[i] != b[i]) {

@@ -24,7 +24,7 @@ constexpr const char* front_style = R"(stroke="#0072b2" stroke-width="1.6" strok
 constexpr const char* front_dot_style = R"(stroke="#0072b2" stroke-width="7" stroke-linecap="round")";
 constexpr const char* pareto_dot = "h0";
 
-/// Two scores of each evaluation that has both.
+/// The first two scores of each evaluation that has both.
 struct Cloud {
   Polyline places;
   std::vector<double> x;

@@ -10,7 +10,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Twice the ranks of the values, a's first: whole numbers also where equal values share a rank.
+/// Twice the ranks of the values, those of a first. They are whole numbers even if equal values share a rank.
 std::vector<std::uint32_t> doubled_ranks(std::span<const double> a, std::span<const double> b) {
   std::vector<double> values(a.begin(), a.end());
   values.insert(values.end(), b.begin(), b.end());
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> doubled_ranks(std::span<const double> a, std::span<co
   return ranks;
 }
 
-/// For each sum, in how many ways `chosen` of the ranks have it.
+/// For each sum, the number of ways in which `chosen` of the ranks have it.
 std::vector<double> ways_to_sum(std::span<const std::uint32_t> ranks, std::size_t chosen) {
   const std::size_t most = std::accumulate(ranks.begin(), ranks.end(), std::size_t{0});
   std::vector<std::vector<double>> ways(chosen + 1, std::vector<double>(most + 1, 0.0));
@@ -43,7 +43,7 @@ double exact_test(std::span<const std::uint32_t> ranks, std::size_t size) {
   const double all_ranks = std::accumulate(ranks.begin(), ranks.end(), 0.0);
   const double found = std::accumulate(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(size), 0.0);
   const double expected = all_ranks * static_cast<double>(size) / static_cast<double>(ranks.size());
-  // Exact: all three are whole numbers, or quotients whose error is far below one half.
+  // The comparison is exact: all three are whole numbers, or quotients whose error is far below one half.
   const double distance = std::abs(found - expected) - 0.25;
   const std::vector<double> ways = ways_to_sum(ranks, size);
   double all = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Whether the results of two methods differ by more than chance. Best distances are not normally distributed: searches
-// end on one summit or the other. A test of ranks needs no distribution.
+// Tests whether the results of two methods differ by more than chance. Best distances are not normally distributed:
+// searches end on one summit or the other. A test of ranks needs no distribution.
 
 #include <span>
 #include <vector>
@@ -13,8 +13,9 @@ namespace proleg::optimize {
 
 /// Two-sided p-value of the rank-sum test of F. Wilcoxon ("Individual comparisons by ranking methods", Biometrics
 /// Bulletin 1, 1945) and of H. B. Mann and D. R. Whitney: the probability that groups of these sizes, drawn at random
-/// from all values, have rank sums at least as far from their mean. Equal values share the mean of their ranks. Exact
-/// for up to 100 values; above, the normal approximation with correction for ties. 1 if a group is empty.
+/// from all values, have rank sums at least as far from their mean. Equal values share the mean of their ranks. The
+/// p-value is exact for up to 100 values; above, it is the normal approximation with correction for ties. It is 1 if a
+/// group is empty.
 [[nodiscard]] double rank_sum_test(std::span<const double> a, std::span<const double> b);
 
 /// p-values of several tests, corrected after S. Holm ("A simple sequentially rejective multiple test procedure",

@@ -13,31 +13,32 @@
 
 namespace proleg::optimize {
 
-/// SVG: every evaluation's score, the best so far and the mean of the last ones, against evaluations (first objective);
-/// the baseline as a horizontal line.
-/// At most 1 MB for any number of them.
+/// Draws as SVG the score of each evaluation, the best so far and the mean of the last ones, against evaluations (first
+/// objective), and the baseline as a horizontal line. The text has at most 1 MB for any number of evaluations.
 [[nodiscard]] std::string draw_learning_curve(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
-/// SVG: the first two objectives against each other, and the Pareto front. With two objectives a line joins the front.
+/// Draws as SVG the first two objectives against each other, and the Pareto front. With two objectives a line joins the
+/// front.
 [[nodiscard]] std::string draw_pareto_front(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
 /// Positions, by ascending first score, of the evaluations that no other dominates (is better in one objective and
-/// worse in none). Of equal candidates with equal scores, the first.
+/// worse in none). Of equal candidates with equal scores only the first counts.
 [[nodiscard]] std::vector<std::size_t> pareto_front(const Experiment& experiment,
                                                     std::span<const Evaluation> evaluations);
 
-/// Tab-separated, with a header line: every evaluation with its values, scores and measures. Numbers are the shortest
+/// Table with tabs and a header line: each evaluation with its values, scores and measures. Numbers are the shortest
 /// that read back as the same; a measure that is not defined is an empty cell. Columns: run, evaluation, each dimension
 /// ("amplitude:J5 (deg)"), each objective ("score:distance (m)"), each measure ("distance (m)"), simulated_s, wall_s,
 /// given_up, reused, restored (0 or 1), failure.
 [[nodiscard]] std::string evaluations_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
-/// The same with a first column `rank`: the baseline, if there is one, with the rank `baseline`; then the best `count`
-/// different candidates by the first objective, best first. Of equal scores, the earlier comes first.
+/// Table like evaluations_table() with a first column `rank`: the baseline, if it exists, with the rank `baseline`;
+/// then the best `count` different candidates by the first objective, best first. Of equal scores, the earlier comes
+/// first.
 [[nodiscard]] std::string best_table(const Experiment& experiment, std::span<const Evaluation> evaluations,
                                      std::size_t count);
 
-/// Tab-separated, with a header line: the candidates that were rated again, best first. Columns: rank, evaluation, each
+/// Table with tabs and a header line: the candidates that were rated again, best first. Columns: rank, evaluation, each
 /// dimension, score (in the search), mean, standard_deviation, worst, and the fresh runs from 1. If the search is
 /// judged, the heads of score and mean name their engines.
 [[nodiscard]] std::string confirmation_table(const Experiment& experiment, std::span<const Confirmation> confirmations);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files that were read, by their absolute paths.
+/// The files of the scenario, by their absolute paths.
 class Sources {
  public:
   explicit Sources(const std::vector<sim::SourceFile>& files) : top_(full(files.front().path)) {
@@ -71,7 +71,7 @@ bool names_file_in_text(const tinyxml2::XMLElement& element) {
 }
 
 /// Calls use(reference, replace) for each file that a document names: in an attribute `file`, or as the first word of
-/// the text of some elements. replace(text) writes another reference in its place.
+/// the text of mesh and height elements. replace(text) writes another reference in its place.
 template <typename Use>
 void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
   for (; element != nullptr; element = element->NextSiblingElement()) {
@@ -121,7 +121,7 @@ fs::path common_folder(const std::set<fs::path>& files) {
   return common;
 }
 
-/// Names the engine in an environment file. Returns whether that changed it.
+/// Writes the engine's name into an environment file. Returns whether this changed the file.
 bool set_engine(tinyxml2::XMLElement& environment, std::string_view engine) {
   tinyxml2::XMLElement* physics = environment.FirstChildElement();
   while (physics != nullptr && lower_case(physics->Name()) != "physicsengine") {
@@ -145,14 +145,14 @@ bool set_engine(tinyxml2::XMLElement& environment, std::string_view engine) {
   return true;
 }
 
-/// The text of a file, with references that are valid while the files keep their relative paths. engine: for the
-/// environment file, one that replaces the file's; empty: none.
+/// The text of a file, with references that are valid while the files keep their relative paths. engine: replaces that
+/// of the environment file; empty: the file keeps its engine.
 std::string text_to_write(const Sources& sources, const fs::path& path, std::string_view engine) {
   const std::string& text = sources.text(path);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
   if (document.Error()) {
-    return sim::bytes_of_source(text);  // a mesh, or heights
+    return sim::bytes_of_source(text);  // the file is a mesh or heights
   }
   bool changed = !engine.empty() && set_engine(*document.RootElement(), engine);
   for_each_include(document.RootElement(), [&](const std::string& reference, const auto& replace) {

@@ -10,7 +10,7 @@ namespace proleg::optimize {
 
 /// A file to write.
 struct FileCopy {
-  std::filesystem::path place;  ///< relative
+  std::filesystem::path place;  ///< relative path
   std::string text;
 };
 
@@ -19,12 +19,13 @@ struct FileCopy {
 struct ScenarioFiles {
   std::filesystem::path robot;
   std::filesystem::path environment;
-  std::vector<FileCopy> copies;  ///< these two and what they include
+  std::vector<FileCopy> copies;  ///< the robot and environment files, and all that they include
 };
 
-/// Below `root` the files have the same paths as below their deepest common folder, so equal names in different folders
-/// do not collide. Texts are copied byte by byte. Only a path that would become invalid is replaced (an absolute one,
-/// or one that is relative to the folder of the top-level file) and an overridden engine. scenario: read from files.
+/// Collects the files. Below `root` they have the same paths as below their deepest common folder, so equal names in
+/// different folders do not collide. Texts are copied byte by byte. Only paths that would become invalid are replaced
+/// (absolute ones, and those relative to the folder of the top-level file), and an overridden engine. The scenario must
+/// have been read from files.
 [[nodiscard]] ScenarioFiles collect_scenario_files(const sim::Scenario& scenario, const std::filesystem::path& root);
 
 }  // namespace proleg::optimize

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Text within <!-- -->, which must not hold two hyphens in a row.
+/// Text for <!-- -->, which must not contain two hyphens in a row.
 std::string comment_text(std::string_view text) {
   std::string result;
   for (const char c : one_line(text)) {
@@ -28,7 +28,7 @@ std::string comment_text(std::string_view text) {
   return result + (result.ends_with('-') ? " " : "");
 }
 
-/// Start values of a slot: for each parameter those of all joints, in kernel order.
+/// Start values of a slot: for each parameter the values of all joints, in kernel order.
 class StartValues {
  public:
   StartValues(const sim::Scenario& scenario, std::size_t slot) {
@@ -159,7 +159,7 @@ fs::path write_scenario(const Experiment& experiment, const Evaluation& evaluati
   }
   const std::string actuation = name + ".actuation.xml";
   write_with_folder(folder / actuation, actuation_text(scenario, files.robot.filename().string(), remark));
-  // Last: where this file exists, the others do.
+  // The top-level file is written last: if it exists, the others exist.
   const fs::path top = folder / (name + ".simulation.xml");
   write_with_folder(top, top_text(scenario, files, actuation, remark));
   return top;

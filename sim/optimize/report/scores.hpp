@@ -1,6 +1,6 @@
 #pragma once
 
-// Scores of evaluations as text and in figures.
+// Scores of evaluations, as text and in figures.
 
 #include <span>
 #include <string>
@@ -13,21 +13,21 @@
 
 namespace proleg::optimize {
 
-/// "distance (m)".
+/// Name and unit as text: "distance (m)".
 [[nodiscard]] std::string with_unit(std::string_view name, std::string_view unit);
 
-/// A few digits, for titles: "1.958".
+/// A number with a few digits, for titles: "1.958".
 [[nodiscard]] std::string rounded_text(double value);
 
 /// The score, limited to +-10^9, so that sums and coordinates stay finite.
 [[nodiscard]] double drawable(double score);
 
-/// An axis for scores. If few are far off (the cost of transport of robots that hardly move), it covers the others and
-/// `always`.
+/// An axis for scores. If few scores are far off (the cost of transport of robots that hardly move), the axis covers
+/// the others and `always`.
 [[nodiscard]] sim::Axis score_axis(std::vector<double> scores, std::span<const double> always, double pixel_low,
                                    double pixel_high);
 
-/// With this number of decimals, including zeros.
+/// A number with a fixed number of decimals, including zeros.
 [[nodiscard]] std::string fixed_text(double value, int decimals);
 
 }  // namespace proleg::optimize

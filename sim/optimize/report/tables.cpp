@@ -3,7 +3,6 @@
 #include <numeric>
 #include <set>
 
-#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/environment/physics_engine.hpp"
 #include "sim/optimize/evaluation/rating.hpp"
@@ -109,7 +108,7 @@ std::string confirmation_table(const Experiment& experiment, std::span<const Con
   header.add("rank");
   header.add("evaluation");
   add_dimensions(experiment, header);
-  // Two engines: of the search, and of the fresh runs.
+  // A judged experiment has two engines: one of the search, one of the fresh runs.
   const bool has_two = is_judged(experiment);
   const auto in_engine = [&](sim::PhysicsEngine engine) {
     return has_two ? " (" + std::string(sim::name_of(engine)) + ")" : "";

@@ -30,7 +30,7 @@ std::vector<const Evaluation*> best_of_searches(const MethodRuns& method) {
   return best;
 }
 
-/// The same by the scores of the judging engine, if there are any.
+/// The best evaluation of each repetition by the scores of the judging engine, if these exist, best first.
 std::vector<const Evaluation*> best_of_runs(const MethodRuns& method) {
   if (method.judged.empty()) {
     return best_of_searches(method);
@@ -94,7 +94,7 @@ std::string row_text(const Row& row) {
   return text + "\n";
 }
 
-/// Of the best: the value that the experiment shows.
+/// The value of the best evaluation that the experiment shows.
 std::string shown_value(const ThesisExperiment& experiment, const MethodRuns& method, const Evaluation& best) {
   const std::vector<ThesisRow> rows = experiment.rows(method.space);
   if (experiment.shown_row >= rows.size()) {
@@ -122,7 +122,7 @@ Row method_row(const ThesisExperiment& experiment, const MethodRuns& method, dou
           shown_value(experiment, method, *best.front())};
 }
 
-/// What the search said of its best, beside what the judging engine said.
+/// The row of a judged method with its results in the engine of the search.
 Row search_row(const MethodRuns& method) {
   const std::vector<const Evaluation*> best = best_of_searches(method);
   const Statistics statistics = statistics_of(best);
@@ -179,7 +179,7 @@ std::string overtaking_text(const ThesisExperiment& experiment, const BestCurves
          thesis;
 }
 
-/// After how many evaluations a method reaches the final mean of great deluge.
+/// Text with the number of evaluations after which a method reaches the final mean of great deluge.
 std::string reach_text(const MethodRuns& method, const MethodRuns& deluge, const BestCurves& deluge_curves) {
   const double goal = deluge_curves.mean.back();
   double evaluations = 0.0;

@@ -7,7 +7,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// From head to tail: by the first joint that each dimension sets.
+/// Rows from head to tail, by the first joint that each dimension sets.
 std::vector<ThesisRow> joint_rows(const SearchSpace& space) {
   std::vector<std::size_t> order(space.dimensions.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -20,7 +20,7 @@ std::vector<ThesisRow> joint_rows(const SearchSpace& space) {
   return rows;
 }
 
-/// The thesis's names of the constants.
+/// Rows with the thesis's names of the constants.
 std::vector<ThesisRow> constant_rows(const SearchSpace& space) {
   std::vector<ThesisRow> rows;
   for (const Dimension& dimension : space.dimensions) {

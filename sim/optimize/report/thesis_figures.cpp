@@ -59,7 +59,7 @@ std::vector<Level> reference_levels(std::span<const Reference> references) {
   return levels;
 }
 
-/// The best of all runs of a method.
+/// The best of all runs of a method, as a level.
 std::vector<Level> best_level(const BestCurves& curves, const std::string& colour) {
   if (curves.max.empty()) {
     return {};
@@ -67,7 +67,7 @@ std::vector<Level> best_level(const BestCurves& curves, const std::string& colou
   return {{curves.max.back(), "best " + fixed_text(curves.max.back(), 3), colour, dotted}};
 }
 
-/// The best that the thesis has for a method.
+/// The thesis's best for a method, as a level.
 std::vector<Level> thesis_level(const ThesisExperiment& experiment, const MethodRuns& method,
                                 const std::string& colour) {
   const ThesisResult* const thesis = find_thesis_result(experiment.name, method.method);
@@ -161,8 +161,8 @@ std::string draw_method_comparison(const ThesisExperiment& experiment, std::span
   Palette palette;
   std::vector<BestCurves> curves;
   std::vector<std::string> colours;
-  std::vector<Level> best;    // named in (a)
-  std::vector<Level> thesis;  // named in (b)
+  std::vector<Level> best;    // levels named in (a)
+  std::vector<Level> thesis;  // levels named in (b)
   std::vector<LineName> means;
   std::vector<LegendEntry> method_legend;
   for (const MethodRuns& method : methods) {

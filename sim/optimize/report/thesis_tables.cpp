@@ -10,7 +10,7 @@ namespace proleg::optimize {
 namespace {
 
 constexpr std::string_view header = "experiment\tmethod\ttable\truns\tvalue\t1\t2\t3\t4\t5\t6\t7\t8\t9\t10";
-constexpr std::size_t name_cells = 5;  ///< experiment, method, table, runs, value
+constexpr std::size_t name_cells = 5;  ///< cells for experiment, method, table, runs and value
 
 /// The part of the text before the next separator, which is removed with it.
 std::string_view next_part(std::string_view& text, char separator) {
@@ -86,7 +86,7 @@ class TablesReader {
   std::string file_;
   int line_ = 0;
   bool has_header_ = false;
-  bool in_table_ = false;  ///< its last row is still to come
+  bool in_table_ = false;  ///< the last row of the table is still to come
   std::vector<ThesisResult> results_;
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// The combination with the first seed.
+/// The combination with the first seed instead of its own.
 Candidate without_seed(const Sweep& sweep, Candidate combination) {
   for (std::size_t i = 0; i < combination.size(); ++i) {
     if (sweep.quantities[i].kind == SweptQuantity::Kind::seed) {

@@ -21,16 +21,16 @@ inline constexpr std::uint64_t max_sweep_runs = 100'000;
 struct SweptQuantity {
   enum class Kind : std::uint8_t { parameter, seed, friction, x, y, heading };
   Kind kind = Kind::parameter;
-  std::string name;                 ///< of a parameter as in `--set`; or of the kind: "x" of the start position
+  std::string name;  ///< name of a parameter as in `--set`; or of another kind: "x" of the start position
   std::vector<std::string> values;  ///< decimal numbers, ascending, at least one
   std::string unit;                 ///< "" if dimensionless
-  std::string word;                 ///< as the user wrote it
+  std::string word;                 ///< the argument as the user wrote it
 };
 
 struct Sweep {
   sim::Scenario scenario;
   std::vector<SweptQuantity> quantities;  ///< at least one, no name twice
-  std::vector<std::string> settings;      ///< the words of `--set`, which the scenario has
+  std::vector<std::string> settings;      ///< the arguments of `--set`, which the scenario has
 
   /// Number of combinations; 1 to max_sweep_runs.
   [[nodiscard]] std::uint64_t size() const;
@@ -39,9 +39,10 @@ struct Sweep {
   [[nodiscard]] sim::Scenario scenario_of(const Candidate& combination) const;
 };
 
-/// words: "NAME=FIRST:LAST:STEP", "NAME=FIRST:LAST" with a step of 1, or "NAME=VALUE". LAST is included if a step ends
-/// there. Checks every value on the scenario. settings: the words of `--set`, which the scenario has already. Throws
-/// InputError, also if a swept quantity replaces a setting, an override of the scenario or another quantity entirely.
+/// words: arguments "NAME=FIRST:LAST:STEP", "NAME=FIRST:LAST" with a step of 1, or "NAME=VALUE". LAST is included if a
+/// step ends there. Checks each value on the scenario. settings: the arguments of `--set`, which the scenario has
+/// already. Throws InputError, also if a swept quantity replaces a setting, an override of the scenario or another
+/// quantity entirely.
 [[nodiscard]] Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words,
                                std::vector<std::string> settings = {});
 
@@ -54,39 +55,40 @@ struct Sweep {
 [[nodiscard]] std::vector<TrialResult> run_combinations(const Sweep& sweep, std::span<const Task> tasks);
 
 struct SweepRun {
-  std::uint64_t number = 0;  ///< of the combination
+  std::uint64_t number = 0;  ///< number of the combination
   TrialResult result;
 };
 
 /// Gives all combinations to the workers, whose function must be run_combinations. Returns the results in the order of
-/// the combinations; those that are there if `stop` becomes true. observe: called after each result with their number.
+/// the combinations; only the finished ones if `stop` becomes true. observe: called with the number of results after
+/// each result.
 [[nodiscard]] std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
                                               const std::function<void(std::uint64_t)>& observe);
 
-/// The runs that differ in their seed only.
+/// The runs that differ only in their seed.
 struct SweepGroup {
   Candidate combination;                   ///< with the first seed
-  std::vector<double> values;              ///< of the measure, where a run has one
-  [[nodiscard]] double mean() const;       ///< not a number without values
-  [[nodiscard]] double deviation() const;  ///< of the sample; not a number below two values
+  std::vector<double> values;              ///< values of the measure, from runs that have one
+  [[nodiscard]] double mean() const;       ///< NaN without values
+  [[nodiscard]] double deviation() const;  ///< standard deviation of the sample; NaN below two values
 };
 
-/// In the order of the combinations.
+/// Groups the runs, in the order of the combinations.
 [[nodiscard]] std::vector<SweepGroup> group_runs(const Sweep& sweep, std::span<const SweepRun> runs,
                                                  sim::Measure measure);
 
 /// A comment with the command; then a line for each run: the swept values, all measures, the number of joints whose
 /// servos cannot follow, and why the run failed.
 [[nodiscard]] std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs);
-/// The same comment; then a line for each group: the swept values without the seed, number of values, mean, standard
-/// deviation, minimum, maximum.
+/// A comment with the command; then a line for each group: the swept values without the seed, number of values, mean,
+/// standard deviation, minimum, maximum.
 [[nodiscard]] std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);
 
 /// Positions of the quantities other than the seed that have several values.
 [[nodiscard]] std::vector<std::size_t> varied_quantities(const Sweep& sweep);
 
-/// The measure over one quantity (its mean as a line, all values as dots) or over two (a map of the means). A gap where
-/// no run has a value. Empty if none or more quantities vary, or if no run has a value.
+/// Draws the measure over one quantity (its mean as a line, all values as dots) or over two (a map of the means), with
+/// a gap where no run has a value. The text is empty if no quantity or more than two vary, or if no run has a value.
 [[nodiscard]] std::string draw_sweep(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);
 
 }  // namespace proleg::optimize

@@ -38,7 +38,7 @@ std::string measure_name(sim::Measure measure) {
 
 std::string quantity_name(const SweptQuantity& quantity) { return with_unit(shortened(quantity.name), quantity.unit); }
 
-/// "uniform.simulation.xml: amplitude 10 to 50 deg, seed 1 to 10".
+/// Subtitle like "uniform.simulation.xml: amplitude 10 to 50 deg, seed 1 to 10".
 std::string subtitle(const Sweep& sweep) {
   std::string text = std::filesystem::path(sweep.scenario.path).filename().string() + ":";
   for (const SweptQuantity& quantity : sweep.quantities) {
@@ -50,7 +50,7 @@ std::string subtitle(const Sweep& sweep) {
 }
 
 Svg begin_page(const Sweep& sweep, sim::Measure measure, const std::string& description) {
-  constexpr std::size_t max_characters = 115;  // fit the page
+  constexpr std::size_t max_characters = 115;  // this number fits the page
   const std::string title = measure_name(measure);
   Svg svg(sim::page_width, page_height, title, description + " Made by: " + command_of(sweep));
   sim::draw_title(svg, title, shortened(subtitle(sweep), max_characters));
@@ -59,9 +59,9 @@ Svg begin_page(const Sweep& sweep, sim::Measure measure, const std::string& desc
   return svg;
 }
 
-/// What is drawn over one quantity. A mean without a standard deviation has no spread.
+/// The marks that are drawn over one quantity. A mean without a standard deviation has no spread.
 struct Traces {
-  /// Means of neighbours that have one.
+  /// The means of neighbouring groups that have one.
   struct Section {
     Polyline mean;
     Polyline lower;
@@ -69,7 +69,7 @@ struct Traces {
   };
   Polyline dots;
   std::vector<Section> sections;
-  std::vector<double> gaps;  ///< where no run has a value
+  std::vector<double> gaps;  ///< positions where no run has a value
 
   void add(double x, const SweepGroup& group) {
     if (group.values.empty()) {
@@ -94,7 +94,7 @@ struct Traces {
   bool in_gap_ = true;
 };
 
-/// The lowest and the highest value; of at least one.
+/// The lowest and the highest of at least one value.
 std::array<double, 2> range_of(const std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax(values);
   return {low, high};
@@ -125,7 +125,7 @@ sim::Axis y_axis(const Traces& traces) {
   return sim::axis_over(low, high, panel_bottom, sim::first_panel_top);
 }
 
-/// Crosses on the lower edge.
+/// Draws crosses on the lower edge.
 void draw_gaps(Svg& svg, const Traces& traces, const sim::Axis& x) {
   if (traces.gaps.empty()) {
     return;
@@ -184,11 +184,11 @@ class ColourScale {
     }
   }
 
-  /// What the darkest and palest colours mean.
+  /// The numbers that the darkest and palest colours mean.
   [[nodiscard]] double low() const { return low_; }
   [[nodiscard]] double high() const { return high_; }
 
-  /// From -1, dark orange, over 0, pale, to 1, dark blue.
+  /// Place of a number on the scale from -1, dark orange, over 0, pale, to 1, dark blue.
   [[nodiscard]] double share(double value) const {
     if (low_ < 0.0 && high_ > 0.0) {
       return value / high_;
@@ -219,7 +219,7 @@ class ColourScale {
   double high_;
 };
 
-/// The means of the groups that have one, lowest and highest; there is at least one.
+/// The scale for the lowest and the highest mean of the groups; at least one group has a mean.
 ColourScale scale_of(std::span<const SweepGroup> groups) {
   std::vector<double> means;
   for (const SweepGroup& group : groups) {
@@ -249,7 +249,7 @@ class Map {
   }
 
  private:
-  static constexpr double max_named = 16.0;  ///< values beside an axis
+  static constexpr double max_named = 16.0;  ///< most values that are written beside an axis
 
   [[nodiscard]] const SweptQuantity& column() const { return sweep_->quantities[column_]; }
   [[nodiscard]] const SweptQuantity& row() const { return sweep_->quantities[row_]; }
@@ -268,14 +268,14 @@ class Map {
 
   void draw_cell(Svg& svg, const SweepGroup& group) const {
     if (group.values.empty()) {
-      return;  // it stays white
+      return;  // the cell stays white
     }
     const double mean = group.mean();
     const sim::Point place = corner(group);
     svg.rectangle(place, width(), height(), scale_.fill(mean));
     constexpr double min_width = 44.0;
     constexpr double min_height = 16.0;
-    constexpr double dark_cell = 0.6;  // needs white text
+    constexpr double dark_cell = 0.6;  // a darker cell has white text
     if (width() >= min_width && height() >= min_height) {
       svg.text({place.x + width() / 2.0, place.y + height() / 2.0 + 4.0}, rounded_text(mean + 0.0),
                sim::TextAnchor::middle, sim::label_size,
@@ -313,7 +313,7 @@ class Map {
     sim::draw_heading(svg, sim::first_panel_top, quantity_name(row()));
   }
 
-  /// A bar with the colours, and the numbers at its ends and, if both signs occur, 0 in its middle.
+  /// Draws a bar with the colours, and the numbers at its ends and, if both signs occur, 0 in its middle.
   void draw_scale(Svg& svg) const {
     constexpr double top = sim::first_panel_top - 21.0;
     constexpr double bar_height = 10.0;

@@ -8,9 +8,9 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/sweep/sweep.hpp"
+#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
-#include "sim/scenario/source_texts.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -50,7 +50,7 @@ std::int64_t power_of_ten(int exponent) {
   return result;
 }
 
-/// Without trailing zeros behind the point.
+/// Text of a decimal number, without trailing zeros behind the point.
 std::string decimal_text(std::int64_t digits, int decimals) {
   std::string text = std::to_string(std::abs(digits));
   if (decimals > 0) {
@@ -112,7 +112,7 @@ std::vector<std::string> values_of(const std::string& word, std::string_view ran
   return values;
 }
 
-/// What is swept and no parameter.
+/// A swept quantity that is not a parameter.
 struct NamedKind {
   std::string_view name;
   SweptQuantity::Kind kind;
@@ -142,15 +142,15 @@ SweptQuantity read_quantity(const std::string& word) {
   return quantity;
 }
 
-/// "" for a ratio, whose symbol is 1.
+/// Text of a unit; "" for a ratio, whose symbol is 1.
 std::string unit_text(Unit unit) { return unit == Unit::ratio ? "" : scale_of(unit).symbol; }
 
-/// What the quantity replaces; only for a parameter.
+/// The setting that a quantity replaces; it must be a parameter.
 sim::SettingTarget target_of(const sim::Scenario& scenario, const std::string& name) {
   return sim::find_target(scenario, name + "=0");
 }
 
-/// Whether a setting has no effect beside a swept parameter, or the parameter none beside the setting.
+/// Whether a setting has no effect beside a swept parameter, or the parameter has no effect beside the setting.
 bool excludes(const sim::SettingTarget& swept, const sim::SettingTarget& setting) {
   if (!swept.same_value(setting) || setting.tick > 0) {
     return false;
@@ -193,7 +193,7 @@ void refuse_second_value(const Sweep& sweep, const SweptQuantity& quantity) {
   }
 }
 
-/// The start pose of the scenario with other overrides: that of its files, lifted onto the ground there.
+/// The start pose of the scenario with other overrides: the pose in its files, lifted onto the ground.
 sim::Pose start_pose(const sim::Scenario& scenario, const sim::Overrides& overrides) {
   sim::SourceTexts files;
   for (const sim::SourceFile& source : scenario.sources) {
@@ -205,7 +205,7 @@ sim::Pose start_pose(const sim::Scenario& scenario, const sim::Overrides& overri
 /// Changes x or y of the start position.
 void set_start(sim::Scenario& scenario, Eigen::Index axis, const std::string& value) {
   sim::OverrideWords words;
-  words.at = value + ",0";  // checks the range
+  words.at = value + ",0";  // read_overrides() checks the range
   const double coordinate = sim::read_overrides(words).at->x();
   sim::Overrides& overrides = scenario.overrides;
   overrides.at = overrides.at.value_or(scenario.environment.robot_pose.position.head<2>());
@@ -213,7 +213,7 @@ void set_start(sim::Scenario& scenario, Eigen::Index axis, const std::string& va
   scenario.environment.robot_pose = start_pose(scenario, overrides);
 }
 
-/// Throws InputError for a value that the scenario rejects.
+/// Sets a value of the quantity. Throws InputError for a value that the scenario rejects.
 void apply(const SweptQuantity& quantity, const std::string& value, sim::Scenario& scenario) {
   sim::OverrideWords words;
   switch (quantity.kind) {

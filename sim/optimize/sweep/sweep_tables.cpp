@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/optimize/sweep/sweep.hpp"

@@ -1,4 +1,4 @@
-// Bootloaders on the simulated bus: a host brings them images by broadcast, a tool of others by SDO.
+// Bootloaders on the simulated bus: a host sends them images by broadcast, a tool of another maker by SDO.
 
 #include "firmware/bootloader/bootloader.hpp"
 
@@ -34,7 +34,7 @@ class Node final : sim::BusListener, canopen::LssStorage {
     restart(0);
   }
 
-  /// As a reset of the chip does.
+  /// Does what a reset of the chip does.
   void restart(Microseconds now, const Handover& left = {}) {
     bootloader = std::make_unique<Bootloader>(place, serial, Ports{controller_, module.flash, *this, buffer});
     bootloader->power_on(now, stored_node, left);
@@ -44,7 +44,7 @@ class Node final : sim::BusListener, canopen::LssStorage {
   UpdatedModule module;
   std::unique_ptr<Bootloader> bootloader;
   std::uint8_t stored_node = 0;
-  /// RAM, which keeps its contents over a restart.
+  /// RAM that keeps its contents over a restart.
   std::vector<std::uint8_t> buffer = std::vector<std::uint8_t>(image::header_size + place.room);
 
  private:
@@ -69,7 +69,7 @@ class BootloaderTest : public testing::Test, protected sim::BusListener {
     return *nodes.back();
   }
 
-  /// Until `done`, or a minute; what the host has to do meanwhile is `host`.
+  /// Runs until `done`, or for a minute. `host` is called meanwhile.
   template <typename Done, typename Host>
   void run_until(Done done, Host host) {
     const BusTime end = bus.now() + 60'000'000 * us;
@@ -100,7 +100,7 @@ class BootloaderTest : public testing::Test, protected sim::BusListener {
   }
   [[nodiscard]] Microseconds now() const { return bus.now() / us; }
 
-  /// Brings the bytes to all nodes and lets them install.
+  /// Sends the bytes to all nodes and lets them install.
   void flash(std::span<const std::uint8_t> bytes) {
     sender = std::make_unique<ImageSender>(controller, bytes, targets, broadcast::SenderOptions{});
     struct Host {
@@ -115,7 +115,7 @@ class BootloaderTest : public testing::Test, protected sim::BusListener {
     run_until([&] { return sender->state() == ImageSender::State::done; }, Host{*sender});
   }
 
-  /// A transfer of a tool that knows CiA 301 and 302 only.
+  /// A transfer of a tool that knows only CiA 301 and 302.
   canopen::AbortCode transfer(canopen::SdoTransfer& client) {
     transfer_ = &client;
     struct Host {
@@ -429,7 +429,7 @@ TEST_F(BootloaderTest, StartsAProgramThatIsThereAfterTenSecondsWithoutAHost) {
   EXPECT_FALSE(without.bootloader->wants_restart()) << "there is nothing to start";
 }
 
-// No node acknowledges its heartbeats then.
+// No node acknowledges the heartbeats of the bootloader then.
 TEST_F(BootloaderTest, StartsItsProgramAlsoAloneOnTheBus) {
   Node& node = add(4);
   node.module.install_proven(first);

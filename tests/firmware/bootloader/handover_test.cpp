@@ -1,4 +1,4 @@
-// What the bootloader does after a reset, by what the start before has left.
+// What the bootloader does after a reset, depending on what the start before has left.
 
 #include "firmware/bootloader/handover.hpp"
 

@@ -1,5 +1,6 @@
-// Cuts of the power at every operation of the flash: of an update, of the restart after it, and of the update's
-// repetition. Every one must leave a module that runs the old or the new image, and that can be updated.
+// Cuts of the power at every operation of the flash: during an update, during the restart after it, and during a
+// repetition of the update. After each cut the module must run the old or the new image, and it must be possible to
+// update it.
 
 #include <gtest/gtest.h>
 
@@ -16,15 +17,15 @@ using namespace test;
 
 constexpr std::uint32_t cut_seed = 7;
 
-/// What is done to a module; the power may fail meanwhile.
+/// Operations on a module; the power may fail meanwhile.
 using Work = std::function<void(UpdatedModule&)>;
 
 struct Scenario {
   const char* name;
-  Work before;                    ///< without a cut
-  Work work;                      ///< with a cut at each of its operations
+  Work before;                    ///< operations without a cut
+  Work work;                      ///< operations with a cut at each operation of the flash
   std::vector<unsigned> allowed;  ///< images of which one must run afterwards; 0: none
-  bool has_proven;                ///< an image that has proven itself, before the work
+  bool has_proven;                ///< whether the module had an image that has proven itself, before the work
 };
 
 void update(UpdatedModule& module) {
@@ -89,7 +90,7 @@ const Scenario scenarios[]{
      true},
 };
 
-/// The power returns.
+/// Switches the power on again.
 void expect_to_run(const Scenario& scenario, const SlotMemory& flash) {
   UpdatedModule module(flash);
   const unsigned running = module.start();
@@ -105,7 +106,7 @@ void expect_to_accept_an_update(const SlotMemory& flash) {
   EXPECT_TRUE(module.slots.confirm());
 }
 
-/// Whether the power failed at an operation, counted from the work's first one.
+/// Whether the power has failed. Operations count from the first one of the work.
 bool is_cut(SlotMemory& flash, int operation, const Work& work) {
   UpdatedModule module(flash);
   module.flash.cut_at = module.flash.operations + operation;
@@ -127,7 +128,7 @@ class PowerCuts : public testing::TestWithParam<Scenario> {
     prepared_ = module.flash;
   }
 
-  /// The same state, with noise of its own for what a cut leaves.
+  /// The prepared flash, with the noise of this number for the bits that a cut leaves.
   [[nodiscard]] SlotMemory prepared(unsigned number) const {
     SlotMemory flash = prepared_;
     flash.noise.seed(cut_seed + number);
@@ -172,7 +173,7 @@ TEST_P(PowerCuts, OneAfterTheOtherLeaveAModuleThatRuns) {
       static_cast<void>(is_cut(flash, static_cast<int>(random() % 500), random() % 2 == 0 ? start : update));
     }
     UpdatedModule module(flash);
-    // Starts that were cut count as well: without a proven image there may be nothing to go back to.
+    // Starts that were cut count as well, so without a proven image there may be no image to return to.
     const unsigned running = module.start();
     EXPECT_TRUE(running != 0 || !scenario.has_proven);
     expect_to_accept_an_update(flash);

@@ -1,4 +1,5 @@
-// What runs after a start, and that no cut of the power at any operation leaves a module without its program.
+// Tests which image runs after a start, and that a module still has its program after a cut of the power at any
+// operation.
 
 #include "firmware/bootloader/slots.hpp"
 
@@ -65,7 +66,7 @@ TEST(SlotsTest, TheBackupIsTheLastImageThatHasProvenItself) {
   module.install_proven(first);
   ASSERT_EQ(module.install(second), InstallResult::ok);
   EXPECT_EQ(module.start(), 2U);
-  // The second one was never confirmed: the third one does not replace the first one in slot B.
+  // The second image was never confirmed, so the third one does not replace the first one in slot B.
   ASSERT_EQ(module.install(third), InstallResult::ok);
   EXPECT_EQ(number_in(module.slots, FlashSlot::b), 1U);
   module.start();
@@ -79,7 +80,7 @@ TEST(SlotsTest, ASlotWhoseEraseWasCutHoldsNothingEvenIfItReadsAsBefore) {
   module.install_proven(first);
   module.install_proven(second);
   module.flash.erases_leave_all = true;
-  // Slot A holds what slot B has not: first B is cleared and erased, then A.
+  // Slot A holds an image that slot B has not: first B is cleared and erased, then A.
   for (const auto& [slot, other] : {std::pair(FlashSlot::b, FlashSlot::a), std::pair(FlashSlot::a, FlashSlot::b)}) {
     UpdatedModule cut(module.flash);
     for (int operation = module.flash.operations; number_in(cut.slots, slot) != 0; ++operation) {

@@ -38,7 +38,7 @@ inline Image make_image(std::uint16_t number, std::size_t size = 64) {
   return made;
 }
 
-/// The number of the image in a slot; 0: none.
+/// Number of the image in a slot; 0: none.
 inline unsigned number_in(const Slots& slots, FlashSlot slot) {
   const auto image = slots.image_in(slot);
   return image.empty() ? 0 : image::decode(image).header.version.major;
@@ -54,14 +54,14 @@ class UpdatedModule {
 
   InstallResult install(const Image& image) { return slots.install(image.bytes()); }
 
-  /// Power on, without a cut. The number of the image that runs; 0: none.
+  /// Switches the power on, without a cut. Returns the number of the image that runs; 0: none.
   unsigned start() {
     flash.cut_at = -1;
     const StartResult result = slots.prepare_start();
     return result == StartResult::run || result == StartResult::run_on_trial ? number_in(slots, FlashSlot::a) : 0;
   }
 
-  /// An image that starts well.
+  /// Installs an image that starts well.
   void install_proven(const Image& image) {
     EXPECT_EQ(install(image), InstallResult::ok);
     EXPECT_EQ(start(), image.header.version.major);

@@ -1,4 +1,4 @@
-// The board record in flash: what counts as one, and that no cut of the power loses the newest.
+// The board record in flash: which bytes are a record, and that a cut of the power never loses the newest one.
 
 #include "firmware/module/board_record.hpp"
 
@@ -21,7 +21,7 @@ constexpr std::uint32_t noise_seed = 20;
 
 std::optional<BoardRecord> newest_of(const FlashMemory& flash) { return newest(flash.sectors[0], flash.sectors[1]); }
 
-/// No two nodes have anything in common, so that a mixture of two records is noticed.
+/// Records for nodes. No two of them have equal fields, so that a mixture of two records is noticed.
 BoardRecord record_of(unsigned node) {
   const auto n = static_cast<std::uint16_t>(node);
   const bool is_odd = node % 2 != 0;
@@ -196,7 +196,7 @@ TEST(BoardRecordTest, AValueOutOfItsRangeLeavesTheNodeId) {
   EXPECT_EQ(newest(encode(record, 1), {}), std::nullopt);
 }
 
-/// With a right checksum, so that more than the checksum is tested.
+/// The record has a right checksum, so that more than the checksum is tested.
 TEST(BoardRecordTest, ARecordOfAnyBytesGivesOnlyWhatIsInRange) {
   std::mt19937 noise(noise_seed);
   unsigned found = 0;

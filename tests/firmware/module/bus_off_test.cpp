@@ -1,4 +1,4 @@
-// A module that goes bus-off stops its servo, comes back after pauses that grow, and reports it.
+// A module that goes bus-off stops its servo, recovers after pauses that grow, and reports it.
 
 #include "firmware/module/bus_recovery.hpp"
 #include "test_robot.hpp"
@@ -18,7 +18,7 @@ class BusOff : public testing::Test {
 
   BusOff() { robot.set_up_and_start(); }
 
-  /// The controller goes bus-off, at the time that is returned.
+  /// Makes the controller bus-off and returns the time.
   Microseconds leave_bus() {
     const Microseconds now = robot.bus.now();
     robot.it().recoveries.clear();
@@ -26,7 +26,7 @@ class BusOff : public testing::Test {
     return now;
   }
   void return_to_bus() { robot.it().bus_back(robot.bus.now()); }
-  /// Pauses between `start` and the requests to come back, in ms.
+  /// Pauses between `start` and the requests to recover [ms].
   [[nodiscard]] std::vector<Microseconds> pauses(Microseconds start) {
     std::vector<Microseconds> found;
     for (const Microseconds time : robot.it().recoveries) {

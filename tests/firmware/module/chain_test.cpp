@@ -58,7 +58,7 @@ class Pair {
     chain.reset();
     robot.drive();
   }
-  /// The chain goes back to its start.
+  /// Returns the chain to its start.
   void restart() {
     chain.reset();
     debouncers_.assign(joints, {});
@@ -69,7 +69,7 @@ class Pair {
     expect_equal();
   }
 
-  // Both ways at once, of a transaction that is opened in all modules.
+  // These functions change modules and chain together, in a transaction that is opened in all modules.
   void open(std::uint16_t transaction) {
     for (unsigned joint = 0; joint < joints; ++joint) {
       ASSERT_EQ(robot.bus.write(robot.node(joint), canopen::object::transaction, transaction), AbortCode::none);
@@ -97,7 +97,7 @@ class Pair {
     }
   }
 
-  /// Of a hundred frames, so many are lost.
+  /// Number of lost frames in a hundred.
   unsigned lost_percent = 0;
   test::TestRobot robot;
   test::ModuleChain chain;
@@ -153,7 +153,7 @@ TEST_P(Chain, ComputesTheSetPointsOfAChainOfKernelsBitForBit) {
   pair.limit(1, test::degrees(-10), test::degrees(12.5));
   pair.drive();
 
-  // Changes on the way: a parameter of every joint, and a distortion of one.
+  // There are changes on the way: a parameter of every joint, and a distortion of one joint.
   pair.run_to(30);
   pair.open(7);
   for (unsigned joint = 0; joint < joints; ++joint) {
@@ -239,12 +239,12 @@ TEST_P(Pulses, AreThoseOfTheScheduleAtTheirTimesAfterSync) {
   const std::vector<test::TestBus::Sent> syncs = robot.bus.sent(canopen::identifier::sync);
   const ServoSchedule schedule(servo_us, tick_us);
   for (unsigned joint = 0; joint < robot.joints(); ++joint) {
-    std::vector<test::Pulse> expected{{0, std::nullopt}};  // off at power on
+    std::vector<test::Pulse> expected{{0, std::nullopt}};  // the pulses are off at power-on
     for (std::uint32_t k = 0; k < last; ++k) {
       for (std::uint64_t n = schedule.first_interval(k); n < schedule.first_interval(k + 1); ++n) {
         const std::int32_t angle = interpolate(setpoints[k][joint], setpoints[k + 1][joint], schedule.fraction(n));
         const Microseconds time = syncs[k].time + schedule.start_us(n) - std::uint64_t{k} * tick_us;
-        // SYNC waits for a frame that is on the bus, and so may be early.
+        // SYNC waits for a frame that is on the bus, and so the next one may be early.
         expected.push_back({std::min(time, syncs[k + 1].time), servo_command(angle)});
       }
     }

@@ -1,4 +1,4 @@
-// The gateway above its ports (docs/protocol.md, The gateway): what waits for what, and what is dropped.
+// The gateway and its ports (docs/protocol.md, The gateway): which frames wait, and which are dropped.
 
 #include "firmware/module/gateway.hpp"
 
@@ -50,7 +50,7 @@ struct Surroundings final : CanPort, firmware::ServoPort, firmware::ContactPort,
   std::span<char> line_room() override { return has_room ? std::span<char>(buffer) : std::span<char>(); }
   void send_line(std::size_t count) override { output.append(buffer.data(), count); }
 
-  std::vector<CanFrame> pending;  ///< in the mailboxes
+  std::vector<CanFrame> pending;  ///< frames in the mailboxes
   bool is_full = false;           ///< no mailbox is free
   bool receives_all = false;
   CanStatus state;
@@ -72,7 +72,7 @@ class GatewayTest : public testing::Test {
     EXPECT_EQ(firmware::append(flash, board), firmware::AppendResult::ok);
     module.power_on(now);
     wait(20'000);
-    confirm();  // boot-up
+    confirm();  // the boot-up message is sent
   }
 
   void wait(Microseconds time) {
@@ -92,13 +92,13 @@ class GatewayTest : public testing::Test {
       serve();  // the output has more than one buffer
     }
   }
-  /// What the host receives for it.
+  /// The characters that the host receives for a frame.
   std::string ask(std::string_view characters) {
     outside.output.clear();
     write(characters);
     return outside.output;
   }
-  /// The frame with the lowest identifier was sent.
+  /// Sends the pending frame with the lowest identifier.
   CanFrame confirm() {
     const auto first = std::ranges::min_element(outside.pending, {}, &CanFrame::identifier);
     const CanFrame frame = *first;
@@ -135,7 +135,7 @@ TEST_F(GatewayTest, AModuleWithoutALineIsNone) {
 }
 
 TEST_F(GatewayTest, FramesOfTheHostGoOneAtATimeAndInTheirOrder) {
-  write("O\rt7F010A\rt7F110B\rt001\rt7F210C\r");  // the third is none
+  write("O\rt7F010A\rt7F110B\rt001\rt7F210C\r");  // the third line is no frame
   ASSERT_EQ(outside.pending.size(), 1U);
   EXPECT_EQ(confirm(), (CanFrame{0x7F0, 1, {0x0A}}));
   ASSERT_EQ(outside.pending.size(), 1U);

@@ -1,4 +1,4 @@
-// Whose robot it is: the lease of a module, object 0x2002.
+// The lease of a module, object 0x2002, which says whose robot it is.
 
 #include "test_robot.hpp"
 

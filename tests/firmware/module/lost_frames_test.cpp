@@ -1,4 +1,4 @@
-// Received frames for which there was no room.
+// Received frames that were lost because there was no room.
 
 #include "test_robot.hpp"
 

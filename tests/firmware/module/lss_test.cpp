@@ -25,7 +25,7 @@ firmware::ModuleIdentity identity_of(std::uint8_t node_id) {
 
 class LssModule : public testing::Test {
  protected:
-  /// node_id: of the board record; 0: there is none.
+  /// node_id: in the board record; 0: none.
   void power_on(std::uint8_t node_id) {
     it = &bus.add(identity_of(node_id));
     if (node_id == 0) {
@@ -39,7 +39,7 @@ class LssModule : public testing::Test {
     it->power_on(bus.now());
     bus.run_for(50'000);
   }
-  /// The answer's first three bytes.
+  /// The first three bytes of the answer.
   std::vector<unsigned> ask(const CanFrame& request) {
     const std::size_t from = bus.log.size();
     bus.deliver(request);
@@ -109,7 +109,7 @@ TEST_F(LssModule, BootsWithTheConfiguredNodeIdWhenItIsReleased) {
   EXPECT_EQ(bus.value(42, canopen::Address{0x1014, 0}), 0x80U + 42U)
       << "SDO is served, and identifiers follow the node id";
   EXPECT_TRUE(ask(lss({0x4C})).empty());
-  // It was not stored.
+  // The node id was not stored.
   restart();
   EXPECT_EQ(it->module.node(), 0);
 }
@@ -214,7 +214,7 @@ TEST(LssRobot, AModuleThatMovesDoesNotStoreANodeId) {
 
 TEST(LssRobot, ALostPowerWhileANodeIdIsStoredLeavesTheOldOneOrTheNew) {
   for (int cut = 0; cut < 12; ++cut) {
-    for (unsigned before = 0; before < 4; ++before) {  // up to the last place of the sector
+    for (unsigned before = 0; before < 4; ++before) {  // the last one is at the last place of the sector
       test::TestBus bus;
       test::ModuleNode& it = bus.add(identity_of(9));
       for (unsigned i = 0; i < before; ++i) {

@@ -1,4 +1,4 @@
-// What a module measures, on the bus and in its objects.
+// The measurements of a module, on the bus and in its objects.
 
 #include <random>
 
@@ -11,7 +11,7 @@ namespace {
 namespace object = canopen::object;
 using canopen::Monitoring;
 
-firmware::ServoReadings example() { return {350, test::degrees(44.9), 31}; }
+ServoReadings example() { return {350, test::degrees(44.9), 31}; }
 
 /// One module, joint 0, on a board with or without a potentiometer.
 class Measuring {
@@ -35,7 +35,7 @@ class Measuring {
     }
     bus.deliver(encode(canopen::NmtRequest{canopen::NmtCommand::start, 0}));
   }
-  /// The first monitoring frame: that of SYNC 0.
+  /// The first monitoring frame, that of SYNC 0.
   CanFrame first_frame() {
     bus.deliver(encode(canopen::TickMessage{0, canopen::configuration_crc(setup)}));
     bus.deliver(canopen::encode_sync(0));
@@ -74,7 +74,7 @@ TEST(Monitored, AnAngleThatIsNotMeasuredIsMarked) {
 
 TEST(Monitored, FaultsAreTheErrorRegister) {
   Measuring module(true);
-  module.bus.deliver(encode(canopen::TickMessage{0, 0xBAD}));  // of another configuration
+  module.bus.deliver(encode(canopen::TickMessage{0, 0xBAD}));  // this TICK belongs to another configuration
   EXPECT_EQ(module.first_frame().data[5], 0x00) << "over by the time of SYNC";
   ASSERT_EQ(module.bus.write(Measuring::node, object::current_limit_time, 0), canopen::AbortCode::none);
   module.it->meters.readings.current_ma = 2'001;
@@ -116,7 +116,7 @@ TEST(Monitored, IsMeasuredBeforeTheSetUpToo) {
   EXPECT_EQ(bus.value(3, object::temperature), 31U);
 }
 
-/// Ticks in whose time a joint sent its monitoring frames, of SYNCs 0 to `last`.
+/// Ticks in which a joint has sent its monitoring frames, during SYNCs 0 to `last`.
 std::vector<std::uint32_t> monitored_ticks(test::TestRobot& robot, unsigned joint) {
   std::vector<std::uint32_t> ticks;
   std::uint32_t tick = ~0U;

@@ -54,7 +54,7 @@ TEST(Network, TheBootUpDelayIsOneToSixteenMillisecondsByTheUniqueId) {
     EXPECT_GE(delay, 1'000U);
     EXPECT_LE(delay, 16'000U);
     delays.insert(delay);
-    // It follows from the id: the same again.
+    // The delay follows from the id, so it is the same again.
     module.power_on(777'777);
     EXPECT_EQ(module.next_deadline() - 777'777, delay);
   }
@@ -136,7 +136,8 @@ TEST(Network, AStoppedModuleAnswersNothingButNetworkManagement) {
   robot.bus.send(encode(canopen::CommitMessage{1, 100, robot.setup.robot_id}));
   robot.bus.send(encode(canopen::TickMessage{0, ~robot.crc()}));
   robot.bus.send(canopen::encode_sync(0));
-  robot.bus.send(encode(canopen::Heartbeat{canopen::host_node, NmtState::operational}));  // and never again
+  robot.bus.send(
+      encode(canopen::Heartbeat{canopen::host_node, NmtState::operational}));  // the host sends no other heartbeat
   robot.bus.run_for(2'000'000);
   EXPECT_EQ(robot.bus.log.size(), from + 5);
   robot.command(NmtCommand::start);
@@ -252,7 +253,7 @@ TEST(Network, TheErrorHistoryHasTheLastEightTheNewestFirst) {
   constexpr auto no_data = static_cast<std::uint32_t>(AbortCode::no_data);
   EXPECT_EQ(error(0), 0U);
   EXPECT_EQ(error(1), no_data);
-  robot.command(NmtCommand::start);  // not configured
+  robot.command(NmtCommand::start);  // the module is not configured
   EXPECT_EQ(error(0), 1U);
   EXPECT_EQ(error(1), 0x00006300U);
   EXPECT_EQ(error(2), no_data);
@@ -324,7 +325,7 @@ TEST(Network, AResetClearsTheQueue) {
   robot.it().receive(robot.bus.now(), encode(canopen::NmtRequest{NmtCommand::reset_node, 0}));
   const std::size_t from = robot.bus.log.size();
   robot.bus.run_for(20'000);
-  // The answer that the controller has already, and the boot-up message.
+  // The frames are the answer that the controller has already, and the boot-up message.
   EXPECT_EQ(robot.bus.log.size(), from + 2);
 }
 

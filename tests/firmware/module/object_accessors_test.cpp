@@ -1,4 +1,4 @@
-// The table behind the object dictionary: every declared entry is wired, and an entry that is not is rejected.
+// The table of accessors: every declared entry has a row, and an entry without one is rejected.
 
 #include "firmware/module/object_accessors.hpp"
 
@@ -34,7 +34,7 @@ static_assert(std::size(ranges) == canopen::value_kinds);
 
 bool is_number(const canopen::ObjectRow& row) { return !canopen::is_long(row.first->type); }
 
-/// The first addresses of declared entries, or series of them, that SDO cannot read or write as declared.
+/// Addresses of the first declared entry of each series that SDO cannot read or write as declared.
 std::vector<Address> find_unwired(std::span<const ObjectAccessor> accessors) {
   std::vector<Address> unwired;
   const auto check = [&](Address first, Access access) {
@@ -130,7 +130,7 @@ class UnwiredObject : public testing::Test, private CanPort, firmware::ServoPort
 TEST_F(UnwiredObject, IsRejectedAndNotReadAsZero) {
   for (const ObjectAccessor& accessor : firmware::object_accessors()) {
     if (canopen::value_address(accessor.first()) || accessor.first() == canopen::object::recent_error.first.address) {
-      continue;  // rejected until the module is configured, or has an error, wired or not
+      continue;  // they are rejected until the module is configured, or has an error, with a row or without
     }
     std::vector<ObjectAccessor> shorter = table();
     std::erase_if(shorter, [&](const ObjectAccessor& row) { return row.first() == accessor.first(); });

@@ -65,7 +65,7 @@ TEST(Objects, HaveTheIdentityOfTheModule) {
 TEST(Objects, HaveTheNamesAndVersionsOfTheModuleAsTexts) {
   test::TestModule robot;
   robot.boot();
-  // In segments, and as a block where they are long enough.
+  // Values are read in segments, and as a block if they are long enough.
   for (const auto largest_segmented : std::to_array<std::uint8_t>({255, 21, 4})) {
     canopen::SdoTransferOptions options;
     options.largest_segmented = largest_segmented;
@@ -96,7 +96,7 @@ TEST(Objects, ATransferThatTheHostDoesNotContinueIsAborted) {
   robot.bus.run_for(20'000);
   ASSERT_EQ(robot.bus.log.size(), from + 1);
   EXPECT_EQ(robot.bus.log.back().frame, (CanFrame{0x585, 8, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}}));
-  // Without a frame if the module is stopped or reset meanwhile.
+  // The transfer ends without a frame if the module is stopped or reset meanwhile.
   for (const NmtCommand command : {NmtCommand::stop, NmtCommand::reset_node}) {
     begin();
     robot.command(command);
@@ -173,7 +173,7 @@ TEST(Objects, AValueOutOfRangeIsRejectedAndChangesNothing) {
   EXPECT_EQ(robot.bus.write(node, amplitude, 2, 0), AbortCode::wrong_length);
 }
 
-/// Settings that the kernel rejects, by the one write that makes a good set-up wrong.
+/// Settings that the kernel rejects, and for each the write that makes a good set-up wrong.
 struct Refusal {
   canopen::Address address;
   std::uint8_t size;
@@ -212,7 +212,7 @@ TEST_P(Refused, LeavesTheModuleUnconfigured) {
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0].code, canopen::EmergencyCode::not_configured);
   EXPECT_EQ(robot.emergencies()[0].detail, static_cast<std::uint32_t>(GetParam().status));
-  // A good one configures it again.
+  // A good set-up configures the module again.
   robot.configure(0);
   robot.command(NmtCommand::start);
   EXPECT_EQ(robot.module().state(), NmtState::operational);

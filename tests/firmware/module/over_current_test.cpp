@@ -23,7 +23,7 @@ class OverCurrent : public testing::Test {
   void write(const canopen::Object& entry, std::uint32_t value) {
     ASSERT_EQ(robot.bus.write(node, entry, value), AbortCode::none);
   }
-  /// Runs SYNCs up to and including `last`, then whether the module is in Fault.
+  /// Runs SYNCs up to and including `last`. Returns whether the module is in Fault then.
   bool faulty_after(std::uint32_t first, std::uint32_t last) {
     robot.run(first, last);
     return robot.module().power() == PowerState::fault;
@@ -44,7 +44,7 @@ class OverCurrent : public testing::Test {
 TEST_F(OverCurrent, IsAFaultAfterHalfASecondAbove2000MilliamperesAndNotATickSooner) {
   robot.run(9);
   draw(2'001);
-  // The first reading above the limit is that of tick 10; 50 ticks of 10 ms later it is half a second.
+  // The first reading above the limit is that of tick 10; half a second is 50 ticks of 10 ms.
   EXPECT_FALSE(faulty_after(10, 59));
   EXPECT_TRUE(robot.it().is_pulsing());
   EXPECT_TRUE(robot.emergencies().empty());
@@ -81,7 +81,7 @@ TEST_F(OverCurrent, WhoseAverageFallsToTheLimitRestartsItsTime) {
   draw(2'100);
   robot.run(19);
   draw(0);
-  robot.run(20, 20);  // 20 times 100 mA above, once 2,000 below
+  robot.run(20, 20);  // twenty readings are 100 mA above the limit, and one is 2,000 mA below
   draw(2'100);
   EXPECT_FALSE(faulty_after(21, 70));
   EXPECT_TRUE(faulty_after(71, 71));
@@ -128,7 +128,7 @@ TEST_F(OverCurrent, LimitsDoNotBelongToTheConfiguration) {
 }
 
 TEST_F(OverCurrent, IsReportedWithTheDocumentedFrame) {
-  // docs/protocol.md shows it for node 3.
+  // docs/protocol.md shows the message for node 3.
   const CanFrame example{0x083, 8, {0x10, 0x23, 0x03, 0, 0, 0, 0, 0}};
   draw(5'000);
   robot.run(50);

@@ -1,4 +1,4 @@
-// When the servo has pulses, and when it must not.
+// The conditions under which the servo has pulses.
 
 #include <cstdlib>
 
@@ -37,7 +37,7 @@ class Power : public testing::Test {
     EXPECT_EQ(robot.it().pulse_count(), pulses);
     EXPECT_FALSE(robot.it().is_pulsing());
   }
-  /// From here on: the pulse moves to 0 degrees at 90 degrees a second, then stays.
+  /// Expects that from now on the pulse moves to 0 degrees at 90 degrees a second, then stays.
   void expect_ramp_to_the_safe_pose() {
     std::vector<test::Pulse>& pulses = robot.it().pulses;
     std::int32_t width = last_width();
@@ -72,7 +72,7 @@ TEST_F(Power, IsOffFromPowerOnAndSwitchedOffOnce) {
 
 TEST_F(Power, PulsesNeedTheTickAndOperationEnabledAndOperational) {
   robot.enable(0);
-  expect_no_pulses();  // no tick
+  expect_no_pulses();  // there is no tick
   robot.tick(0);
   robot.sync(0);
   EXPECT_TRUE(robot.it().is_pulsing());
@@ -236,7 +236,7 @@ TEST_F(Power, AMissingHostRampsToTheSafePose) {
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::heartbeat_lost, 0x11, canopen::host_node}));
   robot.bus.run_for(100'000);
   EXPECT_EQ(robot.emergencies().size(), 1U);
-  // It is back; the quick stop stays.
+  // SYNC is back, and the quick stop stays.
   robot.bus.deliver(heartbeat);
   robot.bus.run_for(1'000);
   ASSERT_EQ(robot.emergencies().size(), 2U);
@@ -259,7 +259,7 @@ TEST_F(Power, ACommandByPdoSetsControlwordAndTarget) {
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
   EXPECT_EQ(robot.bus.value(node, object::target_position), 0x20000000U);
   EXPECT_EQ(robot.bus.value(node, object::statusword) & 0x6FU, 0x27U);
-  // Not for this node, and not an angle.
+  // The first command is for another node, the second has no angle.
   robot.bus.deliver(encode(canopen::Command{node + 1, 0, 0}));
   robot.bus.deliver(encode(canopen::Command{node, 0x000F, quarter_turn + 1}));
   EXPECT_EQ(robot.bus.value(node, object::target_position), 0x20000000U);
@@ -361,7 +361,7 @@ TEST_F(Power, AModeBeginsWhereTheServoIs) {
   const std::int32_t held = servo_command(robot.kernel().setpoint(0));
   robot.run(21, 40);
   EXPECT_EQ(last_width(), held);
-  // And back to the gait, along a line of one tick as long as that is slow enough.
+  // The joint returns to the gait, along a line of one tick if that is slow enough.
   ASSERT_EQ(robot.bus.write(node, object::mode, static_cast<std::uint32_t>(canopen::mode_gait)), AbortCode::none);
   robot.run(41, 60);
   EXPECT_NEAR(last_width(), servo_command(robot.kernel().setpoint(0)), 60);

@@ -1,5 +1,4 @@
-// The program of a module takes an image while it runs, restarts to install it, and finds out whether it is good
-// itself.
+// The program of a module receives an image while it runs, restarts to install it, and finds out whether it is good.
 
 #include "shared/broadcast/transfer_frame.hpp"
 #include "test_robot.hpp"
@@ -41,7 +40,7 @@ class ProgramUpdateTest : public testing::Test {
     return broadcast::decode_status(answer.value_or(CanFrame{}), broadcast::Code::status, serial())
         .value_or(broadcast::StatusAnswer{});
   }
-  /// 14 bytes, with the session 9.
+  /// Sends an image of 14 bytes in session 9.
   void bring_image() {
     ASSERT_TRUE(ask(broadcast::select_frame(9, serial())));
     for (const CanFrame& frame :

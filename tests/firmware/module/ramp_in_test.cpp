@@ -1,4 +1,4 @@
-// A joint that was moved by hand goes slowly to the start of the gait when it gets power (object 0x200E).
+// A joint that was moved by hand moves slowly to the start of the gait when it gets power (object 0x200E).
 
 #include <cstdlib>
 
@@ -15,7 +15,7 @@ using canopen::NmtCommand;
 using canopen::PowerState;
 using test::node;
 constexpr unsigned speed = 90;
-constexpr std::uint16_t reached = 1U << 10U;  // CiA 402, statusword
+constexpr std::uint16_t reached = 1U << 10U;  // the bit "target reached" of the statusword (CiA 402)
 
 /// Pulse width of an angle in degrees: 18000 +- 12000 for +-90 degrees.
 constexpr std::int32_t width_of(int degrees) { return servo_center + servo_quarter_turn * degrees / 90; }
@@ -25,7 +25,7 @@ class RampIn : public testing::Test {
   static constexpr std::uint32_t servo_us = 3'000;
 
   RampIn() {
-    // The joint with the offset -10 degrees and no amplitude: so is its state 0.
+    // The joint has the offset -10 degrees and no amplitude: so has its state 0.
     set("amplitude", 0);
     set("offset", -10);
     robot.bus.nodes.clear();
@@ -45,7 +45,7 @@ class RampIn : public testing::Test {
   void write(const canopen::Object& entry, std::uint32_t value) {
     ASSERT_EQ(robot.bus.write(node, entry, value), AbortCode::none);
   }
-  /// Operational, with power, without a tick.
+  /// Enters Operational, with power and without a tick.
   void enable(std::uint32_t ramp_speed = speed) {
     robot.boot();
     robot.configure(0);
@@ -56,7 +56,7 @@ class RampIn : public testing::Test {
     robot.start();
     robot.enable(0);
   }
-  /// The host lives, for this time.
+  /// Sends the host's heartbeats for this time.
   void run_with_host(Microseconds time) {
     constexpr Microseconds period = 100'000;
     for (; time > 0; time -= std::min(time, period)) {
@@ -66,7 +66,7 @@ class RampIn : public testing::Test {
   }
   [[nodiscard]] bool has_arrived() { return (robot.bus.value(node, object::statusword) & reached) != 0; }
   [[nodiscard]] std::int32_t width() { return *robot.it().pulses.back().width; }
-  /// Between two pulses, and against the time that has passed between them.
+  /// Checks the speed between successive pulses, by the time that has passed between them.
   void expect_speed_at_most(unsigned degrees_per_second, std::size_t from = 0) {
     const std::vector<test::Pulse>& pulses = robot.it().pulses;
     unsigned moves = 0;

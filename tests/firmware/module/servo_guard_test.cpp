@@ -1,4 +1,4 @@
-// What no pulse may do, whatever computes the angles and whenever it asks for a pulse.
+// Rules for all pulses, whatever computes the angles and whenever a pulse is requested.
 
 #include "firmware/module/servo_guard.hpp"
 
@@ -29,7 +29,7 @@ TEST_F(Guard, AJumpBecomesARampOfTheDefaultSpeed) {
   EXPECT_EQ(servo.widths.back(), 6'000);
   for (Microseconds n = 1; n <= 83; ++n) {
     guard.command(n * period_us, quarter);
-    // 720 degrees a second, 7.5 thousandths of a degree a step.
+    // The speed is 720 degrees a second, and a step 7.5 thousandths of a degree.
     EXPECT_NEAR(*servo.widths.back(), 6'000 + static_cast<double>(n) * 720 * 0.003 / 0.0075, 1);
   }
   guard.command(84 * period_us, quarter);
@@ -71,7 +71,7 @@ TEST_F(Guard, PulsesThatComeTooOftenDoNotMoveFaster) {
 }
 
 TEST_F(Guard, ASlowCrystalDoesNotSlowTheGait) {
-  // A gait at the greatest speed, back and forth for a minute, by a clock that is 1,000 ppm slow.
+  // The gait moves at the greatest speed, back and forth for a minute, by a clock that is 1,000 ppm slow.
   guard.command(0, 0);
   const std::int32_t step = MotionLimiter::step_of(default_command_speed, period_us);
   std::int32_t wanted = 0;
@@ -112,7 +112,7 @@ TEST_F(Guard, NoSequenceOfRequestsBreaksABound) {
     Microseconds time;
     std::int32_t angle;
   };
-  std::vector<Pulse> pulses;  // since it was off
+  std::vector<Pulse> pulses;  // pulses since the servo was off
   for (int i = 0; i < 100'000; ++i) {
     now += random.below(4) == 0 ? random.below(20 * period_us) : random.below(2 * period_us);
     if (random.below(500) == 0) {

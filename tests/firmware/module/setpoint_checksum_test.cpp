@@ -15,7 +15,7 @@ class SetpointChecksum : public testing::Test {
  protected:
   SetpointChecksum() { robot.set_up_and_start(); }
 
-  /// Ticks until `last`, and what the checksum of their set-points must be: each is read from the kernel, byte by byte.
+  /// Runs ticks until `last`, and computes the expected checksum: each set-point is read from the kernel, byte by byte.
   void run(std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t tick = first; tick <= last; ++tick) {
       robot.sync(tick);

@@ -105,7 +105,7 @@ TEST_F(Staging, ACommitThatComesTooLateChangesNothingAndIsToldOnce) {
   EXPECT_EQ(amplitude(), before);
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::commit_too_late, 0, 20}));
-  // It may be committed again, in time.
+  // The change may be committed again, in time.
   commit(7, 41);
   robot.run(41, 41);
   EXPECT_EQ(amplitude(), after);
@@ -164,7 +164,7 @@ TEST_F(Staging, AnUnconfiguredModuleIgnoresCommits) {
 TEST_F(Staging, AModuleThatLostTheTickCatchesUpWithACommitWhenItJoins) {
   ASSERT_EQ(open(7), AbortCode::none);
   ASSERT_EQ(stage("amplitude", after), AbortCode::none);
-  robot.sync(60);  // too many were missed
+  robot.sync(60);  // too many SYNCs were missed
   ASSERT_FALSE(robot.module().synchronised());
   commit(7, 65);
   robot.tick(70);

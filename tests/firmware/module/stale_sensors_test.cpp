@@ -1,4 +1,4 @@
-// Sensors that give no new readings: over-current would not be seen.
+// Sensors that give no new readings: over-current would not be noticed.
 
 #include "test_robot.hpp"
 

@@ -1,4 +1,4 @@
-// State frames of the neighbours: from which nodes, and which are rejected.
+// State frames of the neighbours: the nodes that send them, and the frames that are rejected.
 
 #include "test_robot.hpp"
 

@@ -65,7 +65,7 @@ TEST_F(StoreParameters, SaveKeepsAllSettingsOverARestart) {
 }
 
 TEST_F(StoreParameters, SaveIsTheExampleOfTheProtocol) {
-  // docs/protocol.md has it for node 3.
+  // docs/protocol.md has the exchange for node 3.
   test::TestBus bus;
   firmware::ModuleIdentity identity;
   identity.node = 3;
@@ -175,7 +175,7 @@ TEST_F(StoreParameters, TheLimitsOfTheMechanicsBoundThoseOfTheJoint) {
 }
 
 TEST_F(StoreParameters, ALostPowerAtAnyInstantLeavesTheOldSettingsOrTheNew) {
-  // Saves with another value each, until both sectors were erased.
+  // It saves another value each time, until both sectors were erased.
   constexpr unsigned saves = 10;
   const auto limit_of = [](unsigned number) { return 100 + number; };
   const auto save_number = [&](unsigned number) {

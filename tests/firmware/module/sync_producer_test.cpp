@@ -60,7 +60,7 @@ TEST(Producer, IsSetByTheBitInTheSyncIdentifier) {
   robot.produce_sync();
   EXPECT_EQ(robot.bus.value(5, canopen::object::sync_identifier), produces);
   robot.run_syncs(15);
-  robot.produce_sync();  // again: it continues
+  robot.produce_sync();  // another call has no effect
   robot.run_syncs(1);
   EXPECT_EQ(robot.kernel().tick(), 16U);
   EXPECT_EQ(robot.bus.write(5, canopen::object::sync_identifier, 0x80), AbortCode::none);
@@ -152,7 +152,7 @@ TEST(Producer, DoesNotMakeUpForSyncsThatNobodyReceived) {
   for (Microseconds now = 500; now < 500'000; now += 500) {
     producer.poll(now);
   }
-  // The connector holds again.
+  // The connector has contact again.
   std::vector<std::uint8_t> counters;
   while (!port.mailboxes.empty()) {
     const CanFrame sent = port.mailboxes.front();
@@ -162,7 +162,7 @@ TEST(Producer, DoesNotMakeUpForSyncsThatNobodyReceived) {
     }
     outbox.sent();
   }
-  // The one that the controller had, and the newest: SYNC 49 at 491.5 ms.
+  // These are the SYNC that the controller had, and the newest: SYNC 49 at 491.5 ms.
   EXPECT_EQ(counters, (std::vector<std::uint8_t>{1, 50}));
 }
 

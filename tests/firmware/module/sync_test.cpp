@@ -20,7 +20,7 @@ class Sync : public testing::Test {
     EXPECT_EQ(reference.configure(robot.setup.kernel, 0), Status::ok);
   }
 
-  /// The set-point after SYNC `tick`, of a kernel that missed nothing.
+  /// The set-point after SYNC `tick` of a kernel that has missed nothing.
   std::int32_t expected_setpoint(std::uint32_t tick) {
     while (reference.tick() <= tick) {
       reference.advance();
@@ -34,7 +34,7 @@ class Sync : public testing::Test {
     EXPECT_FALSE(robot.it().is_pulsing());
     EXPECT_FALSE(robot.module().synchronised());
   }
-  /// The joint does not follow the gait: it goes to the safe pose and stays there.
+  /// Expects that the joint does not follow the gait: it moves to the safe pose and stays there.
   void expect_quick_stop() {
     EXPECT_FALSE(robot.module().synchronised());
     EXPECT_EQ(robot.module().power(), canopen::PowerState::quick_stop_active);
@@ -145,7 +145,7 @@ TEST_F(Sync, ASyncSoonerThanHalfAPeriodIsNoTickAndIsReportedOnce) {
   robot.bus.run_for(1'000);
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::early_sync, 0, 5'000 - 1'130}));
-  // Half a period after the one that counted.
+  // This SYNC comes half a period after the one that counted.
   robot.bus.run_until(accepted + 5'000 - test::TestBus::frame_time_us);
   robot.bus.deliver(canopen::encode_sync(7));
   EXPECT_EQ(robot.kernel().tick(), 8U);
@@ -154,7 +154,7 @@ TEST_F(Sync, ASyncSoonerThanHalfAPeriodIsNoTickAndIsReportedOnce) {
 
 TEST_F(Sync, ASecondProducerDoesNotDriveTheRobotFaster) {
   robot.run(20);
-  // Another one sends between the SYNCs of the first, with the counter that fits.
+  // Another producer sends between the SYNCs of the first, with the counter that fits.
   for (std::uint32_t k = 21; k < 121; ++k) {
     robot.sync(k);
     robot.bus.run_for(4'000);
@@ -206,7 +206,7 @@ TEST_F(Sync, NineMissedSyncsLoseTheTick) {
   expect_quick_stop();
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::sync_lost, 0x11, 6}));
-  // Later ones say nothing without TICK.
+  // Later SYNCs give no tick without TICK.
   robot.run(16, 19);
   expect_quick_stop();
   EXPECT_EQ(robot.emergencies().size(), 1U);
@@ -231,7 +231,7 @@ TEST_F(Sync, ATickThatFitsChangesNothing) {
   EXPECT_TRUE(robot.emergencies().empty());
 }
 
-// SYNC has the higher priority and may pass it on a busy bus.
+// SYNC has the higher priority and may overtake TICK on a busy bus.
 TEST_F(Sync, ATickThatItsSyncHasOvertakenChangesNothing) {
   robot.run(10);
   robot.tick(10);
@@ -316,7 +316,7 @@ TEST_F(Sync, AfterAStopTickZeroStartsFromStateZeroAgain) {
   EXPECT_EQ(robot.kernel().setpoint(0), expected_setpoint(0));
 }
 
-// The frame would be one label too many for its neighbours.
+// The label of the frame would be one too high for its neighbours.
 TEST_F(Sync, AModuleThatStartsInAMovingRobotWaitsForTheTick) {
   std::uint32_t tick = 100;
   for (const NmtCommand command : {NmtCommand::enter_pre_operational, NmtCommand::stop}) {

@@ -1,4 +1,4 @@
-// Which tick a SYNC is. The oracle knows the absolute tick of every SYNC.
+// The tick of a SYNC. The oracle knows the absolute tick of every SYNC.
 
 #include "firmware/module/tick_keeper.hpp"
 
@@ -56,7 +56,7 @@ TEST(TickKeeper, UnderstandsEveryTickByItsDistanceFromTheComingTick) {
         EXPECT_EQ(keeper.sync(counter(coming), coming).action, Action::compute);
         continue;
       }
-      // The SYNC that it announced.
+      // This is the SYNC that TICK has announced.
       const SyncMeaning meaning = keeper.sync(counter(tick), coming);
       if (fits) {
         EXPECT_EQ(meaning.action, Action::compute);

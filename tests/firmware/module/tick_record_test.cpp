@@ -31,7 +31,7 @@ KernelConfiguration random_gait(std::mt19937& random) {
   return configuration;
 }
 
-/// What the record replaces: the kernel stands behind this tick, and has a state.
+/// Whether the kernel has just computed this tick, and has a state.
 bool kernel_has_computed(const Kernel& kernel, unsigned joint, std::uint32_t tick) {
   return kernel.is_local(joint) && kernel.tick() == tick + 1 &&
          (kernel.frame(joint, 0).flags() & StateFrame::valid) != 0;

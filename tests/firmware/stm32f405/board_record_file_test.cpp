@@ -1,4 +1,4 @@
-// The tool that prepares a new module's flash writes what the module reads.
+// The tool that prepares a new module's flash writes a record that the module can read.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ class BoardRecordFileTest : public testing::Test {
   }
   ~BoardRecordFileTest() override { std::filesystem::remove_all(folder_); }
 
-  /// Status of the tool.
+  /// Exit status of the tool.
   int make(const std::string& options) const {
     return std::system((std::string(PROLEG_PYTHON " ") + source_path("/firmware/stm32f405/make_board_record.py ") +
                         options + " " + file().string() + " 2>" + (folder_ / "errors").string())

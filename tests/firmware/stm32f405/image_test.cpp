@@ -1,4 +1,4 @@
-// The image that is flashed, as a file: its size, its addresses, and what it must not contain.
+// The image that is flashed, as a file: its size, its addresses, and parts that it must not contain.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using sim::ElfImage;
 
-// docs/board.md, and RM0090, tables 1 and 5.
+// Addresses of docs/board.md, and of RM0090, tables 1 and 5.
 constexpr std::uint32_t sector_0 = 0x0800'0000;
 constexpr std::uint32_t sector_0_size = 16 * 1024;
 constexpr std::uint32_t slot_a = 0x0802'0000;
@@ -64,7 +64,7 @@ class ImageTest : public testing::TestWithParam<std::string> {
     }
     return table;
   }
-  /// The bytes from an address of the flash on, as the segments hold them; 0xFF between.
+  /// The bytes from an address of the flash on, as in the segments; 0xFF between segments.
   [[nodiscard]] std::vector<std::uint8_t> flash(std::uint32_t start, std::uint32_t size) const {
     std::vector<std::uint8_t> bytes;
     for (const ElfImage::Segment& segment : image_.segments()) {
@@ -167,7 +167,7 @@ TEST_P(ImageTest, TheImageFileIsSlotAAndNothingElseWithARightHeader) {
   EXPECT_EQ(header.settings_schema, firmware::BoardRecord::schema);
 }
 
-/// While flash is erased the CPU cannot read it.
+/// While flash is erased the CPU cannot read it, so the code that waits is in RAM.
 TEST_P(ImageTest, TheCodeInRamCallsAndReadsNothingOutsideRam) {
   const std::uint32_t start = image_.symbol("ram_code_start").address;
   const std::uint32_t end = image_.symbol("ram_code_end").address;

@@ -1,4 +1,4 @@
-// What the ADC reads, against the straight lines in floating point, for every reading that there is.
+// Conversion of readings of the ADC, compared with the straight lines in floating point, for every possible reading.
 
 #include "firmware/stm32f405/readings.hpp"
 

@@ -1,4 +1,4 @@
-#include "firmware/stm32f405/reset_cause.hpp"
+#include "firmware/stm32f405/reset.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using firmware::ResetCause;
 
-// RCC_CSR as the chip leaves it, RM0090, section 7.3.21; the pin's flag (bit 26) comes with every other one.
+// RCC_CSR as the chip sets it (RM0090, section 7.3.21). The pin's flag (bit 26) comes with every other one.
 TEST(ResetCauseTest, IsReadOffTheFlags) {
   EXPECT_EQ(reset_cause_of(0x0E00'0000), ResetCause::power_on) << "the register's reset value";
   EXPECT_EQ(reset_cause_of(0x0600'0000), ResetCause::power_on) << "brown-out";

@@ -12,7 +12,7 @@
 #include "host/flash/robot_update.hpp"
 #include "live_bus.hpp"
 #include "shipped.hpp"
-#include "sim/loop/native_module.hpp"
+#include "sim/hardware_loop/native_module.hpp"
 
 namespace proleg::test {
 

@@ -10,7 +10,7 @@
 #include "examined_bus.hpp"
 #include "shared/canopen/declared_objects.hpp"
 #include "shipped.hpp"
-#include "sim/loop/native_module.hpp"
+#include "sim/hardware_loop/native_module.hpp"
 
 namespace proleg::test {
 namespace {
@@ -358,7 +358,7 @@ TEST_F(BusFaults, AModuleThatIsTooHot) {
           }
           return std::make_unique<sim::NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors,
                                                      [take = parts.take_readings, &temperature] {
-                                                       firmware::ServoReadings readings = take();
+                                                       ServoReadings readings = take();
                                                        readings.temperature_c = temperature;
                                                        return readings;
                                                      });

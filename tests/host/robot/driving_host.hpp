@@ -5,7 +5,7 @@
 #include "host/robot/robot_drive.hpp"
 #include "live_bus.hpp"
 #include "shared/kernel/fingerprint.hpp"
-#include "sim/scenario/master_input.hpp"
+#include "sim/hardware_loop/master_input.hpp"
 
 namespace proleg::test {
 

@@ -16,8 +16,8 @@
 #include "host/robot/findings.hpp"
 #include "host/robot/robot_drive.hpp"
 #include "shared/kernel/fingerprint.hpp"
+#include "sim/hardware_loop/master_input.hpp"
 #include "sim/live/live_robot.hpp"
-#include "sim/scenario/master_input.hpp"
 
 #include "live_bus.hpp"
 

@@ -9,7 +9,7 @@ import time
 import can
 
 FRAMES = 2000
-LONGEST_WAIT_S = 60
+LONGEST_WAIT_S = 300
 
 
 def frame(number, identifier):
@@ -37,8 +37,8 @@ def main():
             terminal = can.Bus(channel=name, ttyBaudrate=1000000, **options)
             network = can.Bus(channel=f"socket://127.0.0.1:{port}", **options)
             for bus in (terminal, network):
-                assert bus.get_version(5) == (10, 10), "the answer to V"
-                assert bus.get_serial_number(5) == "0000", "the answer to N"
+                assert bus.get_version(LONGEST_WAIT_S) == (10, 10), "the answer to V"
+                assert bus.get_serial_number(LONGEST_WAIT_S) == "0000", "the answer to N"
             for sender, receiver, identifier in ((terminal, network, 0x601), (network, terminal, 0x602)):
                 received = []
                 reader = threading.Thread(target=receive, args=(receiver, received))

@@ -45,7 +45,7 @@ Reception receive_without(const Bytes& sent, unsigned missing, std::mt19937& ran
   return reception;
 }
 
-/// Repair symbols that the decoder needs until the block is complete.
+/// Number of repair symbols that the decoder needs until the block is complete.
 unsigned repairs_needed(const Bytes& sent, Reception& reception, unsigned block) {
   BlockDecoder decoder;
   decoder.start(reception.bytes, reception.received, block);
@@ -70,7 +70,7 @@ TEST(BlockDecoderTest, CompletesABlockWhateverSymbolsAreMissing) {
   }
 }
 
-// Of random vectors over GF(2), n dimensions need n + 1.6067 on average (the constant of Erdos and Borwein).
+// Random vectors over GF(2) span n dimensions after n + 1.6067 of them on average (the constant of Erdos and Borwein).
 TEST(BlockDecoderTest, NeedsAsManyRepairSymbolsAsRandomEquationsDo) {
   std::mt19937 random(seed);
   constexpr unsigned missing = 30;
@@ -81,7 +81,7 @@ TEST(BlockDecoderTest, NeedsAsManyRepairSymbolsAsRandomEquationsDo) {
     Reception reception = receive_without(sent, missing, random);
     more += repairs_needed(sent, reception, static_cast<unsigned>(round)) - missing;
   }
-  // Their standard deviation is 1.66.
+  // The standard deviation of the numbers is 1.66.
   EXPECT_NEAR(more / rounds, 1.6067, 4 * 1.66 / std::sqrt(rounds));
 }
 
@@ -123,7 +123,7 @@ TEST(BlockDecoderTest, ChangesNothingOfACompleteBlock) {
   EXPECT_EQ(reception.bytes, sent);
 }
 
-// Why there are repair symbols: twelve modules, each without another tenth of all frames.
+// The purpose of repair symbols: twelve modules, each of which misses another tenth of all frames.
 TEST(BlockDecoderTest, TwelveReceiversWithATenthLostTakeAtMost30PercentMoreFrames) {
   std::mt19937 random(seed);
   std::bernoulli_distribution is_lost(0.1);

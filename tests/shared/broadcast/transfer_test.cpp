@@ -49,7 +49,7 @@ class ReceivingModule final : sim::BusListener, ReceiverOwner {
   [[nodiscard]] std::span<const std::uint8_t> image_header() const override { return {}; }
 };
 
-/// A host and some modules on a bus of their own.
+/// A host and some modules on their own bus.
 class Transfer final : sim::BusListener {
  public:
   /// Each receiver misses each frame with the probability `lost`.
@@ -65,7 +65,7 @@ class Transfer final : sim::BusListener {
     });
   }
 
-  /// Until all have the image. Its duration in seconds.
+  /// Runs until all modules have the image. Returns the duration in seconds.
   double send(const SenderOptions& options = {}) {
     sender = std::make_unique<ImageSender>(controller_, image_, targets, options);
     const BusTime begin = bus.now();
@@ -161,9 +161,9 @@ TEST(ImageTransfer, CompletesWithAnySizeAndManyLosses) {
 }
 
 TEST(ImageTransfer, CompletesWithBurstsOfLossThatAllModulesShare) {
-  // As an adapter whose queue is full: it drops frames of the host, of more than one block or of the end of a block
-  // and the beginning of the next.
-  constexpr unsigned longest_burst = 60'000;  // us: 400 symbols
+  // The frames are lost in bursts, as in an adapter whose queue is full: it drops frames of the host, of more than one
+  // block or of the end of a block and the beginning of the next.
+  constexpr unsigned longest_burst = 60'000;  // microseconds: 400 symbols
   for (std::uint32_t noise = 1; noise <= 60; ++noise) {
     SCOPED_TRACE(testing::Message() << "seed " << noise);
     std::mt19937 random(noise);
@@ -231,7 +231,7 @@ TEST(ImageTransfer, EndsWhenTheBusTakesNoFrames) {
   }
 }
 
-/// What a module answers to `select`.
+/// The answer of a module to `select`.
 StatusAnswer select(ImageReceiver& receiver, Microseconds now, std::uint8_t session) {
   return decode_status(receiver.receive(now, select_frame(session, 7)).value(), Code::select, 7).value();
 }
@@ -258,7 +258,7 @@ TEST(ImageReception, BelongsToOneHostUntilItIsOverOrThatHostIsSilent) {
   EXPECT_EQ(select(receiver, silent - 1, 6).session, 5);
   EXPECT_EQ(select(receiver, silent, 6).session, 6);
   EXPECT_EQ(receiver.state(), ReceiverState::selected);
-  // Another one may begin when this one has ended.
+  // Another session may begin when this one has ended.
   for (const CanFrame& frame : {begin_frame(6, 7), block_frame(6, 0, BlockKind::symbols), symbol_frame(0, {})}) {
     EXPECT_EQ(receiver.receive(silent, frame), std::nullopt);
   }
@@ -300,7 +300,7 @@ class BlockReception : public testing::Test {
     give(begin_frame(session, static_cast<std::uint32_t>(image.size())));
   }
   void give(const CanFrame& frame) { static_cast<void>(receiver.receive(0, frame)); }
-  /// Symbols of a block.
+  /// Sends symbols of a block.
   void give_symbols(unsigned block, unsigned first = 0, unsigned end = block_symbols) {
     const std::span<const std::uint8_t> bytes = block_of(std::span<const std::uint8_t>(image), block);
     for (unsigned number = first; number < end; ++number) {
@@ -370,12 +370,12 @@ TEST_F(BlockReception, TakesNoSymbolsBeforeTheChecksumOfAHostThatSendsThem) {
 }
 
 TEST_F(BlockReception, ComputesTheChecksumOfABlockOnce) {
-  // It takes longer than a frame, and other modules may need many repair symbols.
+  // A block may take longer than a frame, and other modules may need many repair symbols.
   begin_block(0);
   give_checksum(0);
   give_symbols(0);
   EXPECT_EQ(report().blocks, 1U);
-  buffer[0] ^= 1U;  // a second look would find that
+  buffer[0] ^= 1U;  // another check of the image would find that
   give(block_frame(session, 0, BlockKind::repairs));
   give_checksum(0);
   for (unsigned repair = 0; repair < 20; ++repair) {

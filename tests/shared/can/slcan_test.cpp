@@ -61,7 +61,7 @@ TEST(SlcanStatus, IsThatOfThePublishedExamples) {
   }
 }
 
-// Examples of the same file.
+// Examples of Linux, drivers/net/can/slcan/slcan-core.c.
 TEST(SlcanErrors, AreThoseOfThePublishedExamples) {
   CanErrors errors;
   EXPECT_EQ(format_slcan_errors(errors).view(), "e0");
@@ -79,7 +79,7 @@ TEST(SlcanErrors, AreThoseOfThePublishedExamples) {
   }
 }
 
-/// The lines that characters give; "<BEL>" and "<long>" for the other events.
+/// The lines that characters make; "<BEL>" and "<long>" stand for the other events.
 std::vector<std::string> lines_of(std::string_view characters) {
   SlcanLineReader reader;
   std::vector<std::string> lines;

@@ -9,7 +9,7 @@
 namespace proleg {
 namespace {
 
-/// A controller with some mailboxes; what it took is kept in order.
+/// A controller with some mailboxes, which keeps the frames that it took in order.
 class Mailboxes final : public CanPort {
  public:
   explicit Mailboxes(unsigned free) : free_(free) {}
@@ -22,7 +22,7 @@ class Mailboxes final : public CanPort {
     taken.push_back(frame);
     return true;
   }
-  /// One frame has gone out.
+  /// The controller has sent a frame.
   void release() { ++free_; }
 
   std::vector<CanFrame> taken;

@@ -9,9 +9,10 @@
 namespace proleg::canopen {
 namespace {
 
-/// Bits of a frame with `bytes` of data and the most stuff bits, with its interframe space: of the 34 + 8 bytes bits
-/// from start of frame to the end of the CRC sequence, at worst every fourth but the first is followed by one; 13 more
-/// are not stuffed: CRC delimiter, acknowledgement, end of frame and interframe space.
+/// Number of bits of a frame with `bytes` of data and the most stuff bits, with its interframe space. The 34 bits and
+/// the data from start of frame to the end of the CRC sequence can be stuffed: at worst a stuff bit follows every
+/// fourth of them but the first. The other 13 bits are not stuffed: CRC delimiter, acknowledgement, end of frame and
+/// interframe space.
 constexpr unsigned worst_bits(unsigned bytes) { return 34 + 8 * bytes + (34 + 8 * bytes - 1) / 4 + 13; }
 
 KernelConfiguration robot(unsigned joints, std::uint32_t tick_us = 10'000) {

@@ -12,7 +12,7 @@
 
 namespace proleg::test {
 
-/// A device that keeps what is written and checks that the server calls it as it promises.
+/// A device that keeps written values and checks that the server calls it as documented.
 class DeviceMemory final : public canopen::ObjectAccess {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -96,7 +96,7 @@ class DeviceMemory final : public canopen::ObjectAccess {
     ++cancellations;
   }
 
-  /// As written, else the default.
+  /// The value as it was written, else the default.
   [[nodiscard]] std::uint32_t value(canopen::Address address) const {
     const auto found = values.find(key(address));
     return found != values.end() ? found->second : canopen::find_object(address)->default_value;
@@ -115,11 +115,11 @@ class DeviceMemory final : public canopen::ObjectAccess {
   std::map<Key, std::uint32_t> values;
   std::map<Key, Bytes> long_values;
   canopen::AbortCode refusal = canopen::AbortCode::none;            ///< answer to everything
-  canopen::AbortCode close_refusal = canopen::AbortCode::none;      ///< of close_write()
-  std::size_t fails_at = ~std::size_t{0};                           ///< a part beyond this byte fails ...
-  canopen::AbortCode failure = canopen::AbortCode::hardware_error;  ///< with this
+  canopen::AbortCode close_refusal = canopen::AbortCode::none;      ///< answer to close_write()
+  std::size_t fails_at = ~std::size_t{0};                           ///< access to a part beyond this byte fails
+  canopen::AbortCode failure = canopen::AbortCode::hardware_error;  ///< answer to such an access
   bool is_open = false;
-  Bytes written;  ///< since open_write()
+  Bytes written;  ///< bytes that were written since open_write()
   unsigned reads = 0;
   unsigned writes = 0;
   unsigned cancellations = 0;

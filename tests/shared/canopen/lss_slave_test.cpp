@@ -1,4 +1,4 @@
-// The slave of the layer setting services, byte by byte as CiA 305 has it.
+// The slave of the layer setting services, byte by byte as CiA 305 defines it.
 
 #include "shared/canopen/lss_slave.hpp"
 
@@ -28,7 +28,7 @@ struct Storage final : LssStorage {
 
 class LssSlaveTest : public testing::Test {
  protected:
-  /// The answer's data; nothing: there was none.
+  /// Data of the answer; nothing without an answer.
   std::optional<Bytes> ask(const Bytes& data) {
     const std::optional<CanFrame> answer = slave.serve({0x7E5, 8, data}, slave_address, node, storage);
     if (!answer) {
@@ -76,7 +76,7 @@ TEST_F(LssSlaveTest, SwitchStateSelectiveSelectsNoOtherSlave) {
       request[1] ^= i == wrong ? 1U : 0U;
       EXPECT_EQ(ask(request), std::nullopt);
     }
-    for (std::size_t i = 0; i < 4; ++i) {  // one is missing
+    for (std::size_t i = 0; i < 4; ++i) {  // one of the four numbers is missing
       if (i != wrong) {
         EXPECT_EQ(ask(right.at(i)), std::nullopt);
       }

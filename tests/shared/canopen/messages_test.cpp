@@ -12,7 +12,8 @@ namespace {
 
 using test::frame;
 
-/// The message is that frame, the frame is that message, and docs/protocol.md has it as an example.
+/// Checks that the message encodes to that frame, that the frame decodes to that message, and that docs/protocol.md has
+/// it as an example.
 template <typename Message>
 void expect_example(const std::string& text, const Message& message,
                     const std::function<std::optional<Message>(const CanFrame&)>& decode) {
@@ -82,7 +83,7 @@ TEST(Messages, AMonitoredAngleIsRoundedHalfUpAndMarkedIfNotMeasured) {
   EXPECT_EQ(monitored_angle(-0x7FFFFFFF - 1), -0x7FFF) << "the minimum, which is not the mark";
 }
 
-/// Every message with a decoder, behind one face: decodes and encodes again.
+/// Every message with a decoder, behind the same interface: it decodes and encodes again.
 struct Codec {
   const char* name;
   std::function<std::optional<CanFrame>(const CanFrame&)> recode;
@@ -117,7 +118,7 @@ const std::vector<Codec>& codecs() {
 bool is_command(const CanFrame& frame) {
   return frame.identifier > identifier::command && frame.identifier <= identifier::command + max_node_id;
 }
-/// CiA 301, 7.2.2.5.1: of a PDO that is longer than its mapping, the mapped part is taken.
+/// If a PDO is longer than its mapping, the mapped part is used (CiA 301, 7.2.2.5.1).
 CanFrame mapped_part(CanFrame frame) {
   if (is_command(frame)) {
     frame.length = std::min<std::uint8_t>(frame.length, 6);

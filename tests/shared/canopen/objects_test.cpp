@@ -55,7 +55,7 @@ TEST(DataTypes, HaveTheSizesAndRangesOfTheirNames) {
   }
 }
 
-// What any CANopen tool expects to find: CiA 301 and CiA 402.
+// Entries that any CANopen tool expects (CiA 301 and CiA 402).
 TEST(ObjectDictionary, HasTheStandardsObjects) {
   struct Case {
     Address address;

@@ -16,7 +16,7 @@ struct DriveCommand {
   unsigned mask;
   unsigned value;
 };
-// CiA 402, "Command coding". Bit 7 of a fault reset is looked at apart: its edge counts.
+// CiA 402, "Command coding". Bit 7 of a fault reset is tested separately: its edge counts.
 constexpr DriveCommand shutdown{"shutdown", 0x87, 0x06};
 constexpr DriveCommand switch_on{"switch on", 0x8F, 0x07};
 constexpr DriveCommand enable_operation{"enable operation", 0x8F, 0x0F};
@@ -50,7 +50,7 @@ constexpr Transition transitions[] = {
 constexpr PowerState states[] = {switch_on_disabled, ready_to_switch_on, switched_on,
                                  operation_enabled,  quick_stop_active,  fault};
 
-/// A drive in a state, the last controlword having had bit 7 or not.
+/// A drive in a state. reset_bit: whether the last controlword had bit 7.
 PowerControl drive_in(PowerState state, bool reset_bit = false) {
   PowerControl drive;
   if (state != switch_on_disabled && state != fault) {
@@ -68,7 +68,7 @@ PowerControl drive_in(PowerState state, bool reset_bit = false) {
   if (reset_bit && state != fault && state != quick_stop_active) {
     drive.command(static_cast<std::uint16_t>(drive.controlword() | 0x80U));
   } else if (reset_bit) {
-    // The bit is set first and the cause comes afterwards.
+    // The bit is set first, and the cause comes afterwards.
     drive = drive_in(state == fault ? switch_on_disabled : operation_enabled, true);
     state == fault ? drive.fault() : drive.quick_stop();
   }
@@ -126,7 +126,7 @@ TEST(PowerState, QuickStopTakesAPersonToEnd) {
   drive.quick_stop();
   EXPECT_EQ(drive.state(), quick_stop_active);
   for (int i = 0; i < 3; ++i) {
-    drive.command(0x000F);  // as it comes with every direct position
+    drive.command(0x000F);  // the controlword that comes with every direct position
     EXPECT_EQ(drive.state(), quick_stop_active);
   }
   drive.command(0x0080);

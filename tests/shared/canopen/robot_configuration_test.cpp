@@ -11,7 +11,7 @@
 namespace proleg::canopen {
 namespace {
 
-/// A robot with the memory behind its span.
+/// A robot with the memory for its span.
 struct Robot {
   [[nodiscard]] std::uint32_t crc() {
     configuration.kernel.joint_count = static_cast<std::uint8_t>(nodes.size());

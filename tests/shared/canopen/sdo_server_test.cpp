@@ -13,7 +13,7 @@ using test::text;
 
 class SdoService : public testing::Test {
  protected:
-  /// The answer of node 3, as text; "" if there is none.
+  /// The answer of node 3 as text; "" without an answer.
   std::string answer(const std::string& request) {
     const std::optional<CanFrame> reply = server.receive(0, frame(request));
     return reply ? text(*reply) : "";

@@ -26,12 +26,12 @@ class SdoFrames : public testing::Test {
     device.set_text({0x1008, 0}, "Proleg joint module");
   }
 
-  /// The answer of node 3, as text; "" if there is none.
+  /// The answer of node 3 as text; "" without an answer.
   std::string answer(const std::string& request) {
     const std::optional<CanFrame> reply = server.receive(now, frame("603 [8] " + request));
     return reply ? text(*reply).substr(8) : "";
   }
-  /// The same, of frames that docs/protocol.md has as an example.
+  /// The answer of node 3, if docs/protocol.md has the request and the answer as examples.
   std::string documented_answer(const std::string& request) {
     EXPECT_TRUE(test::is_documented("603 [8] " + request)) << request;
     const std::string reply = answer(request);

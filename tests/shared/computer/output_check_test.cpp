@@ -24,7 +24,7 @@ class OutputCheck : public testing::Test {
   [[nodiscard]] static PlannedOutput output(const fs::path& path, const std::string& option = "--out") {
     return {option, path, "note", starts_with("note")};
   }
-  /// The message for these outputs; empty if they are accepted.
+  /// The message of the check for these outputs; empty if they are accepted.
   [[nodiscard]] static std::string refusal(const std::vector<PlannedOutput>& outputs) {
     return message_of<InputError>([&] { check_outputs(outputs); });
   }

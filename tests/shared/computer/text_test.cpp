@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -15,7 +16,8 @@ TEST(Text, Utf8IsThatOfRfc3629) {
                            "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
     EXPECT_FALSE(find_invalid_utf8(good).has_value()) << testing::PrintToString(good);
   }
-  // Continuation alone, cut short, longer than needed, surrogates, beyond U+10FFFF, bytes that never occur.
+  // Bytes that are no UTF-8: a continuation alone, cut short, longer than needed, surrogates, beyond U+10FFFF, bytes
+  // that never occur.
   for (const char* bad :
        {"\x80", "\xC2", "\xC2\x41", "\xC0\x80", "\xC1\xBF", "\xE0\x80\x80", "\xE0\x9F\xBF", "\xE2\x82", "\xED\xA0\x80",
         "\xED\xBF\xBF", "\xF0\x80\x80\x80", "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "\xFE", "\xFF"}) {
@@ -113,6 +115,31 @@ TEST(Text, TheMostSimilarWordTakesTheFewestChanges) {
   EXPECT_EQ(most_similar("x", known), std::nullopt);
   EXPECT_EQ(most_similar("", known), std::nullopt);
   EXPECT_EQ(most_similar("reset", {}), std::nullopt);
+}
+
+TEST(TableLine, HasTabsBetweenCellsAndALineEnd) {
+  TableLine line;
+  line.add("tick");
+  line.add(std::uint64_t{18446744073709551615U});
+  line.add(0.1);
+  EXPECT_EQ(line.finish(), "tick\t18446744073709551615\t0.1\n");
+}
+
+TEST(TableLine, IsEmptyAgainAfterItsEnd) {
+  TableLine line;
+  line.add("first");
+  EXPECT_EQ(line.finish(), "first\n");
+  line.add("second");
+  EXPECT_EQ(line.finish(), "second\n");
+}
+
+TEST(TableLine, LeavesACellEmptyForANumberThatIsNotFinite) {
+  TableLine line;
+  line.add(1U);
+  line.add(NAN);
+  line.add(INFINITY);
+  line.add(2U);
+  EXPECT_EQ(line.finish(), "1\t\t\t2\n");
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace {
 
 std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
-/// The definition: the remainder of a division of polynomials, bit by bit, not reflected; bits of bytes and of the
-/// result are turned round instead.
+/// The checksum by its definition: the remainder of a division of polynomials, bit by bit, not reflected. Bits of bytes
+/// and of the result are reversed instead.
 std::uint32_t by_definition(const std::vector<std::uint8_t>& bytes) {
   const auto turned = [](std::uint32_t value, unsigned bits) {
     std::uint32_t result = 0;

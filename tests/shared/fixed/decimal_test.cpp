@@ -20,7 +20,7 @@ constexpr std::int32_t highest = std::numeric_limits<std::int32_t>::max();
 constexpr Unit all_units[] = {Unit::degree,     Unit::phase_degree, Unit::hertz,
                               Unit::per_second, Unit::ratio,        Unit::count};
 
-/// What a unit is worth, from its documentation and not from scale_of: steps = value * numerator / denominator.
+/// The scale of a unit, from its documentation and not from scale_of(): steps = value * numerator / denominator.
 struct Worth {
   Wide numerator;
   Wide denominator;

@@ -19,7 +19,7 @@ double error_in_steps(std::int32_t x) {
 
 TEST(ExponentialDecay, ErrsByAtMostTwoStepsOfQ30) {
   double largest = 0;
-  // Up to 2, where filters work, densely; then all the way to 128.
+  // Values up to 2, where filters work, are dense; then they go to 128.
   for (std::int32_t x = 0; x < 2 << 24; x += 7) {
     largest = std::max(largest, error_in_steps(x));
   }

@@ -51,12 +51,12 @@ TEST(Pcg32, DrawsUniformlyBelowABound) {
     for (const double count : histogram) {
       chi_squared += (count - 20000) * (count - 20000) / 20000;
     }
-    // Mean bound - 1, deviation sqrt(2 (bound - 1)); five deviations.
+    // The statistic has the mean bound - 1 and the deviation sqrt(2 (bound - 1)); five deviations are allowed.
     EXPECT_LE(chi_squared, bound - 1 + 5 * std::sqrt(2.0 * (bound - 1))) << "bound " << bound;
   }
 }
 
-// Taking the remainder alone would hit the lower third of this range twice as often.
+// The remainder alone would hit the lower third of this range twice as often.
 TEST(Pcg32, DrawsWithoutBiasBelowALargeBound) {
   constexpr std::uint32_t bound = 3U << 30U;
   Pcg32 random(5, 5);

@@ -29,7 +29,7 @@ struct Findings {
   std::uint64_t beyond_crest = 0;
 };
 
-/// Inputs first..last of the rising quarter, and their images in the other three.
+/// Checks inputs first..last of the rising quarter, and their images in the other three.
 Findings sweep(std::uint32_t first, std::uint32_t last) {
   Findings found;
   std::int32_t highest = sine(first);

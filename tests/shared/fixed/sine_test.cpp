@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int32_t one = 1 << 30;
 constexpr std::uint32_t quarter = 0x40000000U;
-// A prime, so that the sweep meets every residue of the smaller powers of two.
+// Step of the sweep. It is a prime, so that the sweep meets every residue of the smaller powers of two.
 constexpr std::uint32_t stride = 421;
 
 long double true_sine(std::uint32_t phase) {

@@ -36,7 +36,7 @@ class CompoundSerpenoid : public testing::Test {
 
   void set(std::string_view name, std::int32_t value) { test::set_all(kernel, 0, name, value); }
 
-  /// Plays from tick 400, when all filters have settled, against the equation.
+  /// Compares the joints with the equation from tick 400 on, when all filters have settled.
   void expect_the_two_waves(unsigned parity, double slope) {
     kernel.reset();
     test::run(kernel, 400);

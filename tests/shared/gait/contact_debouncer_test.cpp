@@ -9,7 +9,7 @@
 namespace proleg {
 namespace {
 
-/// One sensor, by the rule's words: counts the equal samples in a row that differ from what is accepted.
+/// One sensor, by the text of the rule: it counts the equal samples in a row that differ from the accepted value.
 class SlowModel {
  public:
   bool sample(bool raw) {

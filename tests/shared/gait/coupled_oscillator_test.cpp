@@ -31,7 +31,7 @@ class CoupledOscillator : public testing::Test {
     return test::value(kernel, 0, joint, name);
   }
 
-  /// The model with default parameters in the kernel's present state.
+  /// The model with default parameters, in the kernel's present state.
   [[nodiscard]] test::OscillatorModel model() const {
     test::OscillatorModel result;
     for (unsigned joint = 0; joint < robot_joints; ++joint) {
@@ -225,7 +225,7 @@ TEST_F(CoupledOscillator, CouplesAcrossJointsThatTheGroupLeavesOut) {
   EXPECT_EQ(kernel.setpoint(1), 0);
 }
 
-// Without the neighbours' amplitude in the coupling, a joint at rest still hands the wave on.
+// The coupling does not contain the neighbours' amplitude, so a joint at rest still passes the wave on.
 TEST_F(CoupledOscillator, HandsTheWaveOnThroughAJointAtRest) {
   test::set(kernel, 0, 2, "amplitude", 0);
   kernel.reset();

@@ -112,7 +112,7 @@ TEST(Declaration, HasDefaultsWithinItsRanges) {
   });
 }
 
-// Thesis, table 3.1.
+// Ranges of the thesis, table 3.1.
 TEST(Declaration, KeepsAnglesWithinNinetyDegrees) {
   for_each_algorithm([](const ActuationModule& algorithm) {
     for (const Parameter& parameter : algorithm.declaration().parameters) {

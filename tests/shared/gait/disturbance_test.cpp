@@ -1,4 +1,4 @@
-// What losses and distortions do to gaits.
+// The effect of losses and distortions on gaits.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ double lag_error(ModuleChain& chain) {
   return largest;
 }
 
-// Thesis listing A.2, setDistortion.
+// A distortion, thesis listing A.2, setDistortion.
 TEST(Distortion, OfAPhaseIsOvercomeByTheCoupledGait) {
   ModuleChain chain(configuration_of(test::coupled));
   for (int tick = 0; tick < 1000; ++tick) {
@@ -99,7 +99,7 @@ TEST(LostFrame, IsReplacedByTheLastOneWithThePhaseAdvancedByTheOwnIncrement) {
     losing.tick();
     supplied.tick();
   }
-  // One tick in which both hear everything; the frame of joint 1 is kept as joint 2 heard it.
+  // There is one tick in which both joints receive all frames. The frame of joint 1 is kept as joint 2 received it.
   const StateFrame last = losing[1].frame(1, 0);
   losing.tick();
   supplied.tick();

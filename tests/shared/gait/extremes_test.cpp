@@ -1,4 +1,4 @@
-// The corners of what users can set. Under the sanitizers these tests also look for overflow.
+// The extreme values that users can set. Under the sanitizers these tests also find overflow.
 
 #include <gtest/gtest.h>
 

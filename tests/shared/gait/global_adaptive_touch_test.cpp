@@ -13,7 +13,7 @@ namespace {
 
 using test::robot_joints;
 using test::robot_links;
-using Links = std::array<bool, robot_links>;  // whether each touches, head first
+using Links = std::array<bool, robot_links>;  // whether each link touches, head first
 
 Links links_of(unsigned pattern) {
   Links links{};
@@ -41,7 +41,7 @@ double offset(const Kernel& kernel, unsigned joint) {
   return test::in_degrees(test::value(kernel, 0, joint, "offset"));
 }
 
-/// The direction in which a stuck joint bends, by the words of the documentation: 1 is up. `gait` decides without a
+/// The direction in which a stuck joint bends, by the text of the documentation: 1 is up. `gait` decides if there is no
 /// difference.
 int direction(const Links& links, unsigned joint, double gait) {
   const int inner = int{links[joint]} + int{links[joint + 1]};
@@ -55,7 +55,7 @@ int direction(const Links& links, unsigned joint, double gait) {
   return gait < 0 ? -1 : 1;
 }
 
-/// Number of the constant, 1 to 8.
+/// Number of the constant for a joint, 1 to 8.
 unsigned constant_of(const Links& links, unsigned joint, int direction) {
   const unsigned touch_state = (links[joint] ? 2U : 0U) + (links[joint + 1] ? 1U : 0U);
   return touch_state + (direction > 0 ? 1 : 5);
@@ -106,7 +106,7 @@ TEST(GlobalAdaptiveTouch, FollowsItsDescriptionInDoublePrecision) {
       Model& model = models[joint];
       model.joint = joint;
       model.tick_ms = tick_us * 1e-3;
-      // Whole ticks: where the documentation leaves the rounding open.
+      // The time is whole ticks: the documentation does not define the rounding.
       model.threshold_ms = std::ceil(any(1, 30)) * model.tick_ms;
       model.give_up_ms = std::ceil(any(50, 300)) * model.tick_ms;
       model.recovering = any(0, 2);

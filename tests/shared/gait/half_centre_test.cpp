@@ -43,7 +43,7 @@ TEST_F(HalfCentre, HasThePeriodOfTheClosedForm) {
   }
 }
 
-// From -h at time 0: s = 1 - (1 + h) exp(-t / tau).
+// The solution from -h at time 0 is s = 1 - (1 + h) exp(-t / tau).
 TEST_F(HalfCentre, FollowsTheClosedFormBetweenItsTurns) {
   for (const double constants : {0.5, 2.0, 4.0}) {
     test::set_all(kernel, 0, "coupling", 0);

@@ -19,7 +19,7 @@ using test::in_degrees;
 using test::ModuleChain;
 using test::robot_joints;
 
-constexpr std::uint32_t one_hertz_step = 42'949'673;  // of 1 Hz in ticks of 10 ms
+constexpr std::uint32_t one_hertz_step = 42'949'673;  // phase step of 1 Hz in ticks of 10 ms
 constexpr std::uint8_t head_front = StateFrame::contact_far_link_front;
 constexpr std::uint8_t head_rear = StateFrame::contact_far_link_rear;
 
@@ -30,7 +30,7 @@ class HeadStimulus : public testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(kernel_.configure(configuration(), 0), Status::ok); }
 
-  /// contacts: of the head's joint at this SYNC.
+  /// Advances a tick. contacts: of the head's joint at this SYNC.
   void tick(std::uint8_t contacts = 0) {
     kernel_.set_contacts(0, contacts);
     kernel_.advance();
@@ -122,7 +122,7 @@ TEST_F(HeadStimulus, FollowsItsEquationThroughRandomTouches) {
     }
   }
   EXPECT_GT(left + std::abs(n), 0);
-  // Half a step of phase a tick, as the plain sine.
+  // The error is half a step of phase in a tick, as for the plain sine.
   EXPECT_LE(largest, 40 * 5000 * 4.2e-8 * std::numbers::pi / 180 + 1e-6);
   std::cout << "seed 152: largest error " << largest << " degrees\n";
 }

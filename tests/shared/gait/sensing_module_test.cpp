@@ -20,7 +20,7 @@ using test::robot_links;
 constexpr InternalValue internal_values[] = {{"seen", Unit::count, 0, "two bits a link, head first"}};
 constexpr Declaration about{120, "ContactProbe", "test", {}, internal_values, {}};
 
-/// Remembers the contacts it was given.
+/// Keeps the contacts that it was given.
 class ContactProbe final : public SensingModule {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about; }
@@ -45,7 +45,7 @@ class ContactProbe final : public SensingModule {
 
 constexpr ContactProbe probe;
 
-/// What a joint reports of the bitmap of all links: its rear link, and the head's joint the head link as well.
+/// The bits that a joint reports of the bitmap of all links: its rear link, and in the head's joint the head link, too.
 std::uint8_t reported(std::uint32_t bitmap, unsigned joint) {
   const std::uint32_t rear_link = (bitmap >> (2 * (joint + 1))) & 3U;
   const std::uint32_t far_link = joint == 0 ? bitmap & 3U : 0U;
@@ -127,7 +127,7 @@ constexpr InternalValue reading_values[] = {{"present", Unit::count, 0, "bits"},
                                             {"up", Unit::count, 0, "mm/s^2"}};
 constexpr Declaration about_readings{119, "ReadingProbe", "test", {}, reading_values, {}};
 
-/// Remembers the readings that it was given.
+/// Keeps the readings that it was given.
 class ReadingProbe final : public ActuationModule {
  public:
   explicit constexpr ReadingProbe(std::uint8_t sensors) : sensors_(sensors) {}
@@ -168,7 +168,7 @@ TEST(Readings, AreThoseOfTheJointsOwnModule) {
   ASSERT_EQ(kernel.configure(test::one_slot(reading_probe, robot_joints), 0), Status::ok);
   EXPECT_EQ(kernel.needed_readings(2), current_and_inclination);
   kernel.set_readings(2, all_readings());
-  kernel.set_readings(robot_joints, all_readings());  // of no local joint: ignored
+  kernel.set_readings(robot_joints, all_readings());  // no local joint has this number: the call is ignored
   kernel.advance();
   EXPECT_EQ(given_to(kernel, 0, 2), (std::array<std::int32_t, 4>{current_and_inclination, 321, 45, 0}));
   EXPECT_EQ(given_to(kernel, 0, 1), (std::array<std::int32_t, 4>{})) << "another module's";

@@ -123,7 +123,7 @@ TEST(StateFrame, CarriesTheLowBytesOfCountsAndSaturatesThem) {
   EXPECT_EQ(unpack(narrowest, 2, packed(narrowest, {0, 0, 256})), 255);
 }
 
-// What was heard and is sent again must not change, or a neighbour's neighbour would see something else.
+// A value that was received and is sent again must not change, or a neighbour's neighbour would receive another value.
 TEST(StateFrame, IsUnchangedByUnpackingAndPackingAgain) {
   std::mt19937 random(4);
   for (const Declaration* declaration : {&narrow, &narrowest, &full, &wide}) {

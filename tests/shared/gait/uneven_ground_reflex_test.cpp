@@ -15,7 +15,7 @@ namespace {
 using test::robot_joints;
 using test::robot_links;
 
-/// Two bits a link, head first: rear sensor, front sensor.
+/// Contacts of all links, head first, two bits for each: rear sensor, front sensor.
 template <std::size_t JointCount>
 void touch(KernelOf<JointCount>& kernel, std::uint64_t sensors) {
   for (unsigned joint = 0; joint < JointCount; ++joint) {
@@ -24,7 +24,7 @@ void touch(KernelOf<JointCount>& kernel, std::uint64_t sensors) {
   }
 }
 
-/// One bit a link, head first, to the sensors' bits; either sensor in turn, so that each counts.
+/// Turns one bit for each link, head first, into the bits of sensors: either sensor in turn, so that each counts.
 std::uint64_t by_alternating_sensors(unsigned touched) {
   std::uint64_t sensors = 0;
   for (unsigned link = 0; link < robot_links; ++link) {
@@ -33,7 +33,7 @@ std::uint64_t by_alternating_sensors(unsigned touched) {
   return sensors;
 }
 
-/// The declared condition by its words: a pair of touched links at most `reach` places apart.
+/// The condition by the text of the declaration: a pair of touched links at most `reach` places apart.
 bool is_uneven(unsigned touched, unsigned reach) {
   for (unsigned a = 0; a < robot_links; ++a) {
     for (unsigned b = a + 1; b < robot_links; ++b) {
@@ -53,7 +53,7 @@ double offset(const Kernel& kernel, unsigned joint = 2) {
   return test::in_degrees(test::value(kernel, 0, joint, "offset"));
 }
 
-/// Contacts are a tick old, and must last for two.
+/// Number of ticks until contacts have an effect: they are a tick old, and must last for two.
 constexpr unsigned until_it_acts = 3;
 
 constexpr unsigned flat = 0b100001;    // head and tail

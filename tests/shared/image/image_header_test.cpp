@@ -40,7 +40,7 @@ Header header_of(const std::vector<std::uint8_t>& body) {
   return header;
 }
 
-/// With the CRC that belongs to the bytes, as someone who wants to deceive would send it.
+/// Gives bytes the CRC that belongs to them, as an attacker would do.
 HeaderBytes with_right_crc(HeaderBytes bytes) {
   write_little_endian(bytes, 508, 4, crc32(std::span(bytes).first(508)));
   return bytes;
@@ -53,7 +53,7 @@ TEST(ImageHeader, IsReadAsItWasWritten) {
   EXPECT_EQ(result.header, header);
 }
 
-// As the header's description lists them: other people's tools read the same bytes.
+// The positions are those of the header's description, because other tools read the same bytes.
 TEST(ImageHeader, HasItsValuesAtFixedPlaces) {
   const std::vector<std::uint8_t> body = random_body(400, 2);
   const HeaderBytes bytes = encode(header_of(body));
@@ -92,7 +92,7 @@ TEST(ImageHeader, IsRefusedWithAnyPartMissing) {
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     ASSERT_EQ(decode(std::span(bytes).first(size)).error, Error::too_short) << size;
   }
-  // Written to erased flash, and cut off at any word.
+  // The header is written to erased flash, and the write is cut off at any word.
   for (std::size_t size = 0; size < bytes.size(); size += 4) {
     HeaderBytes cut = bytes;
     std::fill(cut.begin() + static_cast<std::ptrdiff_t>(size), cut.end(), std::uint8_t{0xFF});

@@ -13,7 +13,7 @@ namespace {
 
 std::string digits_of(const std::vector<std::uint8_t>& bytes) { return hexadecimal_digits(sha256(bytes)); }
 
-/// What libsodium says.
+/// The hash by libsodium.
 std::string expected_digits(const std::vector<std::uint8_t>& bytes) {
   return sha256_hex(std::string(bytes.begin(), bytes.end()));
 }

@@ -231,7 +231,7 @@ TEST_F(Staging, RefusesWhatSettingRefusesAndChangesNothing) {
   }
 }
 
-// A refused value does not drop the transaction that it came with or before.
+// A rejected value does not drop the transaction that it belongs to, nor the one before.
 TEST_F(Staging, KeepsTheOtherValuesWhenOneIsRefused) {
   ASSERT_EQ(kernel.stage(1, 0, 0, amplitude, test::degrees(20)), Status::ok);
   ASSERT_EQ(kernel.stage(2, 0, 0, amplitude, -1), Status::out_of_range);

@@ -13,7 +13,7 @@ namespace {
 
 using test::ModuleChain;
 
-/// A robot of random size, slots, groups and tick.
+/// A robot with random size, slots, groups and tick.
 KernelConfiguration random_configuration(std::mt19937& random) {
   constexpr std::uint32_t periods[] = {1'000, 10'000, 31'000, 100'000};
   KernelConfiguration configuration;
@@ -72,7 +72,7 @@ void expect_identical(const Kernel& whole, ModuleChain& chain) {
   }
 }
 
-// With commits, contacts and distortions on the way; frames and modules come in a new order every tick.
+// There are commits, contacts and distortions on the way; frames and modules have another order in every tick.
 TEST(FrameExchange, MakesModulesEqualOneKernelForAllJointsToTheLastBit) {
   for (unsigned seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -9,7 +9,7 @@
 namespace proleg {
 namespace {
 
-/// Runs a chain and, beside it, the same chain of which one module restarts at `lost` and joins at `joined`.
+/// Runs a chain and a second one in which a module restarts at `lost` and joins at `joined`.
 class Join : public testing::TestWithParam<unsigned> {
  protected:
   static constexpr unsigned joints = 5;
@@ -48,7 +48,7 @@ class Join : public testing::TestWithParam<unsigned> {
     }
   }
 
-  /// The first tick of the joined module: it knows its neighbours and they do not know it yet.
+  /// Runs the first tick of the joined module, in which it knows its neighbours and they do not know it yet.
   void first_tick() {
     exchange_without_restarted();
     chain->advance();
@@ -88,7 +88,7 @@ TEST_P(Join, BringsTheExtendedSineWithinAStepOfThePhase) {
   }
 }
 
-// It starts beside its neighbours, so that no joint is pulled far away.
+// The module starts beside its neighbours, so that no joint is pulled far away.
 TEST_P(Join, LeavesCoupledOscillatorsWithinADegreeOfPhase) {
   restart(test::one_slot(test::algorithm(test::coupled), joints));
   first_tick();
@@ -115,7 +115,7 @@ TEST_P(Join, IsFlaggedInTheFirstFrameOnly) {
 
 INSTANTIATE_TEST_SUITE_P(EveryPlace, Join, testing::Values(0U, 2U, 4U));
 
-// Commits that were made for ticks that passed meanwhile: the parameters as everybody has them, in the order of ticks.
+// Commits for ticks that passed meanwhile give the parameters that all other modules have, in the order of ticks.
 TEST(JoinAfterCommits, CatchesUpWithTheParameters) {
   KernelOf<1> kernel;
   ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::coupled), 1), 0), Status::ok);

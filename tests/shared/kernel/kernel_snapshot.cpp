@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-// One list of what makes up the state serves writing, checking and reading. Little-endian, no padding.
+// Writing, checking and reading use the same list of the values in the state. They are little-endian, without padding.
 
 namespace proleg {
 namespace {
@@ -70,7 +70,7 @@ class Reader {
     }
   }
 
-  /// Read in both passes, into a copy.
+  /// The value is read in both passes, into a copy.
   template <typename Integer>
   void local(Integer& value) {
     value = read<Integer>();

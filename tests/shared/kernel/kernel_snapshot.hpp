@@ -8,12 +8,12 @@
 
 namespace proleg {
 
-/// The whole state of a kernel, parameters included, as bytes that are the same on every machine. The list of what
-/// belongs to the state is the test's own: a kernel that holds more would not continue bit for bit from a snapshot.
+/// The whole state of a kernel, parameters included, as bytes that are the same on every computer. The list of values
+/// in the state is the test's own: a kernel that holds more would not continue bit for bit from a snapshot.
 class KernelSnapshot {
  public:
   [[nodiscard]] static std::vector<std::uint8_t> save(const Kernel& kernel);
-  /// False, and the kernel stays as it was, for bytes that save() cannot have written for a kernel with this
+  /// Restores a state. False, without an effect, for bytes that save() cannot have written for a kernel with this
   /// configuration and these local joints.
   [[nodiscard]] static bool restore(Kernel& kernel, std::span<const std::uint8_t> snapshot);
 

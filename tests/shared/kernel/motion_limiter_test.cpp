@@ -1,4 +1,4 @@
-// The bounds of what a servo is commanded to. Oracle: the definition in degrees and seconds, in double precision.
+// The bounds of commanded angles. Oracle: the definition in degrees and seconds, in double precision.
 
 #include "shared/kernel/motion_limiter.hpp"
 

@@ -1,4 +1,4 @@
-// The worked examples of docs/protocol.md are what the kernel sends.
+// The kernel sends the worked examples of docs/protocol.md.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace proleg {
 namespace {
 
-/// "183 [8] 8E E3 ...", as candump writes a frame.
+/// Text of a frame as candump writes it: "183 [8] 8E E3 ...".
 std::string as_text(const char* identifier, const StateFrame& frame) {
   std::string text = std::string(identifier) + " [8]";
   for (const std::uint8_t byte : frame.bytes) {

@@ -24,7 +24,7 @@ class ModuleChain {
   [[nodiscard]] Kernel& operator[](unsigned joint) { return *modules_[joint]; }
   [[nodiscard]] unsigned size() const { return static_cast<unsigned>(modules_.size()); }
 
-  /// Hands every frame labelled with the coming tick to every other module, except those that `loses` selects.
+  /// Passes every frame labelled with the coming tick to every other module, except those that `loses` selects.
   template <typename Loses>
   void exchange(Loses loses) {
     for (const unsigned receiver : order_) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Short names for what the tests of gaits and of the kernel do all the time.
+// Short names for things that the tests of gaits and of the kernel use often.
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@ class WaveMeter {
   /// level: in degrees.
   explicit WaveMeter(double level = 0) : level_(level) {}
 
-  /// The angle of the coming time, one unit of time after the one before; in degrees.
+  /// Takes the angle [degrees] at the next time, one unit of time after the one before.
   void add(double angle) {
     if (time_ > 0 && before_ < level_ && angle >= level_) {
       rises_.push_back(time_ - 1 + (level_ - before_) / (angle - before_));
@@ -29,7 +29,7 @@ class WaveMeter {
   }
 
   [[nodiscard]] std::size_t periods() const { return rises_.empty() ? 0 : rises_.size() - 1; }
-  /// Mean, in units of time.
+  /// Mean period, in units of time.
   [[nodiscard]] double period() const {
     return periods() == 0 ? std::numeric_limits<double>::infinity()
                           : (rises_.back() - rises_.front()) / static_cast<double>(periods());
@@ -37,7 +37,7 @@ class WaveMeter {
   [[nodiscard]] double lowest() const { return lowest_; }
   [[nodiscard]] double highest() const { return highest_; }
 
-  /// Phase of this wave minus phase of another of about the same period, in degrees: the mean over all rises.
+  /// Phase of this wave minus that of another wave of about the same period, in degrees: the mean over all rises.
   [[nodiscard]] double lead_over(const WaveMeter& other) const {
     double sines = 0;
     double cosines = 0;

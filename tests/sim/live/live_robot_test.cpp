@@ -15,8 +15,8 @@
 #include "shared/kernel/fingerprint.hpp"
 #include "shipped.hpp"
 #include "sim/fault/fault_reader.hpp"
+#include "sim/hardware_loop/master_input.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/scenario/master_input.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "shipped.hpp"
-#include "sim/loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/measure/body_wave.hpp"
 #include "sim/measure/measure.hpp"
@@ -249,24 +248,6 @@ TEST(GaitMeasures, DutyFactorsAreThoseOfTheContacts) {
     sum += factors[link];
   }
   EXPECT_NEAR(simulation.measures()[Measure::duty_factor], sum / 6, 1e-12);
-}
-
-// With the odd periods, pulses start between the start of a tick's last step and the end of the tick.
-TEST(GaitMeasures, AreTheSameWithModulesInTheLoop) {
-  Scenario scenario = shipped("travelling_wave/coupled");
-  for (const std::uint32_t servo_period_us : {700U, 981U, 1'999U, 3'333U, scenario.robot.servo.period_us}) {
-    scenario.robot.servo.period_us = servo_period_us;
-    HardwareLoop loop(scenario, {});
-    while (loop.tick() < 400) {
-      loop.advance();
-    }
-    const MeasureValues modules = loop.plant().meter().values();
-    const MeasureValues memory = measured(scenario, 4);
-    for (const MeasureDeclaration& declaration : measures()) {
-      EXPECT_EQ(modules[declaration.measure], memory[declaration.measure])
-          << declaration.name << " with a servo period of " << servo_period_us << " us";
-    }
-  }
 }
 
 }  // namespace

@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shipped.hpp"
 #include "sim/scenario/reader.hpp"
 
@@ -170,6 +171,45 @@ TEST(KernelChain, AJointThatJoinsHasTheParametersOfTheChangesMeanwhile) {
       ASSERT_TRUE(std::ranges::equal(chain.setpoints(), undisturbed.setpoints())) << "tick " << tick;
     }
   }
+}
+
+/// A change of a scenario for the coming tick, whatever tick that is.
+Change change_of(const std::string& word) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  apply_setting(scenario, word + "@1");
+  return scenario.changes.at(0);
+}
+
+TEST(KernelChain, OfTwoChangesForOneTickBothTakeEffectAndTheLaterOneCounts) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  KernelChain chain = make_chain(scenario);
+  KernelChain expected = make_chain(scenario);
+  chain.advance(no_joint_contacts);
+  expected.advance(no_joint_contacts);
+  chain.apply(change_of("amplitude=10"));
+  chain.apply(change_of("phase_difference=30"));
+  chain.apply(change_of("amplitude=20"));
+  Change both = change_of("amplitude=20");
+  for (const Setting& setting : change_of("phase_difference=30").settings) {
+    both.settings.push_back(setting);
+  }
+  expected.apply(both);
+  for (int tick = 0; tick < 200; ++tick) {
+    chain.advance(no_joint_contacts);
+    expected.advance(no_joint_contacts);
+    ASSERT_TRUE(std::ranges::equal(chain.setpoints(), expected.setpoints())) << "tick " << tick;
+  }
+}
+
+TEST(KernelChain, KeepsEachParameterOnceForJointsThatJoin) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  KernelChain chain = make_chain(scenario);
+  const std::size_t at_start = chain.settings().size();
+  for (int number = 1; number <= 1000; ++number) {
+    chain.apply(change_of("amplitude=" + std::to_string(number % 40)));
+    chain.advance(no_joint_contacts);
+  }
+  EXPECT_LE(chain.settings().size(), at_start + scenario.robot.joints.size()) << "one parameter of each joint";
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/gait/contacts.hpp"
+#include "shared/gait/actuation_module.hpp"
 #include "shared/gait/registry.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"

@@ -15,7 +15,7 @@ namespace {
 /// Sent through a pipe for every tick that was recorded.
 struct Report {
   std::uint32_t tick;
-  std::chrono::steady_clock::time_point time;
+  std::chrono::steady_clock::time_point time;  ///< before it was recorded: so the recorder cannot have been later
 };
 
 /// The child process: a tick every 5 ms, until the test kills it.
@@ -23,11 +23,11 @@ struct Report {
   const Scenario scenario = small_scenario();
   Recorder recorder(path, scenario, "test", "build");
   run_small(scenario, 100'000, [&](const TickSample& sample, const Change* change) {
+    const Report report{sample.tick, std::chrono::steady_clock::now()};
     if (change != nullptr) {
       recorder.record_change(*change);
     }
     recorder.record_tick(sample);
-    const Report report{sample.tick, std::chrono::steady_clock::now()};
     if (write(pipe, &report, sizeof report) != sizeof report) {
       _exit(1);
     }

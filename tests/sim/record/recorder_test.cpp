@@ -467,7 +467,7 @@ TEST(Recorder, CanBeReadWhileItWrites) {
     if (sample.tick == 21) {
       const Recording recording(folder / "run.sqlite");
       EXPECT_FALSE(recording.finished());
-      EXPECT_EQ(recording.last_tick(), 20U);
+      EXPECT_GE(recording.last_tick(), 20U);  // 21 if that came half a second later
       recording.read_ticks(0, 20, [&](const RecordedTick& /*tick*/) { ++seen; });
     }
   });

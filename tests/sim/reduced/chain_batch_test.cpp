@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "sim/reduced/chain_kernel.hpp"
-#include "sim/reduced/planar_chain.hpp"
+#include "sim/reduced/kernel.hpp"
+#include "sim/reduced/robot_chain.hpp"
 #include "tests/sim/physics/small_world.hpp"
 #include "tests/support/from_environment.hpp"
 
@@ -84,7 +84,7 @@ class ChainBatchTest : public testing::Test {
     for (const std::size_t i : chosen) {
       chains.push_back(candidates_[i].chain);
     }
-    ChainBatch batch(chains, kernel);
+    ChainBatch<Planar> batch(chains, kernel);
     std::vector<std::vector<std::uint64_t>> traces(chosen.size());
     for (std::size_t step = 0; step < steps; ++step) {
       for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -101,7 +101,7 @@ class ChainBatchTest : public testing::Test {
     return traces;
   }
 
-  static void command(ChainBatch& batch, std::size_t chain, const Candidate& candidate, std::size_t step) {
+  static void command(ChainBatch<Planar>& batch, std::size_t chain, const Candidate& candidate, std::size_t step) {
     for (std::size_t joint = 0; joint < joints; ++joint) {
       const Command& command = candidate.commands[step / Candidate::interval][joint];
       batch.set_wanted_speed(chain, joint, command.speed);
@@ -109,7 +109,7 @@ class ChainBatchTest : public testing::Test {
     }
   }
 
-  static void read(const ChainBatch& batch, std::size_t chain, std::vector<std::uint64_t>& trace) {
+  static void read(const ChainBatch<Planar>& batch, std::size_t chain, std::vector<std::uint64_t>& trace) {
     const auto add = [&](double value) { trace.push_back(std::bit_cast<std::uint64_t>(value)); };
     std::ranges::for_each(batch.state(chain), add);
     for (std::size_t joint = 0; joint < joints; ++joint) {
@@ -138,6 +138,20 @@ class ChainBatchTest : public testing::Test {
   std::vector<Candidate> candidates_;
 };
 
+TEST(ChooseKernel, GivesTheWidestKernelWhoseLanesTheChainsFillByMoreThanHalf) {
+  const ChainKernel* const narrowest = supported_kernels().front();
+  EXPECT_EQ(&choose_kernel(0), narrowest);
+  EXPECT_EQ(&choose_kernel(1), narrowest);
+  for (const ChainKernel* kernel : supported_kernels()) {
+    const std::size_t half = static_cast<std::size_t>(kernel->width) / 2;
+    EXPECT_EQ(&choose_kernel(half + 1), kernel);
+    if (kernel != narrowest) {
+      EXPECT_NE(&choose_kernel(half), kernel);
+    }
+  }
+  EXPECT_EQ(&choose_kernel(1000), supported_kernels().back());
+}
+
 TEST_F(ChainBatchTest, AChainGivesTheSameBitsAloneInAnyLaneAndWithEveryKernel) {
   const std::vector<std::vector<std::uint64_t>> expected = run_alone();
   std::vector<std::size_t> order(candidates_.size());
@@ -163,7 +177,7 @@ TEST_F(ChainBatchTest, TheRandomRunsHaveWeakMotorsStopsAndContactsOfBothKinds) {
   bool has_self_contact = false;
   std::size_t most_contacts = 0;
   for (const Candidate& candidate : candidates_) {
-    ChainBatch batch(std::span(&candidate.chain, 1));
+    ChainBatch<Planar> batch(std::span(&candidate.chain, 1));
     for (std::size_t step = 0; step < steps; ++step) {
       command(batch, 0, candidate, step);
       batch.step();
@@ -197,7 +211,7 @@ TEST_F(ChainBatchTest, AChainThatBreaksDownTouchesNoOther) {
     chains[4].masses[2] = std::numeric_limits<double>::quiet_NaN();
     chains[9].gravity.z = 1e308;  // finite, for a while
     const auto is_broken = [](std::size_t chain) { return chain == 1 || chain == 4 || chain == 9; };
-    ChainBatch batch(chains, kernel);
+    ChainBatch<Planar> batch(chains, kernel);
     std::vector<std::vector<std::uint64_t>> traces(chains.size());
     for (std::size_t step = 0; step < steps; ++step) {
       for (std::size_t k = 0; k < chains.size(); ++k) {
@@ -221,7 +235,7 @@ TEST_F(ChainBatchTest, AChainThatBreaksDownTouchesNoOther) {
 
 TEST_F(ChainBatchTest, AChainIsPlacedAtRestLikeAnother) {
   std::vector<PlanarChain> chains{candidates_[0].chain, candidates_[1].chain};
-  ChainBatch moved(chains);
+  ChainBatch<Planar> moved(chains);
   for (std::size_t joint = 0; joint < joints; ++joint) {
     moved.set_max_torque(1, joint, 10.0);
     moved.set_wanted_speed(1, joint, joint % 2 == 0 ? 1.0 : -1.0);
@@ -229,20 +243,20 @@ TEST_F(ChainBatchTest, AChainIsPlacedAtRestLikeAnother) {
   for (int i = 0; i < 300; ++i) {
     moved.step();
   }
-  ChainBatch placed(chains);
+  ChainBatch<Planar> placed(chains);
   const std::vector<double> untouched = placed.state(0);
   placed.place_like(1, moved, 1, {3.0, 4.0});
   EXPECT_EQ(placed.state(0), untouched);
   EXPECT_EQ(placed.center(1), (Point{3.0, 4.0}));
   const Point center = moved.center(1);
   for (std::size_t link = 0; link < links; ++link) {
-    const ChainBatch::LinkPlace expected = moved.link_place(1, link);
-    const ChainBatch::LinkPlace place = placed.link_place(1, link);
+    const ChainBatch<Planar>::LinkPlace expected = moved.link_place(1, link);
+    const ChainBatch<Planar>::LinkPlace place = placed.link_place(1, link);
     EXPECT_EQ(place.half_sine, expected.half_sine);
     EXPECT_EQ(place.half_cosine, expected.half_cosine);
     EXPECT_NEAR(place.position.x - 3.0, expected.position.x - center.x, 1e-12);
     EXPECT_NEAR(place.position.z - 4.0, expected.position.z - center.z, 1e-12);
-    const ChainBatch::LinkMotion motion = placed.link_motion(1, link);
+    const ChainBatch<Planar>::LinkMotion motion = placed.link_motion(1, link);
     EXPECT_EQ(motion.velocity, (Point{0.0, 0.0}));
     EXPECT_EQ(motion.rotation, 0.0);
   }

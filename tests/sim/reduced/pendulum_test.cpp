@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "sim/reduced/chain_batch.hpp"
-#include "sim/reduced/planar_chain.hpp"
+#include "sim/reduced/robot_chain.hpp"
 #include "tests/sim/physics/small_world.hpp"
 
 namespace proleg::sim::reduced {
@@ -28,11 +28,11 @@ struct Conserved {
   double rotation = 0.0;  ///< kg m^2/s, about the centre of mass
 };
 
-Conserved conserved(const PlanarChain& chain, const ChainBatch& batch, std::size_t links) {
+Conserved conserved(const PlanarChain& chain, const ChainBatch<Planar>& batch, std::size_t links) {
   Conserved result;
   const Point center = batch.center(0);
   for (std::size_t i = 0; i < links; ++i) {
-    const ChainBatch::LinkMotion motion = batch.link_motion(0, i);
+    const ChainBatch<Planar>::LinkMotion motion = batch.link_motion(0, i);
     const Point place = batch.link_place(0, i).position;
     const Point& v = motion.velocity;
     result.energy += chain.masses[i] * (0.5 * (v.x * v.x + v.z * v.z) - chain.gravity.z * place.z) +
@@ -44,8 +44,8 @@ Conserved conserved(const PlanarChain& chain, const ChainBatch& batch, std::size
 }
 
 /// rad: by which a link has turned since the start.
-double angle(const ChainBatch& batch, std::size_t link) {
-  const ChainBatch::LinkPlace place = batch.link_place(0, link);
+double angle(const ChainBatch<Planar>& batch, std::size_t link) {
+  const ChainBatch<Planar>::LinkPlace place = batch.link_place(0, link);
   return 2.0 * std::atan2(place.half_sine, place.half_cosine);
 }
 
@@ -68,7 +68,7 @@ struct HangingArm {
   }
 
   PlanarChain planar;
-  ChainBatch batch;
+  ChainBatch<Planar> batch;
 };
 
 // Angles below the horizontal of the inner and the outer link, and their rates.
@@ -158,7 +158,7 @@ Tumble tumble(double step) {
   EnvironmentModel environment = flat_ground(0.5, 0.02);
   environment.objects[0].pose.position.y() = -50.08;
   const PlanarChain planar = make_planar_chain(robot, environment, step, "test");
-  ChainBatch batch(std::span(&planar, 1));
+  ChainBatch<Planar> batch(std::span(&planar, 1));
   long steps = 0;
   const auto is_in_the_air = [&] { return batch.center(0).z < -0.2; };
   while (!is_in_the_air() && steps++ < 100'000) {

@@ -1,4 +1,4 @@
-#include "sim/reduced/planar_chain.hpp"
+#include "sim/reduced/robot_chain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -184,7 +184,7 @@ TEST(PlanarChain, NumbersAreWholeMultiplesOfPowersOfTwo) {
     EXPECT_TRUE(is_on_the_grid(point.x, 30)) << point.x;
     EXPECT_TRUE(is_on_the_grid(point.z, 30)) << point.z;
   };
-  for (const LinkForm& link : chain.links) {
+  for (const Planar::Link& link : chain.links) {
     for (const Point& point : {link.front, link.rear, link.forward, link.down}) {
       expect_point(point);
     }
@@ -194,7 +194,7 @@ TEST(PlanarChain, NumbersAreWholeMultiplesOfPowersOfTwo) {
     expect_point(rectangle.along);
     expect_point({rectangle.half_length, rectangle.half_height});
   };
-  for (const ShapeForm& shape : chain.shapes) {
+  for (const Planar::Shape& shape : chain.shapes) {
     expect_rectangle(shape.outline);
   }
   for (const Rectangle& solid : chain.terrain) {
@@ -208,7 +208,7 @@ TEST(PlanarChain, NumbersAreWholeMultiplesOfPowersOfTwo) {
     EXPECT_NEAR(chain.masses[i], c.robot.links[i].mass.mass, 1e-9);
     EXPECT_NEAR(chain.inertias[i], c.robot.links[i].mass.inertia(0, 0), 1e-13);
   }
-  for (const double friction : chain.terrain_friction) {
+  for (const double friction : chain.friction) {
     EXPECT_TRUE(is_on_the_grid(friction, 30)) << friction;
   }
 }
@@ -220,18 +220,23 @@ TEST(PlanarChain, AnAxisThatPointsTheOtherWayChangesSignAndLimitsOfItsJoint) {
   c.robot.joints[1].upper_limit = 0.75;
   const PlanarChain chain = planar(c.robot, c.environment);
   EXPECT_EQ(chain.joint_signs, (std::vector<double>{1.0, -1.0}));
-  EXPECT_EQ(chain.joints[0], (JointForm{-1.0, 1.0}));
-  EXPECT_EQ(chain.joints[1], (JointForm{-0.75, 0.25}));
+  EXPECT_EQ(chain.joints[0], (JointLimits{-1.0, 1.0}));
+  EXPECT_EQ(chain.joints[1], (JointLimits{-0.75, 0.25}));
 }
 
 TEST(PlanarChain, FrictionIsTheGeometricMeanOfTwoSurfacesOrThatOfTheOneThatHasIt) {
   Case c;
   c.robot.links[0].geometries[0].friction = 0.25;
   c.environment.objects[0].geometries[0].friction = 1.0;
-  EXPECT_EQ(planar(c.robot, c.environment).terrain_friction, (std::vector<double>{0.5, 1.0, 1.0}));
+  const auto on_floor = [&] {
+    std::vector<double> friction = planar(c.robot, c.environment).friction;
+    friction.resize(3);  // behind these come those of links with each other
+    return friction;
+  };
+  EXPECT_EQ(on_floor(), (std::vector<double>{0.5, 1.0, 1.0}));
   c.environment.objects[0].geometries[0].friction.reset();
   c.environment.unspecified_friction = 0.125;
-  EXPECT_EQ(planar(c.robot, c.environment).terrain_friction, (std::vector<double>{0.25, 0.125, 0.125}));
+  EXPECT_EQ(on_floor(), (std::vector<double>{0.25, 0.125, 0.125}));
 }
 
 TEST(PlanarChain, ChainsOfOtherMassFrictionAndPlaceHaveTheSameForm) {

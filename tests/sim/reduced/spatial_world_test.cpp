@@ -1,7 +1,7 @@
 // Chains whose joints have different axes. Oracles: mechanics of rigid bodies, the engine of chains in a plane, and
 // ODE.
 
-#include "sim/reduced/spatial_world.hpp"
+#include "sim/reduced/reduced_world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/chain_batch.hpp"
-#include "sim/reduced/reduced_world.hpp"
+#include "sim/reduced/robot_chain.hpp"
 #include "tests/sim/reduced/worlds.hpp"
 
 namespace proleg::sim::reduced {
@@ -25,8 +25,8 @@ namespace {
 
 std::unique_ptr<World> spatial_world(const RobotModel& robot, const EnvironmentModel& environment) {
   SpatialChain chain = make_spatial_chain(robot, environment, step_s, "test");
-  auto batch = std::make_shared<SpatialBatch>(std::span(&chain, 1));
-  return make_spatial_world(robot, std::move(chain), std::move(batch), 0);
+  auto batch = std::make_shared<ChainBatch<Spatial>>(std::span(&chain, 1));
+  return make_world({&robot, &environment, step_s, "test"}, std::move(chain), std::move(batch), 0);
 }
 
 /// Every second joint turns about z.
@@ -92,9 +92,10 @@ TEST(SpatialWorld, AMotorTurnsTheLinkInFrontAboutTheAxis) {
 
 TEST(SpatialWorld, MotorsAloneNeitherMoveTheCentreNorChangeTheAngularMomentum) {
   const RobotModel robot = snake(5);
-  SpatialChain chain = make_spatial_chain(robot, weightless(), step_s, "test");
-  const auto batch = std::make_shared<SpatialBatch>(std::span(&chain, 1));
-  const std::unique_ptr<World> world = make_spatial_world(robot, chain, batch, 0);
+  const EnvironmentModel environment = weightless();
+  SpatialChain chain = make_spatial_chain(robot, environment, step_s, "test");
+  const auto batch = std::make_shared<ChainBatch<Spatial>>(std::span(&chain, 1));
+  const std::unique_ptr<World> world = make_world({&robot, &environment, step_s, "test"}, chain, batch, 0);
   const Eigen::Vector3d before = world->center_of_mass();
   for (int step = 0; step < 2000; ++step) {
     drive(*world, 4, step * step_s, 0.6, 0.9);
@@ -102,8 +103,8 @@ TEST(SpatialWorld, MotorsAloneNeitherMoveTheCentreNorChangeTheAngularMomentum) {
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
     double magnitude = 0.0;
     for (std::size_t i = 0; i < robot.links.size(); ++i) {
-      const SpatialBatch::LinkMotion motion = batch->link_motion(0, i);
-      const SpatialBatch::LinkPlace place = batch->link_place(0, i);
+      const ChainBatch<Spatial>::LinkMotion motion = batch->link_motion(0, i);
+      const ChainBatch<Spatial>::LinkPlace place = batch->link_place(0, i);
       const Eigen::Vector3d position(place.position.x, place.position.y, place.position.z);
       const Eigen::Vector3d velocity(motion.velocity.x, motion.velocity.y, motion.velocity.z);
       const Eigen::Vector3d own(motion.angular_momentum.x, motion.angular_momentum.y, motion.angular_momentum.z);

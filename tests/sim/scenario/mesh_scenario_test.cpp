@@ -7,7 +7,8 @@
 
 #include "memory_files.hpp"
 #include "sim/scenario/data_url.hpp"
-#include "sim/scenario/source_texts.hpp"
+#include "sim/scenario/file_source.hpp"
+#include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {
 namespace {

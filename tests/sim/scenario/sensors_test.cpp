@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "memory_files.hpp"
-#include "sim/scenario/master_input.hpp"
 #include "sim/scenario/module_sensors.hpp"
 
 namespace proleg::sim {
@@ -196,14 +195,15 @@ constexpr SlopeProbe acceleration_probe(JointReadings::acceleration);
 
 TEST(SensorsOfModules, AnAlgorithmThatNeedsOthersIsRefusedByName) {
   Scenario scenario = small_scenario().scenario();
-  EXPECT_NO_THROW(MasterInput{scenario});
+  const auto require = [&scenario] { require_sensors(scenario, sensors_of_modules, "a module"); };
+  EXPECT_NO_THROW(require());
   scenario.kernel.slots[2] = {&current_probe, JointMask::first(2)};
-  EXPECT_NO_THROW(MasterInput{scenario}) << "every module measures the current of its servo";
+  EXPECT_NO_THROW(require()) << "every module measures the current of its servo";
   for (const auto& [probe, name] : {std::pair<const SlopeProbe*, std::string>{&inclination_probe, "inclination"},
                                     std::pair<const SlopeProbe*, std::string>{&acceleration_probe, "acceleration"}}) {
     scenario.kernel.slots[2].algorithm = probe;
     try {
-      const MasterInput input(scenario);
+      require();
       ADD_FAILURE() << name;
     } catch (const InputError& error) {
       EXPECT_EQ(std::string(error.what()),

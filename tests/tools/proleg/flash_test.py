@@ -18,7 +18,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, Listener, proleg, start_drive
+from robot_on_the_table_test import Bus, LONGEST, Listener, proleg, start_drive, wait_until
 
 SLOT = 0x08020200
 ALL = [1, 2, 3, 4, 5]
@@ -60,6 +60,14 @@ class Flash(unittest.TestCase):
         image = self.images.get(version, version)
         return subprocess.Popen([table.PROGRAMS / "proleg-flash", "--bus", bus, "--json", image, *options],
                                 cwd=self.work.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def start_until(self, bus, frames, version, *options):
+        """The process, when that many frames of any program have been on the bus."""
+        other = Listener(bus.tcp)
+        process = self.start(bus.tcp, version, *options)
+        wait_until(lambda: other.received() >= frames or process.poll() is not None, "frames on the bus", 0.01)
+        other.end()
+        return process
 
     def flash(self, bus, version, *options, status=0):
         """The JSON object of a run with this exit status."""
@@ -140,20 +148,22 @@ class Flash(unittest.TestCase):
 
     def test_a_host_that_is_killed_anywhere_leaves_modules_that_the_next_run_flashes(self):
         with Bus() as bus:
-            for number, delay in enumerate((0.6, 1.0, 1.4, 3.0)):
+            for number, frames in enumerate((50, 400, 1500, 3000)):
                 version = ("0.2.0", "0.3.0")[number % 2]
-                process = self.start(bus.tcp, version, "--allow-downgrade")
-                time.sleep(delay)
+                process = self.start_until(bus, frames, version, "--allow-downgrade")
                 process.send_signal(signal.SIGKILL if number % 2 == 0 else signal.SIGINT)
                 process.communicate(timeout=LONGEST)
                 self.assertIn(process.returncode, (-signal.SIGKILL, 0, 1))
-            deadline = time.monotonic() + LONGEST
-            while True:  # a bootloader that installs hears nothing; it starts its program after ten seconds at most
+            errors = ""
+
+            def all_are_flashed():
+                """A bootloader that installs hears nothing; it starts its program after ten seconds at most."""
+                nonlocal errors
                 process = self.start(bus.tcp, "0.1.0", "--allow-downgrade")
                 out, errors = process.communicate(timeout=LONGEST)
-                if process.returncode == 0 and len(json.loads(out)["modules"]) == len(ALL):
-                    break
-                self.assertLess(time.monotonic(), deadline, errors)
+                return process.returncode == 0 and len(json.loads(out)["modules"]) == len(ALL)
+
+            wait_until(all_are_flashed, lambda: errors)
             self.assert_all_run(self.flash(bus.tcp, "0.1.0"), "0.1.0")
 
     def test_a_module_that_is_stopped_is_flashed_too(self):
@@ -166,9 +176,8 @@ class Flash(unittest.TestCase):
 
     def test_the_same_command_right_after_an_interrupted_one_completes_it(self):
         with Bus() as bus:
-            for version, delay in (("0.2.0", 0.7), ("0.3.0", 1.3), ("0.1.0", 2.0)):
-                process = self.start(bus.tcp, version, "--allow-downgrade")
-                time.sleep(delay)
+            for version, frames in (("0.2.0", 100), ("0.3.0", 1200), ("0.1.0", 2500)):
+                process = self.start_until(bus, frames, version, "--allow-downgrade")
                 process.send_signal(signal.SIGTERM)
                 process.communicate(timeout=LONGEST)
                 self.assert_all_run(self.flash(bus.tcp, version, "--allow-downgrade"), version)
@@ -183,13 +192,12 @@ class Flash(unittest.TestCase):
 
     def test_two_hosts_at_once(self):
         with Bus() as bus:
-            first = self.start(bus.tcp, "0.2.0")
-            time.sleep(1.0)
+            first = self.start_until(bus, 1500, self.make_image("0.4.0", content=program(4, 80_000)))
             self.flash(bus.pty, "0.3.0", status=1)
             self.assertIn("another host", self.errors)
             out, errors = first.communicate(timeout=LONGEST)
             self.assertEqual(first.returncode, 0, errors)
-            self.assert_all_run(json.loads(out), "0.2.0")
+            self.assert_all_run(json.loads(out), "0.4.0")
 
     def test_a_robot_that_is_driven_is_left_alone(self):
         with Bus() as bus:
@@ -208,12 +216,18 @@ class Flash(unittest.TestCase):
             is_over = threading.Event()
 
             def send():
+                """About two thirds of the bus, above all else. The next frames come after the last ones were sent, so that
+                they leave the same share of the bus free if the clock of the robot stands still."""
+                sent = 0
                 while not is_over.is_set():
                     try:
                         other.line.write(b"t0508AAAAAAAAAAAAAAAA\r" * 20)
                     except OSError:
                         return
-                    time.sleep(0.004)  # two thirds of the bus, above all else
+                    sent += 20
+                    while other.confirmed() < sent and not is_over.is_set():
+                        time.sleep(0.001)
+                    time.sleep(0.001)
 
             thread = threading.Thread(target=send, daemon=True)
             thread.start()

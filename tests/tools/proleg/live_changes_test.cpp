@@ -4,7 +4,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
-#include "sim/scenario/master_input.hpp"
+#include "sim/hardware_loop/master_input.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::tools {

@@ -14,12 +14,15 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import tty
 import unittest
 from pathlib import Path
 
-LONGEST = 120  # seconds that a command may take on a busy computer
+sys.dont_write_bytecode = True  # the folder of the tests may be read-only
+sys.path.append(str(Path(__file__).resolve().parents[2] / "support"))
+from waiting import LONGEST, wait_until
+
+ENDLESS = "3600"  # seconds of a drive that something else ends
 SCENARIO = "sim/scenarios/travelling_wave/uniform.simulation.xml"
 
 
@@ -61,9 +64,11 @@ class Listener:
     """A program that takes all frames of an slcan channel."""
 
     def __init__(self, bus):
+        self.socket = None
         if bus.startswith("tcp:"):
             host, port = bus.removeprefix("tcp:").split(":")
-            self.line = socket.create_connection((host, int(port)), timeout=LONGEST).makefile("rwb", buffering=0)
+            self.socket = socket.create_connection((host, int(port)))
+            self.line = self.socket.makefile("rwb", buffering=0)
         else:
             device = os.open(bus.removeprefix("serial:"), os.O_RDWR | os.O_NOCTTY)
             tty.setraw(device)
@@ -74,11 +79,26 @@ class Listener:
         self.thread.start()
 
     def read(self):
-        while True:
-            try:
-                self.text += self.line.read(4096) or b""
-            except OSError:
-                return
+        try:
+            while part := self.line.read(4096):
+                self.text += part
+        except OSError:
+            pass
+
+    def end(self):
+        """Of a TCP connection: the bus goes on without it."""
+        self.socket.shutdown(socket.SHUT_RDWR)
+        self.thread.join(LONGEST)
+        self.line.close()
+        self.socket.close()
+
+    def received(self):
+        """How many frames of other programs and modules were on the bus."""
+        return self.text.count(b"t")
+
+    def confirmed(self):
+        """How many frames of this program were on the bus."""
+        return self.text.count(b"z")
 
     def frames(self):
         """As in a candump log, without the '#': '18300...'."""
@@ -107,6 +127,9 @@ def drive_json(drive):
 
 
 def start_drive(bus, *options):
+    """Until it is ended, unless --seconds is among the options."""
+    if "--seconds" not in options:
+        options += ("--seconds", ENDLESS)
     return subprocess.Popen([PROGRAMS / "proleg-drive", SOURCE / SCENARIO, "--bus", bus, "--json", *options],
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
@@ -117,12 +140,14 @@ def states(bus):
 
 
 def wait_for_drives(bus, state):
-    for _ in range(LONGEST):
-        found = states(bus)
-        if len(found) == 5 and all(one == state for one in found.values()):
-            return
-        time.sleep(0.2)
-    raise AssertionError(f"the drives are {found}, not {state}")
+    found = {}
+
+    def are_in_it():
+        found.clear()
+        found.update(states(bus))
+        return len(found) == 5 and set(found.values()) == {state}
+
+    wait_until(are_in_it, lambda: f"the drives are {found}, not {state}")
 
 
 def simulated(*options):
@@ -136,17 +161,20 @@ class RobotOnTheTable(unittest.TestCase):
             host, port = bus.tcp.removeprefix("tcp:").split(":")
             with socket.create_connection((host, int(port)), timeout=LONGEST) as line:
                 line.sendall(b"C\rS8\rO\r")
+                line.settimeout(0.2)
                 received = b""
-                for _ in range(LONGEST):
+
+                def is_answered():
+                    """A module that boots takes no request: another one follows after a pause."""
+                    nonlocal received
                     line.sendall(b"t60384000100000000000\r")
-                    line.settimeout(1)
                     try:
                         received += line.recv(4096)
                     except TimeoutError:
-                        continue
-                    if b"t58384300100092010200\r" in received:
-                        return
-                self.fail(received)
+                        pass
+                    return b"t58384300100092010200\r" in received
+
+                wait_until(is_answered, lambda: f"received {received}")
 
     def test_scan_info_get_set_and_nmt(self):
         with Bus() as bus:
@@ -174,7 +202,7 @@ class RobotOnTheTable(unittest.TestCase):
 
     def test_drive_ends_if_another_program_takes_the_power_of_a_joint(self):
         with Bus() as bus:
-            drive = start_drive(bus.pty, "--seconds", "60")
+            drive = start_drive(bus.pty)
             wait_for_drives(bus.tcp, "operation enabled")
             host, port = bus.tcp.removeprefix("tcp:").split(":")
             with socket.create_connection((host, int(port)), timeout=LONGEST) as line:
@@ -182,7 +210,7 @@ class RobotOnTheTable(unittest.TestCase):
                 output, errors = drive.communicate(timeout=LONGEST)
             self.assertEqual(drive.returncode, 1, errors)
             self.assertIn("node 4 (J2) does not follow the gait any more: no power", errors)
-            self.assertLess(json.loads(output)["ticks"], 6000)
+            self.assertLess(json.loads(output)["ticks"], 100 * int(ENDLESS))
             wait_for_drives(bus.tcp, "no power")
 
     def test_drive_computes_what_simulate_computes(self):
@@ -237,26 +265,35 @@ class RobotOnTheTable(unittest.TestCase):
                 listeners = [Listener(bus.tcp), Listener(bus.pty)]
                 drive = start_drive("tcp:" + bus.tcp.removeprefix("tcp:"), "--seconds", "4")
                 self.assertEqual(drive.wait(timeout=LONGEST), 0, drive.communicate())
-                time.sleep(0.5)
+                listeners[0].line.write(b"t7FF0\r")  # the other program and the log have it behind all other frames
+                wait_until(lambda: "7FF" in listeners[1].frames(), "the last frame")
+                listeners[1].line.write(b"t7FE0\r")
+                wait_until(lambda: "7FE" in listeners[0].frames(), "the last frame")
                 seen = [listener.frames() for listener in listeners]
             frames = [line.split()[2].replace("#", "") for line in log.read_text().splitlines()]
-            reset = frames.index("0008100")  # NMT reset node, all nodes: the host begins
-            for frames_of_program in seen:
-                begin = frames_of_program.index("0008100")
-                self.assertGreater(len(frames_of_program), 2000)
-                self.assertEqual(frames_of_program[begin:], frames[reset:][:len(frames_of_program) - begin])
-                self.assertLess(len(frames) - reset - (len(frames_of_program) - begin), 10, "sent after it was closed")
+            begin, end = frames.index("0008100"), frames.index("7FF")  # NMT reset node, all nodes: the host begins
+            self.assertGreater(end - begin, 2000)
+            for frames_of_program, last in zip(seen, ("7FE", "7FF")):
+                from_the_reset = frames_of_program[frames_of_program.index("0008100"):]
+                self.assertEqual(from_the_reset[:from_the_reset.index(last)],
+                                 [frame for frame in frames[begin:frames.index(last)] if frame != "7FF"])
 
     def test_changes_are_typed_while_it_moves_and_the_recording_has_them(self):
         with Bus() as bus, tempfile.TemporaryDirectory() as folder:
             recording = Path(folder) / "driven.proleg"
             drive = subprocess.Popen([PROGRAMS / "proleg-drive", SOURCE / SCENARIO, "--bus", bus.tcp, "--json", "--record",
-                                      recording], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                     text=True)
-            wait_for_drives(bus.pty, "operation enabled")
-            drive.stdin.write("amplitude=20\nfrequency=fast\namplitude:J2=10@400\n")
+                                      recording, "--seconds", ENDLESS], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                     stderr=subprocess.PIPE, text=True)
+            # It reads them when the gait begins, so that tick 1000 is far away.
+            drive.stdin.write("amplitude=20\nfrequency=fast\namplitude:J2=10@1000\n")
             drive.stdin.flush()
-            time.sleep(5)
+
+            def has_taken_effect():
+                values = proleg_json("get", "4", "amplitude", "--bus", bus.pty, "--json")["values"]
+                return [one["value"] for one in values] == ["10 deg"]
+
+            wait_for_drives(bus.pty, "operation enabled")
+            wait_until(has_taken_effect, "the change for tick 1000")
             output, errors = drive.communicate("stop\n", timeout=LONGEST)
             result = json.loads(output)
             self.assertEqual(drive.returncode, 0, errors)
@@ -396,8 +433,7 @@ class RobotOnTheTable(unittest.TestCase):
     def test_params_of_a_gait_wait_for_a_gait_and_those_of_a_module_for_that_module(self):
         with Bus() as bus, tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "settings.txt"
-            drive = start_drive(bus.tcp, "--seconds", "1")
-            drive.communicate(timeout=LONGEST)
+            drive_json(start_drive(bus.tcp, "--seconds", "1"))
             self.assertEqual(proleg("params", "save", file, "--bus", bus.tcp).returncode, 0)
             self.assertIn("0x3040:1", file.read_text())
             proleg("nmt", "reset-node", "all", "--bus", bus.tcp)
@@ -425,7 +461,7 @@ class RobotOnTheTable(unittest.TestCase):
     def test_drive_ends_when_another_program_takes_a_joint(self):
         for take in (("nmt", "stop", "2"), ("set", "2", "0x6060", "8")):
             with Bus() as bus:
-                drive = start_drive(bus.pty, "--seconds", str(LONGEST))
+                drive = start_drive(bus.pty)
                 wait_for_drives(bus.tcp, "operation enabled")
                 host, port = bus.tcp.removeprefix("tcp:").split(":")
                 with socket.create_connection((host, int(port)), timeout=LONGEST) as line:
@@ -438,29 +474,32 @@ class RobotOnTheTable(unittest.TestCase):
         with Bus() as bus:
             self.assertIn("no host drives the robot",
                           proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout.splitlines()[-1])
-            drive = start_drive(bus.tcp, "--seconds", "300")  # longer than the rest takes on a busy computer
+            drive = start_drive(bus.tcp)
             wait_for_drives(bus.pty, "operation enabled")
-            whole = []  # on a busy computer a second may have no heartbeat of a module
-            for _ in range(12):
+
+            def seconds_that_are_whole():
+                """On a busy computer a second may have no heartbeat of the host or of a module."""
                 lines = proleg("monitor", "--bus", bus.pty, "--seconds", "5", "--json").stdout.splitlines()
-                whole = [second for second in map(json.loads, lines[:-1]) if len(second["nodes"]) == 5 and
-                         all(node["drive"] == "operation enabled" for node in second["nodes"])]
-                if whole:
-                    break
-            self.assertTrue(whole, "no second in which every module was heard")
-            last = whole[-1]
-            self.assertTrue(last["host"])
-            self.assertGreater(last["syncs"], 10)
-            self.assertTrue(0.01 < last["bus_load"] < 0.2, last["bus_load"])
+                return [second for second in map(json.loads, lines[:-1]) if second["host"] and len(second["nodes"]) == 5 and
+                        all(node["drive"] == "operation enabled" for node in second["nodes"])]
+
+            last = wait_until(seconds_that_are_whole, "a second in which the host and every module were heard")[-1]
+            self.assertGreater(last["syncs"], 0)
+            self.assertTrue(0 < last["bus_load"] < 0.2, last["bus_load"])
             self.assertEqual([node["node"] for node in last["nodes"]], [1, 2, 3, 4, 5])
             for node in last["nodes"]:
                 self.assertEqual(node["drive"], "operation enabled")
                 self.assertLessEqual(abs(node["setpoint_deg"]), 40.01, "the amplitude")
                 self.assertGreaterEqual(node["current_ma"], 0)
                 self.assertEqual(node["fault"], "")
-            table = proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout
-            self.assertIn("driven by a host", table)
-            self.assertNotIn("no host drives", table)
+            table = ""
+
+            def names_the_host():
+                nonlocal table
+                table = proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout
+                return "driven by a host" in table and "no host drives" not in table
+
+            wait_until(names_the_host, lambda: f"the monitor says {table}")
             info = proleg("info", "3", "--bus", bus.pty).stdout
             self.assertIn("(PatternGenerator_sinusoidal)", info)
             self.assertIn("amplitude: slot 1 = 40 deg", info)

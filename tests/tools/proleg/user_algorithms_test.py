@@ -4,14 +4,15 @@
 Usage: user_algorithms_test.py SOURCE_FOLDER PROGRAM_FOLDER
 """
 
+import contextlib
 import json
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -19,6 +20,9 @@ SOURCE = Path(sys.argv[1])
 PROGRAMS = Path(sys.argv[2])
 sys.path.insert(0, str(SOURCE / "tests/host/server"))
 from web_client import Viewer  # noqa: E402
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "support"))
+from waiting import wait_until  # noqa: E402
 
 LONGEST = 1500  # seconds; a proof compiles the core six times
 NAME = "steep_wave"
@@ -176,6 +180,14 @@ class UserAlgorithms(unittest.TestCase):
         return subprocess.run([f"exec {PROGRAMS}/{command}"], shell=True, capture_output=True, text=True, timeout=LONGEST,
                               cwd=self.folder)
 
+    def evaluations(self):
+        """How many the search has stored."""
+        try:
+            with contextlib.closing(sqlite3.connect(self.folder / "parts/store.sqlite")) as store:
+                return store.execute("SELECT count(*) FROM evaluation").fetchone()[0]
+        except sqlite3.OperationalError:  # it has not made its store yet, or is writing
+            return 0
+
     def test_the_command_that_continues_a_search_loads_the_library(self):
         experiment = self.experiment()
         experiment.write_text(experiment.read_text().replace("<generations>2<", "<generations>100000<"))
@@ -183,9 +195,7 @@ class UserAlgorithms(unittest.TestCase):
                                    "--evaluations", "100000"], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
                                   cwd=self.folder)
         self.addCleanup(search.kill)
-        while search.poll() is None and not (self.folder / "parts/store.sqlite").exists():
-            time.sleep(0.05)
-        time.sleep(2)  # it is in the middle of its simulations; the printed command is the same at any moment
+        wait_until(lambda: search.poll() is not None or self.evaluations() >= 5, "evaluations of the search")
         search.send_signal(signal.SIGINT)
         _, errors = search.communicate(timeout=LONGEST)
         self.assertIn("continue with: ", errors)

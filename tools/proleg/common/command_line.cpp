@@ -17,7 +17,7 @@ namespace proleg::tools {
 
 namespace {
 
-/// What is wrong with a command line that cannot be parsed.
+/// The fault of a command line that cannot be parsed.
 struct ParseFailure {
   std::string found;
   std::string expected;
@@ -56,7 +56,7 @@ ParseFailure describe(const CLI::App& app, const CLI::ParseError& error) {
   return {text, usage};
 }
 
-/// "; did you mean --record?" for an unknown option that is much like a known one.
+/// Text "; did you mean --record?" for an unknown option that is similar to a known one.
 std::string hint(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) {
     return "";
@@ -83,7 +83,7 @@ std::string hint(const CLI::App& app, const CLI::ParseError& error) {
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
-      // open() returns the lowest free number, which is this one. (If it fails, all else fails too.)
+      // open() returns the lowest free number, which is this one. (If it fails, the rest of the program fails too.)
       static_cast<void>(open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
     }
   }

@@ -17,10 +17,10 @@ namespace proleg::tools {
 /// Exit statuses of every program.
 inline constexpr int exit_success = 0;
 inline constexpr int exit_failed = 1;     ///< the run failed
-inline constexpr int exit_bad_input = 2;  ///< nothing was started
+inline constexpr int exit_bad_input = 2;  ///< the input is unusable; no work was started
 
-/// The user's input cannot be used, and nothing has started. what() is the whole message. For errors that do not have
-/// the form of an InputError.
+/// The user's input cannot be used, and no work has started. what() is the whole message. It is for errors without the
+/// form of an InputError.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -29,18 +29,18 @@ class BadInput : public std::runtime_error {
 /// Prints "proleg simulate: warning: TEXT" on standard error, as one line. All warnings begin like this.
 void print_warning(const std::string& program, const std::string& text);
 
-/// The command line of a program. Only the source file includes CLI11, which takes seconds to compile.
+/// The command line of a program. Only the source file includes CLI11, whose compilation takes seconds.
 class CommandLine {
  public:
   class Option {
    public:
     Option& required();
-    /// The name of the value in --help; "" for none.
+    /// Sets the name of the value in --help; "" for none.
     Option& value_name(const std::string& name);
     Option& excludes(const std::string& other);
-    /// A positional argument that takes all words up to the next option, at least one.
+    /// Lets a positional argument take all arguments up to the next option, at least one.
     Option& takes_several();
-    /// --help shows the present value of the variable.
+    /// Lets --help show the present value of the variable.
     Option& shows_default();
 
    private:
@@ -49,22 +49,22 @@ class CommandLine {
     CLI::Option* option_;
   };
 
-  /// name: "proleg simulate". help: what the program does.
+  /// name: name of the program, as "proleg simulate". help: its purpose.
   CommandLine(const std::string& name, const std::string& help);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// An option with a value ("--out"), or a positional argument ("FILE"). Without it the variable keeps its value. Each
-  /// use of the option adds one value to a vector. The variable must outlive this object.
+  /// Adds an option with a value ("--out"), or a positional argument ("FILE"). Without it the variable keeps its value.
+  /// Each use of the option adds one value to a vector. The variable must outlive this object.
   Option add_option(const std::string& name, std::string& variable, const std::string& help);
   Option add_option(const std::string& name, std::optional<std::string>& variable, const std::string& help);
   Option add_option(const std::string& name, std::optional<double>& variable, const std::string& help);
   Option add_option(const std::string& name, std::vector<std::string>& variable, const std::string& help);
-  /// An option without a value.
+  /// Adds an option without a value.
   Option add_flag(const std::string& name, bool& variable, const std::string& help);
 
-  /// --algorithms, for programs that read scenarios or name parameters. run() loads the libraries before the body.
+  /// Adds --algorithms, for programs that read scenarios or name parameters. run() loads the libraries before the body.
   void add_algorithms_option();
 
   [[nodiscard]] std::string name() const;

@@ -7,12 +7,12 @@
 
 namespace proleg::tools {
 
-/// "0.31 ms (median), 99 % within 0.5 ms; 312 ", with what was counted behind it. factor: from the unit of the
-/// durations to `unit`. "none" without durations.
+/// Text "0.31 ms (median), 99 % within 0.5 ms; 312 ", followed by the name of the counted things. factor: from the unit
+/// of the durations to `unit`. "none" without durations.
 [[nodiscard]] std::string durations_text(const Durations& durations, double factor, const std::string& unit,
                                          const std::string& counted);
 
-/// For --json: count, median, p99; the last two are null without durations.
+/// Object for --json: count, median, p99; the last two are null without durations.
 [[nodiscard]] Json durations_object(const Durations& durations, double factor);
 
 }  // namespace proleg::tools

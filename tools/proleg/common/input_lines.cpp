@@ -32,7 +32,7 @@ void InputLines::read_available() {
   if (count <= 0) {
     has_ended_ = count == 0 || (errno != EINTR && errno != EAGAIN);
     if (has_ended_ && !rest_.empty()) {
-      lines_.push_back(std::exchange(rest_, {}));  // the last line has no end
+      lines_.push_back(std::exchange(rest_, {}));  // the last line has no line end
     }
     return;
   }

@@ -6,10 +6,10 @@
 
 namespace proleg::tools {
 
-/// Lines of standard input, without waiting for them.
+/// Reads lines of standard input without waiting.
 class InputLines {
  public:
-  /// The next whole line, without its end; nothing if there is none yet, or input has ended. A program in the
+  /// Takes the next whole line, without its end; nothing if none has come yet, or input has ended. A program in the
   /// background does not read from its terminal.
   [[nodiscard]] std::optional<std::string> next();
   /// Whether no further line will come.

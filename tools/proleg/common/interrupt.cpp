@@ -6,7 +6,7 @@
 namespace proleg::tools {
 namespace {
 
-std::atomic<bool> interrupt_flag = false;  // lock-free, so a signal handler may set it
+std::atomic<bool> interrupt_flag = false;  // it is lock-free, so a signal handler may set it
 
 }  // namespace
 

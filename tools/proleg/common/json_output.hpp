@@ -13,8 +13,8 @@ namespace proleg::tools {
 
 struct JsonMember;
 
-/// A JSON value to be printed; null unless constructed from something. The JSON library, which takes seconds to compile
-/// wherever it is included, is known to the source file only.
+/// A JSON value to be printed; null unless constructed from a value. Only the source file includes the JSON library,
+/// whose compilation takes seconds.
 class Json {
  public:
   Json();
@@ -24,7 +24,7 @@ class Json {
   Json& operator=(const Json& other);
   Json& operator=(Json&& other) noexcept;
 
-  /// Infinities and "not a number" print as null.
+  /// Infinities and NaN print as null.
   template <std::floating_point Number>
   Json(Number value) : Json(from_number(value)) {}
   template <std::integral Integer>
@@ -35,7 +35,7 @@ class Json {
   Json(const std::string& value) : Json(std::string_view(value)) {}
   Json(std::string_view value);
   Json(const std::vector<double>& values);
-  /// Null if there is no value.
+  /// An empty optional is null.
   template <typename Value>
   Json(const std::optional<Value>& value) : Json(value ? Json(*value) : Json()) {}
   /// An object whose members keep their order.
@@ -49,7 +49,8 @@ class Json {
   /// Adds an element to an array.
   void append(const Json& value);
 
-  /// One member or element a line, two blanks a level. Replaces bytes that are not UTF-8.
+  /// Text with one member or element in each line, indented by two blanks for each level. Bytes that are not UTF-8 are
+  /// replaced.
   [[nodiscard]] std::string text() const;
 
  private:

@@ -14,7 +14,7 @@
 namespace proleg::tools {
 namespace {
 
-/// What a child does before it becomes the program.
+/// Actions of a child before it becomes the program.
 class SpawnActions {
  public:
   SpawnActions(const std::string& folder, int output) {
@@ -34,7 +34,7 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Up to the end of the pipe.
+/// Copies a pipe up to its end to standard error, and returns its text.
 std::string pass_through(int pipe) {
   std::string output;
   std::array<char, 4096> bytes{};

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder itself, or the nearest above it that exists.
+/// The folder itself, or the nearest existing folder above it.
 fs::path existing_part(const fs::path& folder) {
   std::error_code error;
   fs::path path = fs::absolute(folder).lexically_normal();

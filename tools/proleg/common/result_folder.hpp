@@ -1,6 +1,6 @@
 #pragma once
 
-// The folder (--out) in which a search, a sweep or an experiment leaves its files.
+// The folder (--out) into which a search, a sweep or an experiment writes its files.
 
 #include <filesystem>
 #include <span>
@@ -9,10 +9,10 @@
 namespace proleg::tools {
 
 /// Throws InputError if the folder cannot be made or written in, and BadInput if one of the files exists in it: results
-/// replace nothing that they did not write. To be called before the work begins.
+/// replace only their own files. To be called before the work begins.
 void check_result_folder(const std::filesystem::path& folder, std::span<const std::string_view> files);
 
-/// Throws BadInput.
+/// Creates the folder. Throws BadInput.
 void create_result_folder(const std::filesystem::path& folder);
 
 }  // namespace proleg::tools

@@ -17,7 +17,7 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr double much = sim::ServoTracking::much_time;
 constexpr double large_error_deg = sim::ServoTracking::large_error * degrees;
 
-/// "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above.
+/// Text "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above 20 %.
 std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,
                         double (sim::ServoTracking::*share)() const) {
   std::size_t worst = 0;
@@ -25,7 +25,7 @@ std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robo
   for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
     const double its_share = (measures.servos[joint].*share)();
     if (!(its_share > much) ||
-        !(measures.servos[joint].rms_error() * degrees > large_error_deg)) {  // also if not a number
+        !(measures.servos[joint].rms_error() * degrees > large_error_deg)) {  // true for NaN, too
       continue;
     }
     ++joints;

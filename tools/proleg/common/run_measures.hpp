@@ -1,6 +1,6 @@
 #pragma once
 
-// How programs show the measures of a run (docs/gait-measures.md).
+// The output of the measures of a run (docs/gait-measures.md).
 
 #include <string>
 #include <utility>
@@ -16,30 +16,30 @@ namespace proleg::tools {
 
 struct RunMeasures {
   sim::MeasureValues values;
-  std::vector<double> link_duty_factors;   ///< from the head
-  std::vector<sim::ServoTracking> servos;  ///< by joint, from the head
+  std::vector<double> link_duty_factors;   ///< duty factors of the links, from the head
+  std::vector<sim::ServoTracking> servos;  ///< tracking by joint, from the head
 };
 
 [[nodiscard]] RunMeasures measures_of(const sim::GaitMeter& meter);
 
-/// An object of all measures by name; null where the run does not define one.
+/// An object of all measures by name; null if the run does not define a measure.
 [[nodiscard]] Json measures_object(const sim::MeasureValues& values);
 
 /// An array with the tracking of each joint's servo, from the head: joint, rms_error_deg, max_error_deg,
-/// at_speed_limit, at_torque_limit; null where the run does not define one.
+/// at_speed_limit, at_torque_limit; null if the run does not define a value.
 [[nodiscard]] Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot);
 
-/// An array with what the sensors of the robot's file measured: sensor, type, quantity, unit, least, greatest, mean.
+/// An array with the values of the sensors in the robot's file: sensor, type, quantity, unit, least, greatest, mean.
 [[nodiscard]] Json sensors_array(const std::vector<sim::SensorSummary>& sensors);
 
-/// The same on standard output, one quantity a line; nothing if there are no sensors.
+/// Prints the values of the sensors on standard output, one quantity in each line.
 void print_sensors(const std::vector<sim::SensorSummary>& sensors);
 
 /// Prints a warning if servos are at a limit for more than a fifth of the time and miss their angles
-/// by more than 5 degrees (root mean square). program: as the line begins.
+/// by more than 5 degrees (root mean square). program: begin of the line.
 void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
 
-/// Prints the measures that the run defines on standard output, one a line.
+/// Prints the measures that the run defines on standard output, one in each line.
 void print_measures(const sim::MeasureValues& values);
 
 /// Adds least, greatest and mean value of the sensors' quantities to the results of a recording.

@@ -7,11 +7,11 @@
 
 namespace proleg::tools {
 
-/// A line on standard error that shows how much of a run is done. If standard error is no terminal, it is printed every
-/// ten seconds.
+/// A line on standard error that shows the progress of a run. If standard error is no terminal, it is printed every ten
+/// seconds.
 class RunProgress {
  public:
-  /// label: what is being done. total_s: simulated time of the whole run.
+  /// label: name of the work. total_s: simulated time of the whole run.
   RunProgress(std::string label, double total_s);
 
   /// Cheap; draws at most ten times a second.
@@ -24,10 +24,10 @@ class RunProgress {
   LogInterval log_interval_;
 };
 
-/// The same for a number of runs.
+/// A line on standard error that shows the progress of a number of runs.
 class CountProgress {
  public:
-  /// label: what is counted, such as "runs"; total: how many there are.
+  /// label: name of the counted things, as "runs"; total: their number.
   CountProgress(std::string label, std::uint64_t total);
 
   /// Cheap; draws at most ten times a second.

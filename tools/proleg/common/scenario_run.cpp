@@ -240,7 +240,7 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
               << '\n';
   }
   try {
-    // Follow a link, so that the recording replaces the file that it names.
+    // The path follows a link, so that the recording replaces the file that the link names.
     return std::make_unique<sim::Recorder>(follow_links(*options.record), scenario, program, build_id);
   } catch (const FileError& error) {
     throw BadInput(error.what());

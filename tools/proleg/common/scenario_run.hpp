@@ -1,6 +1,6 @@
 #pragma once
 
-// Common to all subcommands that run a scenario: options, interruption, output.
+// Common parts of all subcommands that run a scenario: options, interruption, output.
 
 #include <cstdint>
 #include <filesystem>
@@ -34,16 +34,16 @@ struct ScenarioOptions {
   bool json = false;
 };
 
-/// What replaces values of the scenario at the start of a run.
+/// Adds the options that replace values of the scenario at the start of a run.
 void add_override_options(CommandLine& command_line, ScenarioOptions& options);
-/// Throws InputError for an option of simulated worlds: overrides of them, and the others that are given.
+/// Throws InputError for an option of simulated worlds: an override, or one of the others that are given.
 void refuse_world_options(const ScenarioOptions& options,
                           std::initializer_list<std::pair<const char*, bool>> others = {});
-/// --move, for programs that simulate the gait in memory.
+/// Adds --move, for programs that simulate the gait in memory.
 void add_move_option(CommandLine& command_line, ScenarioOptions& options);
-/// The scenario's file, the length of the run, and the same.
+/// Adds the scenario's file, the length of the run, and the override options.
 void add_start_options(CommandLine& command_line, ScenarioOptions& options);
-/// All of the options.
+/// Adds all options.
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options);
 
 /// A scenario with the options applied.
@@ -53,46 +53,46 @@ struct ScenarioRun {
   std::uint32_t ticks;  ///< length of the run
 };
 
-/// Throws InputError if the path is a folder; the message names the files in it whose names end like this, e.g.
+/// Throws InputError if the path is a folder; the message names the files in it with this end of their names, e.g.
 /// ".simulation.xml".
 void refuse_folder(const std::filesystem::path& path, const std::string& suffix);
 
-/// Throws InputError.
+/// Reads the scenario and applies the options. Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options);
-/// The same with files that need not be on disk.
+/// Reads the scenario from files that need not be on disk, and applies the options. Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files);
 
-/// The joint whose module has this node id. Throws InputError if there is none. option, found: the user's words, for
-/// the message.
+/// The joint whose module has a node id. Throws InputError if no module has it. option, found: the user's arguments,
+/// for the message.
 [[nodiscard]] unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_t> node,
                                      const std::string& option, const std::string& found);
 
-/// Prints the warnings on the files on standard error: the first ones, and how many more there are.
+/// Prints the warnings on the files on standard error: the first ones, and the number of the others.
 void print_warnings(const std::string& program, const sim::Scenario& scenario);
 
 /// Prints a warning if the limits of a joint cut its set-points in more than one tick of a hundred; it names the joint
-/// that is cut most. clipped_ticks: of each joint. ticks: length of the run.
+/// that is cut most. clipped_ticks: number of ticks for each joint. ticks: length of the run.
 void print_warning_on_clipping(const std::string& program, const sim::Scenario& scenario,
                                std::span<const std::uint32_t> clipped_ticks, std::uint32_t ticks);
 
 /// Prints the remarks on the files and the start value of every parameter of every joint on standard error.
 void print_setup(const sim::Scenario& scenario);
 
-/// The overrides for --json: null where a value is that of the files.
+/// The overrides for --json; null for a value of the files.
 [[nodiscard]] Json overrides_object(const sim::Overrides& overrides);
 
 /// The file of --record, for check_outputs(); empty without that option.
 [[nodiscard]] std::vector<PlannedOutput> planned_recording(const ScenarioOptions& options);
 
-/// The recorder for --record; null without that option. program: what computes the gait. Throws BadInput if the file
-/// cannot be created.
+/// The recorder for --record; null without that option. program: the program that computes the gait. Throws BadInput if
+/// the file cannot be created.
 [[nodiscard]] std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options,
                                                            const sim::Scenario& scenario, const std::string& program);
 
-/// What --losses did, for people: "2969 of 59900 (5.0 %); a frame counts once for each joint that is to receive it".
+/// Text on the effect of --losses: "2969 of 59900 (5.0 %); a frame counts once for each joint that is to receive it".
 [[nodiscard]] std::string losses_text(std::uint64_t lost, std::uint64_t receptions);
 
-/// "; what was simulated is in FILE", for messages about a run that ended early; empty without a recording.
+/// Text "; what was simulated is in FILE", for messages about a run that ended early; empty without a recording.
 [[nodiscard]] std::string kept_in_recording(const ScenarioOptions& options);
 
 }  // namespace proleg::tools

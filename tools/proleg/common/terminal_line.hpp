@@ -7,17 +7,18 @@
 
 namespace proleg::tools {
 
-/// A line on standard error that is drawn again and again to show progress. Nothing if standard error is no terminal.
+/// A line on standard error that is drawn repeatedly to show progress. It is not drawn if standard error is no
+/// terminal.
 class TerminalLine {
  public:
-  /// delay: before the first drawing, so that short work shows nothing.
+  /// delay: time before the first drawing, so that short work shows no line.
   explicit TerminalLine(std::chrono::milliseconds delay);
   /// Erases the line.
   ~TerminalLine();
   TerminalLine(const TerminalLine&) = delete;
   TerminalLine& operator=(const TerminalLine&) = delete;
 
-  /// False without a terminal.
+  /// Whether standard error is a terminal.
   [[nodiscard]] bool is_visible() const { return is_terminal_; }
   /// True at most ten times a second, and never without a terminal: time to draw.
   [[nodiscard]] bool is_due();
@@ -35,14 +36,14 @@ class TerminalLine {
   std::chrono::steady_clock::time_point next_drawing_;
 };
 
-/// Says when to print a line of a log: once in each interval.
+/// Determines when to print a line of a log: once in each interval.
 class LogInterval {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   LogInterval(Time start, std::chrono::milliseconds interval) : interval_(interval), next_(start + interval) {}
 
-  /// Whether an interval has passed since the start or the last time that this was true.
+  /// Whether an interval has passed since the start or the last time that this function returned true.
   [[nodiscard]] bool is_due(Time now) {
     if (now < next_) {
       return false;
@@ -56,7 +57,7 @@ class LogInterval {
   Time next_;
 };
 
-/// "5 s", "4 min 10 s", "2 h 5 min".
+/// Text of a duration: "5 s", "4 min 10 s", "2 h 5 min".
 [[nodiscard]] std::string duration_text(double seconds);
 
 }  // namespace proleg::tools

@@ -1,4 +1,4 @@
-// proleg algorithms: the declarations of the core's algorithms and the measures of a run, for people and, as
+// proleg algorithms: prints the declarations of the core's algorithms and the measures of a run for the user and, as
 // docs/algorithms.md and the table of docs/gait-measures.md, for the documentation.
 
 #include <iostream>
@@ -21,7 +21,7 @@ std::string number(std::int32_t value, Unit unit) { return std::string(format_de
 
 std::string symbol(Unit unit) { return scale_of(unit).symbol; }
 
-/// " [deg]"; nothing for a ratio or a count.
+/// Text of a unit, as " [deg]"; empty for a ratio or a count.
 std::string in_brackets(Unit unit) {
   const std::string text = sim::shown_unit(unit);
   return text.empty() ? "" : " [" + text + "]";
@@ -34,7 +34,7 @@ std::string range(const Parameter& parameter) {
   return number(parameter.minimum, parameter.unit) + " to " + number(parameter.maximum, parameter.unit);
 }
 
-/// "bytes 0-3 phase, bytes 4-5 current_amplitude"
+/// Text "bytes 0-3 phase, bytes 4-5 current_amplitude".
 std::string frame_layout(const Declaration& declaration) {
   std::string layout;
   unsigned position = 0;

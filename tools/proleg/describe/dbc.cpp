@@ -36,10 +36,10 @@ using Broadcast = std::vector<BroadcastField>;
 
 struct Joint {
   std::uint8_t node;
-  std::string name;           ///< of its messages
-  std::string comment;        ///< on its node
+  std::string name;           ///< name in its messages
+  std::string comment;        ///< comment on its node
   bool has_far_link = false;  ///< its frame has the contacts of the link in front, too
-  /// By channel; nothing: the frame is not sent.
+  /// Broadcasts by channel; nothing if the frame is not sent.
   std::array<std::optional<Broadcast>, max_channels> broadcasts;
 };
 
@@ -56,7 +56,7 @@ DbcMessage emergency_message(const Joint& joint) {
            member("detail", &Emergency::detail, "a tick, a transaction, a joint, ... by the code (docs/protocol.md)")}};
 }
 
-/// What the mapping parameters of a PDO say, in their order.
+/// Adds the signals of a PDO's mapping parameters, in their order.
 void add_mapped(DbcMessage& message, std::span<const Object> mapping) {
   unsigned start = 0;
   for (const Object& parameter : mapping) {
@@ -118,7 +118,7 @@ constexpr std::array flags{
 
 DbcSignal broadcast_signal(const BroadcastField& field, unsigned start) {
   const unsigned bits = 8U * field.bytes;
-  const bool is_count = field.unit == Unit::count;  // these send their low bits, others the high ones
+  const bool is_count = field.unit == Unit::count;  // counts send their low bits, other units the high ones
   DbcSignal signal = plain(field.name, start, bits, field.help);
   signal.is_signed = !is_count;
   signal.factor = factor_of(scale_of(field.unit), is_count ? 0 : 32 - bits);
@@ -165,7 +165,7 @@ void add_messages(DbcFile& file, const Joint& joint) {
   file.messages.push_back(sdo_answer_message(joint.node, joint.name));
 }
 
-/// joints: in kernel order; the module of the first one sends SYNC.
+/// joints must be in kernel order; the module of the first one sends SYNC.
 void print_dbc(std::ostream& out, const std::vector<Joint>& joints) {
   DbcFile file;
   file.version = "protocol " + std::to_string(protocol_version >> 8U) + "." + std::to_string(protocol_version & 0xFFU);
@@ -198,7 +198,8 @@ Broadcast broadcast_of(const Declaration& declaration) {
   return fields;
 }
 
-/// What is the same in the frames of all algorithms that have it: of a robot whose algorithms are not known.
+/// The fields that are equal in the frames of all algorithms that have them, for a robot whose algorithms are not
+/// known.
 Broadcast common_broadcast() {
   Broadcast common;
   std::size_t agreed = std::numeric_limits<std::size_t>::max();
@@ -220,7 +221,8 @@ Broadcast common_broadcast() {
   return common;
 }
 
-/// Names of the joints as parts of names in the file. If one is too long or is there twice, all end with the node id.
+/// Sets the joints' names as parts of names in the file. If a name is too long or occurs twice, all end with the node
+/// id.
 void name_joints(std::vector<Joint>& joints) {
   constexpr std::size_t longest = max_dbc_name - std::string_view("_SecondState").size();
   constexpr std::size_t longest_suffix = std::string_view("_126").size();

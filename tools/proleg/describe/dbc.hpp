@@ -9,9 +9,10 @@ namespace proleg::tools {
 /// Writes the frames of the protocol as a DBC file, with names, places, units and values of their signals. They follow
 /// from the declarations of the messages, the process data objects and the algorithms.
 ///
-/// Of the robot of a scenario: its node ids, names of joints, and what the algorithm of each joint broadcasts.
+/// The file describes the robot of a scenario: its node ids, names of joints, and the broadcasts of each joint's
+/// algorithm.
 void print_dbc(std::ostream& out, const sim::Scenario& scenario);
-/// Of any robot with the node ids 1 to `nodes`.
+/// Writes the frames for any robot with the node ids 1 to `nodes`.
 void print_dbc(std::ostream& out, unsigned nodes);
 
 }  // namespace proleg::tools

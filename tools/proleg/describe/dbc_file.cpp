@@ -11,7 +11,8 @@ namespace {
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The format has no escape for a quotation mark that all readers know, and not all read more than ASCII.
+/// A string in ASCII without quotation marks: the format has no escape for them that all readers know, and not all
+/// readers accept other characters.
 std::string dbc_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -51,7 +52,7 @@ std::string dbc_name(std::string_view text) {
 
 void set_full_range(DbcSignal& signal) {
   if (signal.bits > std::numeric_limits<double>::digits) {
-    return;  // 0 to 0: not given; readers take limits as floating point
+    return;  // the range is not given; readers take limits as floating point
   }
   const int magnitude = static_cast<int>(signal.bits) - (signal.is_signed ? 1 : 0);
   signal.minimum = signal.is_signed ? -std::ldexp(signal.factor, magnitude) : 0.0;

@@ -15,7 +15,7 @@ struct DbcChoice {
   std::string text;
 };
 
-/// In the place of a node: none in particular.
+/// Name in the place of a node that means no particular one.
 inline constexpr const char* any_node = "Vector__XXX";
 
 /// All signals are little-endian: the lowest bit is the start bit. value = raw * factor.
@@ -25,13 +25,14 @@ struct DbcSignal {
   unsigned bits = 1;
   bool is_signed = false;
   double factor = 1.0;
-  double minimum = 0.0;  ///< of the value, in the unit; both 0: not given
+  double minimum = 0.0;  ///< bounds of the value, in the unit; both 0: not given
   double maximum = 0.0;
   std::string unit = {};
   std::string receiver = any_node;
   std::string comment = {};
   std::vector<DbcChoice> choices = {};
-  /// "M": selects the other signals by its value; "m3": is in the frame if that value is 3; "": always.
+  /// "M": this signal selects the others by its value; "m3": the frame has it if that value is 3; "": the frame always
+  /// has it.
   std::string multiplex = {};
 };
 
@@ -49,7 +50,7 @@ struct DbcNode {
   std::string comment;
 };
 
-/// Values that are in no frame with a fixed place.
+/// Names of values that have no fixed place in a frame.
 struct DbcTable {
   std::string name;
   std::vector<DbcChoice> choices;
@@ -63,7 +64,7 @@ struct DbcFile {
   std::vector<DbcMessage> messages;
 };
 
-/// Old tools know no longer names.
+/// Longest name that old tools accept.
 inline constexpr std::size_t max_dbc_name = 32;
 
 /// Text with all characters but ASCII letters and digits replaced by '_', with a letter at the start.

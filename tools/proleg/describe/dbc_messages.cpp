@@ -67,7 +67,7 @@ std::vector<DbcChoice> nmt_states() {
           choice(NmtState::operational, "Operational"), choice(NmtState::pre_operational, "Pre-operational")};
 }
 
-/// Those of a range of codes that have a description.
+/// Adds the codes of a range that have a description.
 template <typename Code>
 void add_described(std::vector<DbcChoice>& choices, std::uint32_t first, std::uint32_t last, std::string_view unknown) {
   for (std::uint32_t code = first; code <= last; ++code) {
@@ -80,7 +80,7 @@ void add_described(std::vector<DbcChoice>& choices, std::uint32_t first, std::ui
 
 std::vector<DbcChoice> abort_codes() {
   std::vector<DbcChoice> choices;
-  // CiA 301, table 22: classes 5, 6 and 8, codes of two bytes of which the higher is 0.
+  // Classes 5, 6 and 8 (CiA 301, table 22) are codes of two bytes of which the higher is 0.
   for (std::uint32_t upper = 0x0500; upper <= 0x0800; ++upper) {
     add_described<AbortCode>(choices, upper << 16U, upper << 16U | 0xFFU, describe(static_cast<AbortCode>(~0U)));
   }
@@ -93,7 +93,7 @@ constexpr std::uint16_t fault_reset = 0x80;
 
 std::vector<DbcChoice> emergency_codes() {
   std::vector<DbcChoice> choices;
-  // A vendor's code that the protocol does not use.
+  // This is a vendor's code that the protocol does not use.
   add_described<EmergencyCode>(choices, 0, 0xFFFF, describe(static_cast<EmergencyCode>(0xFFFF)));
   return choices;
 }
@@ -181,7 +181,7 @@ namespace {
 // Services, whose frames have other contents for each value of their first bits. Each value has a signal at least,
 // because readers refuse a frame with a value that has none.
 
-/// A signal that is in the frame with that value of the selecting one.
+/// A signal that is in the frame with a value of the selecting signal.
 DbcSignal selected(unsigned value, DbcSignal signal) {
   signal.multiplex = "m" + std::to_string(value);
   return signal;
@@ -260,11 +260,11 @@ class LssSignals {
   void add(lss::Service service, const std::string& text, std::vector<DbcSignal> contents) {
     add(static_cast<std::uint8_t>(service), text, std::move(contents));
   }
-  /// A service that is only its name.
+  /// Adds a service without arguments.
   void add(lss::Service service, const std::string& text) {
     add(service, text, {plain(signal_name(text) + "_unused", 8, 56)});
   }
-  /// The services `first` and those after it: a number each.
+  /// Adds the services from `first` on, each with a number.
   void add_words(lss::Service first, std::span<const char* const> names) {
     auto service = static_cast<std::uint8_t>(first);
     for (const char* const name : names) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// The parts of messages as a DBC file has them, inferred from the encoders of the protocol; and the messages that do
-// not depend on the robot.
+// The parts of messages in a DBC file, inferred from the encoders of the protocol; and the messages that do not depend
+// on the robot.
 
 #include <array>
 #include <bit>
@@ -22,19 +22,19 @@ namespace proleg::tools {
 /// The name of the node of all host programs.
 inline constexpr const char* dbc_host = "Host";
 
-/// dropped_bits: lowest bits of the value that the frame does not have.
+/// Factor from raw value to unit. dropped_bits: number of the value's lowest bits that the frame does not have.
 [[nodiscard]] double factor_of(UnitScale scale, unsigned dropped_bits = 0);
-/// Empty for a ratio.
+/// Text of the unit; empty for a ratio.
 [[nodiscard]] std::string unit_of(UnitScale scale);
 
-/// A whole number.
+/// A signal that is a whole number.
 [[nodiscard]] DbcSignal plain(std::string name, unsigned start, unsigned bits, std::string comment = {});
 
-/// The bits in which frames differ, as a signal: they are where an encoder writes a field that has other values in
-/// them. Throws std::logic_error if they are not adjacent.
+/// The bits in which frames differ, as a signal: an encoder writes the field whose values differ there. Throws
+/// std::logic_error if they are not adjacent.
 [[nodiscard]] DbcSignal difference(std::string name, const CanFrame& frame, std::span<const CanFrame> others);
 
-/// A member of a message of shared/canopen/messages.hpp.
+/// The signal of a member of a message of shared/canopen/messages.hpp.
 template <typename Message, typename Member>
 [[nodiscard]] DbcSignal member(std::string name, Member Message::*pointer, std::string comment = {}) {
   std::array<std::uint8_t, sizeof(Member)> ones{};
@@ -61,23 +61,23 @@ template <typename Code>
 
 /// The signal with names for its values.
 [[nodiscard]] DbcSignal chosen(DbcSignal signal, std::vector<DbcChoice> choices);
-/// All signals of the message are for this node.
+/// Sets the receiver of all signals of a message.
 void set_receiver(DbcMessage& message, const std::string& node);
-/// "Target position": target_position
+/// Name of a signal: target_position for "Target position".
 [[nodiscard]] std::string signal_name(std::string_view text);
 
 [[nodiscard]] std::vector<DbcChoice> emergency_codes();
-/// CiA 402, command coding, as a host writes them.
+/// The controlwords that a host writes (CiA 402, command coding).
 [[nodiscard]] std::vector<DbcChoice> controlwords();
 /// The statuswords of a walk through the states of the drive.
 [[nodiscard]] std::vector<DbcChoice> statuswords();
 
 [[nodiscard]] DbcMessage nmt_message();
-/// producer: name of the node that sends SYNC.
+/// The message SYNC. producer: name of the node that sends it.
 [[nodiscard]] DbcMessage sync_message(const std::string& producer);
 [[nodiscard]] DbcMessage tick_message(const std::string& producer);
 [[nodiscard]] DbcMessage commit_message();
-/// name: of the node.
+/// The heartbeat of a node. name: name of the node.
 [[nodiscard]] DbcMessage heartbeat_message(std::uint8_t node, const std::string& name);
 [[nodiscard]] DbcMessage lss_request_message();
 [[nodiscard]] DbcMessage lss_answer_message();

@@ -19,7 +19,7 @@ constexpr const char* time_of_day = "12:00PM";
 
 bool is_between(std::uint16_t index, unsigned first, unsigned last) { return index >= first && index <= last; }
 
-/// Objects, as in a mapping parameter, that are in a PDO.
+/// The objects in a PDO, with the fields of a mapping parameter.
 struct Mapped {
   std::set<std::uint32_t> receive;
   std::set<std::uint32_t> transmit;
@@ -38,7 +38,7 @@ struct Mapped {
   }
 };
 
-/// Signed types in decimal: readers do not agree on what a negative number is in hexadecimal.
+/// Text of a value. Signed types are decimal, because readers do not agree on negative numbers in hexadecimal.
 std::string number(DataType type, std::uint32_t value) {
   return is_signed(type) ? std::to_string(static_cast<std::int32_t>(value)) : hexadecimal(value, 2U * size_of(type));
 }
@@ -69,7 +69,7 @@ Range outer_range(const Object& object) {
   return range;
 }
 
-/// A tool that downloads all values must not write it: the value is a command to the module.
+/// Whether the value is a command to the module: a tool that downloads all values must not write it.
 bool is_command(const Object& object) {
   return object.address == object::store_parameters.address || object.address == object::restore_parameters.address;
 }
@@ -96,7 +96,7 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
     out << "HighLimit=" << number(object.type, range.maximum) << '\n';
   }
   out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
-  // The following keys are not of CiA 306, which lets readers skip what they do not know: python-canopen reads them.
+  // The following keys are not in CiA 306, which lets readers skip unknown keys: python-canopen reads them.
   const UnitScale& scale = object.scale;
   if (scale.numerator != scale.denominator) {
     out << "Factor=" << exact_text(static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator))
@@ -109,7 +109,7 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
     out << "Description=" << object.help << '\n';
   }
   if (is_command(object)) {
-    out << "ObjFlags=0x1\n";  // CiA 306: refuse write on download
+    out << "ObjFlags=0x1\n";  // refuse write on download (CiA 306)
   }
 }
 
@@ -125,7 +125,7 @@ void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped) {
       << "\nObjectType=" << hexadecimal(static_cast<std::uint32_t>(info.code), 1) << "\nSubNumber=" << info.max_sub + 1
       << '\n';
   for (unsigned sub = 0; sub <= info.max_sub; ++sub) {
-    // CiA 306: in hexadecimal.
+    // The sub-index is hexadecimal (CiA 306).
     out << "\n[" << name << "sub" << hexadecimal(sub).substr(2) << "]\n";
     print_entry(out, *find_object({index, static_cast<std::uint8_t>(sub)}), mapped);
   }

@@ -1,5 +1,5 @@
-// proleg objects: the object dictionary of a module, for people, as docs/objects.md for the documentation, and as
-// docs/proleg.eds for CANopen tools; the frames of a robot as docs/proleg.dbc for CAN tools.
+// proleg objects: prints the object dictionary of a module for the user, as docs/objects.md for the documentation, and
+// as docs/proleg.eds for CANopen tools; prints the frames of a robot as docs/proleg.dbc for CAN tools.
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ constexpr std::size_t columns = 8;
 using Line = std::array<std::string, columns>;
 const Line titles{"object", "sub", "name", "type", "access", "default", "range", "what it is"};
 
-/// Identifiers and codes in hexadecimal, quantities in decimal.
+/// Text of a value: identifiers and codes in hexadecimal, quantities in decimal.
 std::string number(const Object& object, std::uint32_t value) {
   if (is_signed(object.type)) {
     return std::to_string(static_cast<std::int32_t>(value));
@@ -120,7 +120,7 @@ Line line_of(const ObjectRow& row) {
           std::string(object.help)};
 }
 
-/// "0x3080 to 0x3086", or "none".
+/// Text "0x3080 to 0x3086", or "none".
 std::string index_range(ValueKind kind, const Declaration& declaration) {
   const std::size_t count =
       kind == ValueKind::internal_value ? declaration.internal_values.size() : declaration.parameters.size();
@@ -193,7 +193,7 @@ void print_text(std::ostream& out) {
   }
 }
 
-/// Joints of the shipped robots.
+/// Number of joints of the shipped robots.
 constexpr unsigned default_nodes = 5;
 
 void print_dbc(std::ostream& out, const std::string& scenario, const std::optional<std::string>& nodes) {

@@ -22,10 +22,10 @@ namespace {
 
 using nlohmann::json;
 
-// More than the time line has room for would be one bar.
+// The time line has no room for more marks: they would be one bar.
 constexpr std::uint32_t max_loss_marks = 200;
 
-/// What happened at a tick, for the time line.
+/// An event at a tick, for the time line.
 struct Mark {
   std::uint64_t tick;
   const char* kind;

@@ -21,14 +21,14 @@ using nlohmann::json;
 
 json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-/// To whole micrometres, in m.
+/// A length in m, rounded to whole micrometres.
 double to_micrometres(double metres) { return std::round(metres * 1e6) / 1e6; }
 
-/// The meshes of a document. Shapes that share one name it by its number.
+/// The meshes of a document. Shapes name a mesh, which they may share, by its number.
 class Meshes {
  public:
-  /// The shape of a mesh. Its origin is the middle of the box around the mesh, as of other shapes, and its size half of
-  /// that box. pose: of the mesh.
+  /// The shape of a mesh. As for other shapes, its origin is the middle of the box around the mesh, and its size half
+  /// of that box. pose: pose of the mesh.
   json shape(const std::shared_ptr<const sim::TriangleMesh>& mesh, const sim::Pose& pose) {
     const auto [known, is_new] = numbers_.try_emplace(mesh.get(), documents_.size());
     const sim::Bounds bounds = sim::bounds_of(*mesh, {});
@@ -106,7 +106,7 @@ json shapes_json(std::span<const sim::Geometry> geometries, std::span<const sim:
   return shapes;
 }
 
-/// Of a link, a static object or one that moves.
+/// The shapes of a link, a static object or one that moves.
 template <typename Body>
 json body_json(const Body& body, Meshes& meshes) {
   return {{"name", body.name},
@@ -190,7 +190,7 @@ json parameter_json(const sim::Scenario& scenario, const ParameterTable& table, 
   return object;
 }
 
-/// An internal value has no wanted value: it can be overwritten once, a distortion.
+/// An internal value has no wanted value: it can be overwritten once, as a distortion.
 json internal_value_json(const sim::Scenario& scenario, unsigned slot, const InternalValue& value) {
   return {{"slot", slot + 1},
           {"name", value.name},

@@ -10,7 +10,7 @@
 
 namespace proleg::tools {
 
-/// [x, y, z, qw, qx, qy, qz]
+/// A pose as [x, y, z, qw, qx, qy, qz].
 [[nodiscard]] nlohmann::json pose_json(const sim::Pose& pose);
 
 /// The document `robot`. kind: "simulation", "bus" or "recording".

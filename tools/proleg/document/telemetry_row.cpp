@@ -14,7 +14,7 @@
 namespace proleg::tools {
 namespace {
 
-/// The nearest raw value; beyond the range of int32 the last one that is a value.
+/// The nearest raw value; beyond the range of int32 the last raw value of the range.
 std::int32_t rounded(double value) {
   if (!std::isfinite(value)) {
     return host::no_value;
@@ -25,7 +25,7 @@ std::int32_t rounded(double value) {
 
 constexpr double unit_quaternion = 1 << 30;
 constexpr std::size_t pose_values = 7;
-/// Of a quantity of an attached sensor, in its unit.
+/// Step of a quantity of an attached sensor, in its unit.
 constexpr double sensor_step = 1e-3;
 constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
 
@@ -81,7 +81,7 @@ std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
 
 namespace {
 
-/// Runs of real robots, and recordings of older programs, have no values.
+/// Appends the values of sensors. Runs of real robots, and recordings of older programs, have no values.
 void fill_sensors(std::span<const double> values, const sim::RobotModel& robot, std::vector<std::int32_t>& row) {
   std::size_t first = 0;
   for (const sim::AttachedSensor& sensor : robot.sensors) {
@@ -120,10 +120,10 @@ void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std:
     if (object < sample.object_poses.size()) {
       append_pose(sample.object_poses[object], row);
     } else {
-      row.insert(row.end(), pose_values, host::no_value);  // not simulated
+      row.insert(row.end(), pose_values, host::no_value);  // the pose is not simulated
     }
   }
-  // A recording has all values of one joint behind each other, a signal one value of all joints.
+  // A recording has all values of one joint one after the other, a signal has one value of all joints.
   std::size_t begin = 0;
   for (const unsigned slot : sim::used_slots(scenario)) {
     const Slot& used = scenario.kernel.slots[slot];

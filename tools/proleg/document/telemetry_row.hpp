@@ -13,19 +13,19 @@
 
 namespace proleg::tools {
 
-/// What one step of a raw value is worth in its unit.
+/// Size of one step of a raw value, in its unit.
 [[nodiscard]] double value_of_step(Unit unit);
 
 /// An angle in rad as a raw value of the unit degree; no_value if it is not finite.
 [[nodiscard]] std::int32_t raw_angle(double angle);
 
-/// The signals of a robot. Their values follow each other in a row, in this order.
+/// The signals of a robot, in the order of their values in a row.
 [[nodiscard]] std::vector<host::Signal> signals_of(const sim::Scenario& scenario);
 
-/// The values of a tick, in the order of signals_of(). The row is overwritten.
+/// Overwrites the row with the values of a tick, in the order of signals_of().
 void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std::vector<std::int32_t>& row);
 
-/// The same of a recording. scenario: scenario_of() the recording.
+/// Overwrites the row with the values of a recorded tick. scenario: scenario_of() the recording.
 void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std::vector<std::int32_t>& row);
 
 }  // namespace proleg::tools

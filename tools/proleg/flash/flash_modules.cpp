@@ -43,7 +43,6 @@ void start(BusAccess& bus, host::SilentModules& search, std::span<const FlashCan
       products.push_back(module.board_id);
     }
   }
-  bus.connection().attach(search);
   search.start(bus.connection().now(), canopen::object::vendor.default_value, std::move(products), std::move(serials));
 }
 
@@ -56,7 +55,6 @@ host::SilentModulesOptions search_options() {
 
 std::vector<FlashCandidate> finish(BusAccess& bus, host::SilentModules& search) {
   bus.wait_for("modules without a node id", longest_search + second, [&search] { return search.is_done(); });
-  bus.connection().detach(search);
   std::vector<FlashCandidate> modules;
   for (const host::SilentModule& module : search.found()) {
     modules.push_back({{module.serial, false, {}, {}},
@@ -73,6 +71,7 @@ std::vector<FlashCandidate> find_silent_modules(BusAccess& bus, std::span<const 
   host::SilentModulesOptions options = search_options();
   options.answer_timeout_us = host::BusScanOptions().answer_timeout_us;  // a module behind a radio is found by both
   host::SilentModules search(bus.connection(), options);
+  const host::BusAttachment attachment(bus.connection(), search);
   start(bus, search, known);
   return finish(bus, search);
 }
@@ -108,10 +107,9 @@ void ask_programs(BusAccess& bus, std::span<FlashCandidate> modules) {
     asked.push_back(module.program.serial);
   }
   host::ModuleQuery query(bus.connection());
-  bus.connection().attach(query);
+  const host::BusAttachment attachment(bus.connection(), query);
   query.start(bus.connection().now(), asked);
   bus.wait_for("the answers of the modules", 120 * second, [&query] { return query.is_done(); });
-  bus.connection().detach(query);
   for (std::size_t i = 0; i < modules.size(); ++i) {
     modules[i].program = query.modules()[i];
   }
@@ -167,9 +165,13 @@ FoundModules find_modules(BusAccess& bus, const std::optional<std::vector<std::u
   host::SilentModulesOptions options = search_options();
   options.answer_timeout_us = wired_answer;
   host::SilentModules search(bus.connection(), options);
-  start(bus, search, found.modules);
-  ask_programs(bus, found.modules);
-  std::vector<FlashCandidate> stopped = finish(bus, search);
+  std::vector<FlashCandidate> stopped;
+  {
+    const host::BusAttachment attachment(bus.connection(), search);
+    start(bus, search, found.modules);
+    ask_programs(bus, found.modules);
+    stopped = finish(bus, search);
+  }
   ask_programs(bus, stopped);
   found.modules.insert(found.modules.end(), stopped.begin(), stopped.end());
   sort(found.modules);

@@ -108,10 +108,9 @@ void Recovery::wait() {
 
 bool Recovery::ask(const std::vector<std::uint32_t>& serials) {
   host::ModuleQuery query(bus_.connection(), host::ModuleQueryOptions{.attempts = 3});
-  bus_.connection().attach(query);
+  const host::BusAttachment attachment(bus_.connection(), query);
   query.start(bus_.connection().now(), serials);
   bus_.wait_for("the answers of the modules", 120 * second, [&query] { return query.is_done(); });
-  bus_.connection().detach(query);
   bool have_answered = true;
   for (const host::ModuleProgram& program : query.modules()) {
     have_answered = have_answered && program.has_answered;

@@ -155,15 +155,9 @@ UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image, std::s
   options.through_its_line = through_its_line;
   host::BusConnection& connection = bus.connection();
   RobotUpdate update(connection, image, serials, options);
-  connection.attach(update);
+  const host::BusAttachment attachment(connection, update);
   update.start(connection.now());
-  try {
-    follow(connection, update, modules, through_its_line, hint);
-  } catch (...) {
-    connection.detach(update);
-    throw;
-  }
-  connection.detach(update);
+  follow(connection, update, modules, through_its_line, hint);
   const auto seconds = [&update](RobotUpdate::Step step) { return static_cast<double>(update.duration(step)) / 1e6; };
   return {update.modules(),
           {seconds(RobotUpdate::Step::transfer), seconds(RobotUpdate::Step::installation),

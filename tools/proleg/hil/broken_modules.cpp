@@ -5,7 +5,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/native_module.hpp"
+#include "sim/hardware_loop/native_module.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg::tools {
@@ -75,7 +75,7 @@ std::unique_ptr<sim::JointModule> BrokenModules::make(const sim::ModuleParts& pa
   } else if (kind == Kind::newer_settings) {
     constexpr std::uint8_t known = firmware::BoardRecord::schema;
     module->write_settings(known + 1);
-    // Every native program is this one. It knows what is written in its own schema.
+    // All native modules have this program. It knows the data of its own schema.
     module->program().set_health([written = module.get()](const image::Header& header) {
       if (header.settings_schema > known) {
         written->write_settings(known);

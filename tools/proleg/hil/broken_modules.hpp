@@ -7,25 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "sim/loop/hardware_options.hpp"
+#include "sim/hardware_loop/hardware_options.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {
 
 class BrokenModules {
  public:
-  /// words: of --broken, NODE=KIND each, with the node ids of the robot's file. Throws InputError. scenario: must
+  /// words: arguments NODE=KIND of --broken, with the node ids of the robot's file. Throws InputError. scenario must
   /// outlive this object.
   BrokenModules(const std::vector<std::string>& words, const sim::Scenario& scenario);
 
-  /// The words of --broken for NODE=KIND, as --help shows them.
+  /// The form NODE=KIND of --broken with its kinds, as --help shows it.
   [[nodiscard]] static std::string syntax();
 
-  /// Gives modules the node ids of others. nodes: by joint.
+  /// Gives modules the node ids of others. nodes: node ids by joint.
   void share_node_ids(std::vector<std::uint8_t>& nodes) const;
-  /// A native module that is broken; null for one that is not.
+  /// Makes a native module that is broken; null if the module is not broken.
   [[nodiscard]] std::unique_ptr<sim::JointModule> make(const sim::ModuleParts& parts) const;
-  /// Whether make() makes it.
+  /// Whether make() makes the module of a joint.
   [[nodiscard]] bool makes(unsigned joint) const {
     return faults_[joint].kind != Kind::none && faults_[joint].kind != Kind::duplicate;
   }
@@ -34,12 +34,12 @@ class BrokenModules {
   enum class Kind : std::uint8_t { none, hangs, faults, no_program, newer_settings, duplicate };
   struct Fault {
     Kind kind = Kind::none;
-    unsigned other = 0;  ///< of duplicate: the joint of the other module
+    unsigned other = 0;  ///< joint of the other module with the same node id
   };
   void parse(const std::string& word);
 
   const sim::Scenario& scenario_;
-  std::vector<Fault> faults_;  ///< by joint
+  std::vector<Fault> faults_;  ///< faults by joint
 };
 
 }  // namespace proleg::tools

@@ -67,7 +67,8 @@ CanStatus status_of(const sim::Controller& controller) {
   return status;
 }
 
-/// Node ids that the modules have at the start: those of the robot's file, or shuffled, or of each other, or none.
+/// Node ids that the modules have at the start: those of the robot's file, shuffled ones, those of other modules, or
+/// none.
 std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::Scenario& scenario,
                                       const BrokenModules& broken) {
   std::vector<std::uint8_t> nodes;
@@ -100,7 +101,8 @@ std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::S
   return nodes;
 }
 
-/// Where a program reaches the serial line of a module, if one is to be a gateway. nodes: as start_nodes() has them.
+/// The place at which a program reaches the serial line of a module, if one is a gateway. nodes: those of
+/// start_nodes().
 std::optional<GatewayPlace> gateway_place(const ServerOptions& options, const sim::Scenario& scenario,
                                           const std::vector<std::uint8_t>& nodes) {
   if (!options.gateway) {
@@ -139,7 +141,7 @@ class Server final : private host::BusServerListener {
     open(options);
   }
 
-  /// Until the user interrupts, the descriptor is closed, or `until` (0: no end) of the robot's time.
+  /// Serves clients until the user interrupts, the descriptor is closed, or the robot's time is `until` (0: no end).
   void serve(sim::BusTime until) {
     RealTimePace pace;
     while (!interrupted() && !is_closed_ && (until == 0 || robot_.now() < until)) {
@@ -160,7 +162,7 @@ class Server final : private host::BusServerListener {
 
  private:
   static constexpr std::uint64_t longest_wait_ns = 10'000'000;
-  /// In such pieces the simulation gives the clients a turn if it is late.
+  /// If the simulation is late, it gives the clients a turn after pieces of this length.
   static constexpr sim::BusTime longest_piece_ns = 1'000'000;
 
   sim::LiveRobotOptions live_options(HilModules& modules, const BrokenModules& broken) {
@@ -227,7 +229,7 @@ class Server final : private host::BusServerListener {
     }
   }
 
-  /// A person at a real robot sees which joint moves.
+  /// Reports the power of joints: a person at a real robot sees which joint moves.
   void report_power() {
     for (unsigned joint = 0; joint < robot_.joint_count(); ++joint) {
       const bool has_power = robot_.module(joint).pulse().has_value();
@@ -257,10 +259,10 @@ class Server final : private host::BusServerListener {
   }
   void descriptor_closed() override { is_closed_ = true; }
 
-  std::vector<std::uint8_t> nodes_;  ///< by joint, at the start; 0: none
+  std::vector<std::uint8_t> nodes_;  ///< node ids at the start, by joint; 0: none
   std::optional<GatewayPlace> gateway_place_;
   const sim::RobotModel& robot_model_;
-  std::vector<bool> has_power_ = std::vector<bool>(nodes_.size());  ///< by joint, as reported
+  std::vector<bool> has_power_ = std::vector<bool>(nodes_.size());  ///< reported power by joint
   bool is_verbose_;
   bool is_closed_ = false;
   std::unique_ptr<sim::CandumpLog> log_;

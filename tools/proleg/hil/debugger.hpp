@@ -10,10 +10,10 @@
 
 namespace proleg::tools {
 
-/// gdb attached to one virtual module of `proleg hil`. While the program is stopped, so is the simulation.
+/// Attaches gdb to one virtual module of `proleg hil`. While the program is stopped, the simulation is stopped too.
 class Debugger {
  public:
-  /// Does not open the port yet.
+  /// Keeps the arguments; attach() opens the port.
   Debugger(std::uint16_t port, unsigned joint, std::filesystem::path image);
 
   [[nodiscard]] unsigned joint() const { return joint_; }
@@ -22,7 +22,7 @@ class Debugger {
   void attach(sim::Stm32f405& chip);
 
  private:
-  /// True to execute a single step. Throws std::runtime_error if gdb ended the program.
+  /// Handles an event. Returns true to execute a single step. Throws std::runtime_error if gdb ended the program.
   [[nodiscard]] bool on_debug_event(sim::Stm32f405::DebugEvent event);
 
   std::uint16_t port_;

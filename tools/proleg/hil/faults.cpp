@@ -1,4 +1,4 @@
-// proleg faults: what can be made to fail in a run of proleg hil, for people and as the table of docs/faults.md; and
+// proleg faults: prints the faults of a run of proleg hil, for the user and as the table of docs/faults.md; and
 // schedules of faults: the random one of a seed, or that of a recording.
 
 #include <iostream>

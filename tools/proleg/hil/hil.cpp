@@ -13,7 +13,7 @@
 
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "sim/bus/candump_log.hpp"
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/scenario/module_sensors.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -43,7 +43,7 @@ void note_restart(const ScenarioRun& run, std::uint32_t tick, const sim::Restart
   }
 }
 
-/// Those that the recording does not have yet.
+/// Records the events of modules that the recording does not have yet.
 void record_module_events(const sim::MotionWatch& watch, sim::Recorder& recorder, std::size_t& recorded) {
   for (; recorded < watch.events().size(); ++recorded) {
     const sim::ModuleEvent& event = watch.events()[recorded];
@@ -123,7 +123,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   return result;
 }
 
-/// What the run writes while it runs.
+/// The files that the run writes while it runs.
 struct HilFiles {
   std::unique_ptr<sim::Recorder> recorder;
   std::unique_ptr<sim::CandumpLog> log;
@@ -138,7 +138,7 @@ void check_files(const HilOptions& options, const HilModules& modules) {
   check_outputs(outputs);
 }
 
-/// Throws BadInput: nothing has run yet.
+/// Opens the files before the run. Throws BadInput.
 void open_files(const HilOptions& options, const ScenarioRun& run, HilModules& modules, HilFiles& files) {
   files.recorder = open_recorder(options, run.scenario, "hil " + modules.kind());
   if (options.can_log) {
@@ -151,7 +151,7 @@ void open_files(const HilOptions& options, const ScenarioRun& run, HilModules& m
   modules.open_traces();
 }
 
-/// The exit status of a run that came to its end; prints why it failed.
+/// The exit status of a run that came to its end; prints the reason of a failure.
 int judge(const HilResult& result, std::uint32_t tick_period_us) {
   if (result.differences > 0) {
     std::cerr << "proleg hil: " << result.first_difference << '\n';
@@ -168,7 +168,7 @@ int judge(const HilResult& result, std::uint32_t tick_period_us) {
               << list_dropped_changes(result) << '\n';
     return exit_failed;
   }
-  // The start takes as long whatever the tick is, the set-up some frames in each tick.
+  // The duration of the start does not depend on the tick; the set-up sends some frames in each tick.
   constexpr std::uint32_t second_us = 1'000'000;
   const std::uint32_t max_ticks_to_join = std::max<std::uint32_t>(100, second_us / tick_period_us);
   for (const RestartReport& restart : result.restarts) {

@@ -1,7 +1,6 @@
 #include "tools/proleg/hil/hil_faults.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/run_progress.hpp"
+#include "tools/proleg/hil/hil_report.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -27,7 +27,7 @@ bool is_number(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// The seed, and the count if there is one; nothing for the name of a file.
+/// Parses the seed, and the count if it is present; nothing for the name of a file.
 std::optional<FaultPlan> parse_seeds(const std::string& word) {
   constexpr std::uint32_t max_runs = 1'000'000;
   const std::size_t colon = word.find(':');
@@ -49,35 +49,20 @@ std::optional<FaultPlan> parse_seeds(const std::string& word) {
   return plan;
 }
 
-/// The same faults follow from a seed and the length of the run.
+/// The schedule of a seed, which depends only on the seed and the length of the run.
 sim::FaultSchedule random_schedule(const ScenarioRun& run, std::uint64_t seed, bool has_chips) {
   return sim::random_faults({seed, run_us(run), has_chips}, run.scenario);
 }
 
-std::string worst_values(const sim::MotionWatch::Worst& worst) {
-  std::string text =
-      "change between pulses " + number_text(worst.change_steps) + " of what the greatest speed allows; ";
-  text += number_text(std::abs(worst.beyond_limit_deg)) + " deg " +
-          (worst.beyond_limit_deg > 0.0 ? "beyond" : "inside") + " the limits; motion " +
-          number_text(worst.motion_after_command_s) + " of 1.5 s after the last command";
-  return text;
-}
-
-Json worst_object(const sim::MotionWatch::Worst& worst) {
-  return {{"change_of_allowed", worst.change_steps},
-          {"beyond_limit_deg", worst.beyond_limit_deg},
-          {"motion_after_command_s", worst.motion_after_command_s}};
-}
-
-/// What a campaign has found.
+/// The results of a campaign.
 struct Campaign {
   sim::FaultStatistics statistics;
   std::uint32_t compared = 0;   ///< schedules that native modules and the image have played
-  std::uint32_t identical = 0;  ///< of them, with the same set-points and servo commands
-  std::uint32_t different = 0;  ///< of them, with different ones although all faults act at ticks
+  std::uint32_t identical = 0;  ///< compared schedules with the same set-points and servo commands
+  std::uint32_t different = 0;  ///< compared schedules with different ones although all faults act at ticks
 };
 
-/// Runs one schedule; prints what it has broken.
+/// Runs one schedule; prints the faults that it has found.
 void run_one(const ScenarioRun& run, HilModules& modules, std::uint64_t seed, Campaign& campaign) {
   const sim::FaultSchedule schedule = random_schedule(run, seed, modules.any_virtual());
   const sim::FaultRunResult result = sim::run_with_faults(
@@ -197,46 +182,6 @@ int run_fault_campaign(const HilOptions& options, const ScenarioRun& run, HilMod
   std::cout.flush();
   const bool is_good = campaign.statistics.broken_runs == 0 && campaign.different == 0 && !interrupted();
   return is_good ? exit_success : exit_failed;
-}
-
-void print_fault_report(const ScenarioRun& run, const HilResult& result) {
-  for (const sim::Fault& fault : result.faults) {
-    std::printf("fault             %s\n", describe(fault, run.scenario.robot).c_str());
-  }
-  for (const sim::ModuleEvent& event : result.module_events) {
-    std::printf("%10.4f s      %s: %s\n", event.time_s, joint_and_node(run, event.joint).c_str(), event.text.c_str());
-  }
-  for (std::uint32_t joint = 0; joint < result.joint_ends.size(); ++joint) {
-    std::printf("ended             %s: %s\n", joint_and_node(run, joint).c_str(), describe(result.joint_ends[joint]));
-  }
-  std::printf("worst             %s\n", worst_values(result.worst_motion).c_str());
-}
-
-Json fault_json(const ScenarioRun& run, const HilResult& result) {
-  Json faults = Json::empty_array();
-  for (const sim::Fault& fault : result.faults) {
-    faults.append(describe(fault, run.scenario.robot));
-  }
-  Json events = Json::empty_array();
-  for (const sim::ModuleEvent& event : result.module_events) {
-    events.append({{"time_s", event.time_s},
-                   {"node", run.scenario.modules[event.joint].node},
-                   {"joint", run.scenario.robot.joints[event.joint].name},
-                   {"text", event.text}});
-  }
-  Json ends = Json::empty_array();
-  for (const sim::JointEnd end : result.joint_ends) {
-    ends.append(describe(end));
-  }
-  Json violations = Json::empty_array();
-  for (const std::string& violation : result.violations) {
-    violations.append(violation);
-  }
-  return {{"schedule", faults},
-          {"events", events},
-          {"joints_ended", ends},
-          {"violations", violations},
-          {"worst", worst_object(result.worst_motion)}};
 }
 
 }  // namespace proleg::tools

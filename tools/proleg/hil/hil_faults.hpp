@@ -8,28 +8,24 @@
 
 #include "sim/fault/fault.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/hil/hil_modules.hpp"
 #include "tools/proleg/hil/hil_options.hpp"
-#include "tools/proleg/hil/hil_report.hpp"
 
 namespace proleg::tools {
 
-/// What --faults asks for.
+/// The value of --faults.
 struct FaultPlan {
-  sim::FaultSchedule schedule;        ///< of one run
-  std::uint64_t seed = 0;             ///< of the first schedule of a campaign
-  std::optional<std::uint32_t> runs;  ///< of a campaign; nothing: one run with the schedule
+  sim::FaultSchedule schedule;        ///< schedule of one run
+  std::uint64_t seed = 0;             ///< seed of the first schedule of a campaign
+  std::optional<std::uint32_t> runs;  ///< runs of a campaign; nothing: one run with the schedule
 };
 
-/// FILE, SEED or SEED:COUNT. Throws InputError.
+/// Reads FILE, SEED or SEED:COUNT. Throws InputError.
 [[nodiscard]] FaultPlan read_fault_plan(const HilOptions& options, const ScenarioRun& run, bool any_virtual);
 
-/// Runs the schedules of a campaign and prints what they have in common. With virtual chips, the schedules that native
-/// modules can play too are run with both and compared. Returns the exit status.
+/// Runs the schedules of a campaign and prints a summary. With virtual chips, schedules that native modules can play
+/// too are run with both and compared. Returns the exit status.
 [[nodiscard]] int run_fault_campaign(const HilOptions& options, const ScenarioRun& run, HilModules& modules,
                                      const FaultPlan& plan);
-
-/// What happened in one run: the schedule, what each module did and when, how it ended.
-void print_fault_report(const ScenarioRun& run, const HilResult& result);
-[[nodiscard]] Json fault_json(const ScenarioRun& run, const HilResult& result);
 
 }  // namespace proleg::tools

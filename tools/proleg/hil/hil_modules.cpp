@@ -10,8 +10,8 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/module_making.hpp"
-#include "sim/loop/native_program.hpp"
+#include "sim/hardware_loop/module_making.hpp"
+#include "sim/hardware_loop/native_program.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/hil/debugger.hpp"

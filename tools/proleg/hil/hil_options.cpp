@@ -10,7 +10,7 @@
 namespace proleg::tools {
 namespace {
 
-/// The joint that a node id or a name means.
+/// The joint with a node id or a name.
 unsigned parse_node_or_joint(const std::string& word, const sim::Scenario& scenario) {
   if (const auto node = parse_whole<std::uint32_t>(word)) {
     return joint_of_node(scenario, node, "--reset", word);
@@ -23,7 +23,7 @@ unsigned parse_node_or_joint(const std::string& word, const sim::Scenario& scena
   return static_cast<unsigned>(joint);
 }
 
-/// JOINT@TICK or NODE@TICK
+/// Parses JOINT@TICK or NODE@TICK.
 sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
   const std::size_t at = word.rfind('@');
   const auto tick =
@@ -54,7 +54,7 @@ std::vector<sim::Restart> parse_resets(const HilOptions& options, const Scenario
   return restarts;
 }
 
-/// ID#DATA@TICK, where ID#DATA is a frame as for cansend of can-utils.
+/// Parses ID#DATA@TICK, where ID#DATA is a frame in the form of cansend of can-utils.
 sim::InjectedFrame parse_injected(const std::string& word, const ScenarioRun& run) {
   const auto refuse = [&word] {
     throw InputError(
@@ -88,7 +88,7 @@ std::vector<sim::InjectedFrame> parse_frames(const HilOptions& options, const Sc
   return frames;
 }
 
-/// SEED:RATE
+/// Parses SEED:RATE.
 sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& word) {
   const std::size_t colon = word.find(':');
   const auto seed = parse_whole<std::uint64_t>(std::string_view(word).substr(0, colon));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
@@ -23,7 +23,8 @@ struct HilOptions : ScenarioOptions, ModuleOptions {
 
 void add_hil_options(CommandLine& command_line, HilOptions& options);
 
-/// Losses, restarts, injected frames and bit errors of a run, which must outlive the result. Throws InputError.
+/// Options with the losses, restarts, injected frames and bit errors of a run, which must outlive the result. Throws
+/// InputError.
 [[nodiscard]] sim::HardwareOptions hardware_options(const HilOptions& options, const ScenarioRun& run);
 
 }  // namespace proleg::tools

@@ -1,13 +1,73 @@
 #include "tools/proleg/hil/hil_report.hpp"
 
+#include <cmath>
 #include <cstdio>
 
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/durations_text.hpp"
-#include "tools/proleg/hil/hil_faults.hpp"
 
 namespace proleg::tools {
+
+namespace {
+
+/// Prints the course of one run: the schedule, the events of each module with their times, and the end of each module.
+void print_fault_report(const ScenarioRun& run, const HilResult& result) {
+  for (const sim::Fault& fault : result.faults) {
+    std::printf("fault             %s\n", describe(fault, run.scenario.robot).c_str());
+  }
+  for (const sim::ModuleEvent& event : result.module_events) {
+    std::printf("%10.4f s      %s: %s\n", event.time_s, joint_and_node(run, event.joint).c_str(), event.text.c_str());
+  }
+  for (std::uint32_t joint = 0; joint < result.joint_ends.size(); ++joint) {
+    std::printf("ended             %s: %s\n", joint_and_node(run, joint).c_str(), describe(result.joint_ends[joint]));
+  }
+  std::printf("worst             %s\n", worst_values(result.worst_motion).c_str());
+}
+
+Json fault_json(const ScenarioRun& run, const HilResult& result) {
+  Json faults = Json::empty_array();
+  for (const sim::Fault& fault : result.faults) {
+    faults.append(describe(fault, run.scenario.robot));
+  }
+  Json events = Json::empty_array();
+  for (const sim::ModuleEvent& event : result.module_events) {
+    events.append({{"time_s", event.time_s},
+                   {"node", run.scenario.modules[event.joint].node},
+                   {"joint", run.scenario.robot.joints[event.joint].name},
+                   {"text", event.text}});
+  }
+  Json ends = Json::empty_array();
+  for (const sim::JointEnd end : result.joint_ends) {
+    ends.append(describe(end));
+  }
+  Json violations = Json::empty_array();
+  for (const std::string& violation : result.violations) {
+    violations.append(violation);
+  }
+  return {{"schedule", faults},
+          {"events", events},
+          {"joints_ended", ends},
+          {"violations", violations},
+          {"worst", worst_object(result.worst_motion)}};
+}
+
+}  // namespace
+
+std::string worst_values(const sim::MotionWatch::Worst& worst) {
+  std::string text =
+      "change between pulses " + number_text(worst.change_steps) + " of what the greatest speed allows; ";
+  text += number_text(std::abs(worst.beyond_limit_deg)) + " deg " +
+          (worst.beyond_limit_deg > 0.0 ? "beyond" : "inside") + " the limits; motion " +
+          number_text(worst.motion_after_command_s) + " of 1.5 s after the last command";
+  return text;
+}
+
+Json worst_object(const sim::MotionWatch::Worst& worst) {
+  return {{"change_of_allowed", worst.change_steps},
+          {"beyond_limit_deg", worst.beyond_limit_deg},
+          {"motion_after_command_s", worst.motion_after_command_s}};
+}
 
 std::string joint_and_node(const ScenarioRun& run, std::uint32_t joint) {
   return run.scenario.robot.joints[joint].name + " (node " + std::to_string(run.scenario.modules[joint].node) + ")";

@@ -6,17 +6,16 @@
 namespace proleg::tools {
 
 /// The time that a simulation has to reach, so that it keeps the pace of real time. A simulation that is late, because
-/// the computer is too slow or was suspended, does not catch up in a burst, but for 50 ms at most: its clock stands
-/// still meanwhile.
+/// the computer is too slow or was suspended, catches up by at most 50 ms: for the rest of the delay its clock stops.
 class RealTimePace {
  public:
-  /// More is a delay.
+  /// Largest lateness that the simulation catches up; more is a delay.
   static constexpr std::uint64_t tolerance_ns = 50'000'000;
 
-  /// Since the start, without the delays.
+  /// Time since the start, without the delays.
   [[nodiscard]] std::uint64_t now_ns() const { return since_start_ns() - delayed_ns_; }
 
-  /// The simulation has reached this time.
+  /// Notes the time that the simulation has reached.
   void simulated_to(std::uint64_t time_ns) {
     if (const std::uint64_t now = now_ns(); now > time_ns + tolerance_ns) {
       delayed_ns_ += now - time_ns;

@@ -17,7 +17,7 @@ ServedPort parse_served_port(const std::string& option, const std::string& word)
     if (address.size() > 2 && address.front() == '[' && address.back() == ']') {
       address = address.substr(1, address.size() - 2);
     } else if (address.empty() || address.find(':') != std::string_view::npos) {
-      port = {};  // an IPv6 address without brackets: where its port begins is not known
+      port = {};  // in an IPv6 address without brackets the begin of the port is unknown
     }
     served.address = address;
   }

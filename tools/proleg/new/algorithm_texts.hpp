@@ -1,7 +1,7 @@
 #pragma once
 
 // The files in algorithm_template/. CMake makes their texts strings of the program. @NAME@, @ID@, @SOURCE@ (the
-// checkout) and @FOLDER@ stand for what `proleg new algorithm` fills in.
+// checkout) and @FOLDER@ stand for texts that `proleg new algorithm` fills in.
 
 #include <string_view>
 

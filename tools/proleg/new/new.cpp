@@ -51,7 +51,7 @@ std::uint32_t parse_joints(const std::string& word) {
   return *joints;
 }
 
-/// The axis of each joint from the tail: the pattern, repeated.
+/// The axis of each joint from the tail, from the repeated pattern.
 std::string axes_of_joints(const std::string& pattern, std::uint32_t joints) {
   if (pattern.empty() || pattern.find_first_not_of("py") != std::string::npos) {
     throw InputError("--axes", 0, in_quotes(pattern), "letters p (pitch) and y (yaw), from the tail");

@@ -28,7 +28,7 @@
 namespace proleg::tools {
 namespace {
 
-/// Where the algorithm is and which checkout it is for, for the commands in README.md. id: of the algorithm.
+/// The folder of the algorithm, its id, and its checkout, for the commands in README.md.
 struct AlgorithmPlace {
   std::string name;
   std::uint8_t id;
@@ -50,8 +50,8 @@ std::string filled(std::string_view text, const AlgorithmPlace& place) {
   return result;
 }
 
-/// One source with a small algorithm that moves a robot, its test, CMakeLists.txt, README.md, and in robot/ the files
-/// of a robot of five joints that it moves.
+/// The files: one source with a small algorithm that moves a robot, its test, CMakeLists.txt, README.md, and in robot/
+/// the files of a robot of five joints that it moves.
 std::vector<NewFile> algorithm_files(const AlgorithmPlace& place) {
   std::vector<NewFile> files{{"README.md", filled(algorithm_readme_text(), place)},
                              {place.name + ".cpp", filled(algorithm_source_text(), place)},
@@ -75,7 +75,7 @@ struct AlgorithmOptions {
 
 constexpr std::size_t longest_name = 40;
 
-/// Words that C++ or the example needs, and names of CMake's targets: a function or a target of that name does not
+/// Words that C++ or the example needs, and names of CMake's targets: a function or a target with such a name does not
 /// compile.
 constexpr std::array reserved{"about",
                               "alignas",
@@ -219,7 +219,7 @@ void check_name(const std::string& name) {
   }
 }
 
-/// By default a number that follows from the name: two algorithms with different names rarely have the same one.
+/// Chooses the id; the default depends on the name: algorithms with different names rarely have the same one.
 std::uint8_t choose_id(const AlgorithmOptions& options) {
   if (!options.id) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(options.name.data()), options.name.size());

@@ -23,11 +23,11 @@ struct Obstacle {
   /// Height of each hill above the floor in mm, in the order in which the robot meets them; a pit is below 0. The
   /// defaults are those of the shipped obstacle: two hills, the pit between them and the last hill, a last one.
   std::vector<double> heights_mm{32, 43, -43, 43};
-  double length_mm = 400;  ///< of each hill along the way of the robot
-  double start_mm = 360;   ///< of the first hill, from the position of the robot
+  double length_mm = 400;  ///< length of each hill along the way of the robot
+  double start_mm = 360;   ///< start of the first hill, from the position of the robot
   double width_mm = 2'000;
-  unsigned segments = 10;  ///< flat pieces of each hill
-  double friction = 0.6;   ///< of the hills
+  unsigned segments = 10;  ///< number of flat pieces of each hill
+  double friction = 0.6;   ///< friction of the hills
   double floor_friction = 0.1;
 };
 
@@ -38,7 +38,7 @@ struct Point {
   double up;     ///< mm above the floor
 };
 
-/// Of the surface, from the first point of the first hill to the last point of the last one.
+/// Points of the surface, from the first point of the first hill to the last point of the last one.
 std::vector<Point> surface(const Obstacle& obstacle) {
   std::vector<Point> points{{obstacle.start_mm, 0.0}};
   for (const double height : obstacle.heights_mm) {
@@ -52,7 +52,7 @@ std::vector<Point> surface(const Obstacle& obstacle) {
   return points;
 }
 
-/// Metres, to the micrometre.
+/// Text of a length in metres, rounded to a micrometre.
 std::string metres(double mm) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6f", mm / 1000.0);

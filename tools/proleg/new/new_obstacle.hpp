@@ -2,7 +2,7 @@
 
 namespace proleg::tools {
 
-/// The program `proleg new obstacle`, from its own name on. Returns the exit status.
+/// proleg new obstacle: writes an environment file with hills. argv[0] is "obstacle". Returns the exit status.
 int new_obstacle(int argc, char** argv);
 
 }  // namespace proleg::tools

@@ -38,7 +38,7 @@ std::string position_text(std::size_t links, std::size_t module_mm) {
   return text.data();
 }
 
-/// Link 0 is the tail.
+/// Name of a link; link 0 is the tail.
 std::string link_name(std::size_t link, std::size_t joints) {
   return link == 0 ? "Tail" : link == joints ? "Head" : std::to_string(link) + "Seg";
 }
@@ -124,7 +124,7 @@ std::string wave_text(const std::string& axes, char axis, const Wave& wave) {
   return text + "  </actuationModule>\n";
 }
 
-// At 1 Hz a joint with an amplitude of 40 degrees just stays below its 4.5 rad/s.
+// At 1 Hz a joint with an amplitude of 40 degrees stays just below its 4.5 rad/s.
 constexpr Wave travelling_wave{"40", "1", "55", ""};
 constexpr Wave pitch_of_two{"20", "1", "45", ""};
 constexpr Wave yaw_of_two{"40", "1", "45", "90"};

@@ -47,7 +47,7 @@ constexpr std::array<RobotKind, 5> kinds{
      {"y1", "Y1 modules with a mesh", "p", 5, 72, "0.4", "4.5", y1_comment},
      {"snake", "pitch and yaw joints in turn", "py", 8, 72, "0.4", "4.5", snake_comment}}};
 
-/// Which module of a chain: its name, and where its middle is from its origin, in half modules.
+/// A place in the chain: the module's name, and the position of its middle from its origin, in half modules.
 struct Place {
   std::string_view file;
   std::string_view body;
@@ -60,7 +60,7 @@ constexpr std::array<Place, 3> places{
      {"segment", "Seg", 1.0, "A link between two joints along y; the origin is at the joint towards the tail."},
      {"head", "Head", 1.0, "The first link; the origin is at its joint, and the link lies towards positive y."}}};
 
-/// Metres from millimetres.
+/// Text of a length in metres, from millimetres.
 std::string metres(double millimetres) { return number_text(millimetres / 1000.0); }
 
 std::string point(double x_mm, double y_mm, double z_mm) {
@@ -116,7 +116,7 @@ std::vector<NewFile> cubo_modules(const RobotKind& kind) {
   return files;
 }
 
-/// A prism along y with these corners (x, z), from y to y + length, all in mm, as text of an OFF file.
+/// Text of an OFF file of prisms along y with corners (x, z), from y to y + length, all in mm.
 struct OffText {
   std::string vertices;
   std::string sides;
@@ -149,7 +149,7 @@ struct OffText {
   }
 };
 
-/// Around the middle of the module: the body, and two ears at each joint.
+/// The mesh of a Y1 module around its middle: the body, and two ears at each joint.
 std::string y1_mesh() {
   OffText mesh;
   mesh.add_prism({{20, -26}, {26, -20}, {26, 20}, {20, 26}, {-20, 26}, {-26, 20}, {-26, -20}, {-20, -26}}, -22, 22);

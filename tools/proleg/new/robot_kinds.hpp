@@ -13,24 +13,24 @@
 
 namespace proleg::tools {
 
-/// A kind of modular robot: its modules, and how they are put together.
+/// A kind of modular robot: its modules and their connection.
 struct RobotKind {
-  std::string_view name;     ///< in --kind
-  std::string_view help;     ///< a line
-  std::string_view axes;     ///< of its joints from the tail, repeated: p (pitch), y (yaw)
-  unsigned joints;           ///< if the user states none
-  std::size_t module_mm;     ///< between two joints
+  std::string_view name;     ///< name in --kind
+  std::string_view help;     ///< one line for --help
+  std::string_view axes;     ///< axes of its joints from the tail, repeated: p (pitch), y (yaw)
+  unsigned joints;           ///< default number of joints
+  std::size_t module_mm;     ///< distance between two joints, mm
   std::string_view torque;   ///< Nm
   std::string_view speed;    ///< rad/s
-  std::string_view comment;  ///< which values are published and which are chosen
+  std::string_view comment;  ///< comment with the published and the chosen values
 };
 
-/// The first is the shipped caterpillar.
+/// All kinds; the first is the shipped caterpillar.
 [[nodiscard]] std::span<const RobotKind> robot_kinds();
-/// Null: there is no such kind.
+/// Finds a kind by its name; null if none has it.
 [[nodiscard]] const RobotKind* find_robot_kind(std::string_view name);
 
-/// The files of the modules of a kind: modules/tail.kinbody.xml, segment, head, and what they name.
+/// The files of the modules of a kind: modules/tail.kinbody.xml, segment, head, and the files that they name.
 [[nodiscard]] std::vector<NewFile> module_files(const RobotKind& kind);
 
 }  // namespace proleg::tools

@@ -40,9 +40,8 @@ void reset_all(BusAccess& bus) {
     return bus.connection().send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 0}));
   });
   BootWatch watch;
-  bus.connection().attach(watch);
+  const host::BusAttachment attachment(bus.connection(), watch);
   bus.connection().run_for(boot_time);
-  bus.connection().detach(watch);
   if (watch.duplicate != 0) {
     throw std::runtime_error("two modules have the node id " + std::to_string(watch.duplicate) +
                              ", and have stopped; run 'proleg recover', which gives one of them another node id, then "
@@ -73,10 +72,9 @@ ModulesToNumber find_modules_to_number(BusAccess& bus) {
 }
 
 MovingJoint::MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMotionOptions& options)
-    : bus_(bus), motion_(bus.connection(), node, options) {
+    : bus_(bus), motion_(bus.connection(), node, options), attachment_(bus.connection(), motion_) {
   using State = host::JointMotion::State;
   constexpr Microseconds longest = 60 * second;  // it ends by itself; this bounds one with a fault
-  bus_.connection().attach(motion_);
   try {
     motion_.start(bus_.connection().now());
     bus_.wait_for("the joint to move", longest, [this] {
@@ -88,7 +86,6 @@ MovingJoint::MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMot
     }
   } catch (...) {
     stop_after_failure();
-    bus_.connection().detach(motion_);
     throw;
   }
 }
@@ -97,7 +94,6 @@ MovingJoint::~MovingJoint() {
   if (!is_off_) {
     stop_after_failure();
   }
-  bus_.connection().detach(motion_);
 }
 
 void MovingJoint::take_events() {

@@ -48,6 +48,7 @@ class MovingJoint {
 
   BusAccess& bus_;
   host::JointMotion motion_;
+  host::BusAttachment attachment_;
   bool is_off_ = false;
   bool is_confirmed_ = true;  ///< no module has left out the confirmation that its servo has no power
 };

@@ -65,11 +65,10 @@ void BusAccess::wait_for(const std::string& what, Microseconds at_most, const st
 void require_no_host(BusAccess& bus) {
   host::BusConnection& connection = bus.connection();
   host::HostPresence host(connection.now());
-  connection.attach(host);
+  const host::BusAttachment attachment(connection, host);
   while (!host.is_there() && connection.now() < host.silent_at()) {
     connection.run_until(host.silent_at(), [&host] { return host.is_there(); });
   }
-  connection.detach(host);
   if (host.is_there()) {
     throw std::runtime_error("another host drives the robot; nothing was sent. End that program first");
   }
@@ -77,10 +76,9 @@ void require_no_host(BusAccess& bus) {
 
 void scan(BusAccess& bus, host::BusScan& scan) {
   constexpr Microseconds longest = 60'000'000;
-  bus.connection().attach(scan);
+  const host::BusAttachment attachment(bus.connection(), scan);
   scan.start(bus.connection().now());
   bus.wait_for("the end of the scan", longest, [&scan] { return scan.is_done(); });
-  bus.connection().detach(scan);
 }
 
 canopen::SdoTransferOptions patient_transfers() {
@@ -110,9 +108,8 @@ std::vector<std::uint8_t> nodes_of(BusAccess& bus, const std::string& word) {
 
 void finish(BusAccess& bus, host::SdoQueue& queue) {
   constexpr Microseconds longest = 120'000'000;
-  bus.connection().attach(queue);
+  const host::BusAttachment attachment(bus.connection(), queue);
   bus.wait_for("the answers of the modules", longest, [&queue] { return queue.is_idle(); });
-  bus.connection().detach(queue);
 }
 
 std::string failure_text(std::uint8_t node, const std::string& object, canopen::AbortCode code,

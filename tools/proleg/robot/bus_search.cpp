@@ -45,11 +45,10 @@ std::size_t count_modules(const std::string& address) {
     return host::open_transport(context, host::parse_bus_address(address), listener);
   });
   host::BusScan scan(bus);
-  bus.attach(scan);
+  const host::BusAttachment attachment(bus, scan);
   scan.start(bus.now());
   constexpr Microseconds at_most = 3'000'000;
   bus.run_until(bus.now() + at_most, [&] { return scan.is_done() || !bus.state().is_connected; });
-  bus.detach(scan);
   const auto nodes = scan.nodes();
   return static_cast<std::size_t>(std::ranges::count_if(nodes, &host::ScannedNode::is_module)) +
          (scan.has_fresh_modules() ? 1U : 0U);

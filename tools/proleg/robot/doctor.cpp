@@ -79,10 +79,9 @@ BusObservations examine(BusAccess& bus) {
     return host::OwnEnd{connection.state(), connection.statistics()};
   });
   constexpr Microseconds longest = 60'000'000;
-  connection.attach(examination);
+  const host::BusAttachment attachment(connection, examination);
   examination.start(connection.now());
   connection.run_until(connection.now() + longest, [&] { return examination.is_done() || interrupted(); });
-  connection.detach(examination);
   if (!examination.is_done()) {
     throw std::runtime_error(interrupted() ? "interrupted" : "the examination has not ended in time");
   }

@@ -5,7 +5,6 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/touch_inputs.hpp"
-#include "sim/record/internal_values.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -34,10 +33,13 @@ double radians(const canopen::Monitoring& measured) {
 
 GaitCheck::GaitCheck(const sim::Scenario& scenario)
     : scenario_(scenario),
-      chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
+      gait_({.kernel = scenario.kernel,
+             .limits = scenario.joint_limits,
+             .settings = scenario.settings,
+             .changes = changes_,
+             .servo_period_us = scenario.robot.servo.period_us,
+             .command_speed = scenario.robot.servo.command_speed}),
       setpoint_check_(scenario.robot.joints.size()),
-      pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
-                    scenario.robot.servo.command_speed),
       contacts_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()),
       commands_(scenario.robot.joints.size(), servo_command(0)),
@@ -48,25 +50,24 @@ GaitCheck::GaitCheck(const sim::Scenario& scenario)
   for (const auto& link : scenario.robot.links) {
     poses_.push_back(scenario.environment.robot_pose * link.pose);
   }
-  sim::for_each_internal_value(scenario.kernel, [&](unsigned, unsigned, unsigned) { internal_values_.push_back(0); });
   senses_contacts_ = std::ranges::any_of(scenario.kernel.slots, [](const Slot& slot) {
     return slot.algorithm != nullptr && slot.algorithm->senses_contacts();
   });
-  if (chain_.needs_readings()) {
+  if (gait_.chain().needs_readings()) {
     end_comparison("the gait reads what the modules measure, which the host does not receive at every tick");
     knows_setpoints_ = false;
   }
 }
 
 void GaitCheck::add_change(const sim::Change& change) {
-  const auto place = std::ranges::upper_bound(changes_.begin() + static_cast<std::ptrdiff_t>(next_change_),
-                                              changes_.end(), change.tick, {}, &sim::Change::tick);
+  const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(gait_.next_change());
+  const auto place = std::ranges::upper_bound(first, changes_.end(), change.tick, {}, &sim::Change::tick);
   changes_.insert(place, change);
 }
 
 void GaitCheck::end_comparison(const std::string& why) {
   if (!end_of_comparison_) {
-    end_of_comparison_ = "from tick " + std::to_string(chain_.tick()) + " on nothing was compared: " + why;
+    end_of_comparison_ = "from tick " + std::to_string(gait_.tick()) + " on nothing was compared: " + why;
   }
 }
 
@@ -105,20 +106,16 @@ void GaitCheck::compare_setpoints(unsigned joint, const canopen::Master::Setpoin
 
 /// Computes the next tick with the contacts of the modules.
 const sim::Change* GaitCheck::advance(const host::TickFrames& tick) {
-  const sim::Change* change = nullptr;
-  for (; next_change_ < changes_.size() && changes_[next_change_].tick <= chain_.tick(); ++next_change_) {
-    change = &changes_[next_change_];
-    chain_.apply(*change);
-  }
+  const sim::Change* const change = gait_.apply_due_changes();
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
     if (const auto& frame = tick.frames[joint][0]) {
       contacts_[joint] = static_cast<std::uint8_t>(frame->flags() & StateFrame::contact_bits);
     }
     sim::write_link_contacts(link_contacts_, joint, contacts_[joint]);
   }
-  chain_.advance(contacts_);
+  gait_.advance(contacts_);
   if (knows_setpoints_) {
-    setpoint_check_.add(chain_.setpoints());
+    setpoint_check_.add(setpoints());
   }
   return change;
 }
@@ -130,14 +127,12 @@ const sim::Change* GaitCheck::follow(const host::TickFrames& tick) {
   const sim::Change* change = advance(tick);
   ++ticks_;
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
-    for (unsigned channel = 0; channel < chain_.kernel(joint).channel_count(joint); ++channel) {
+    for (unsigned channel = 0; channel < gait_.chain().kernel(joint).channel_count(joint); ++channel) {
       compare(joint, channel, tick.frames[joint].at(channel));
     }
   }
-  setpoint_hash_.append(chain_.setpoints());
-  pulses_.clear();
-  pulse_source_.append(chain_, pulses_);
-  for (const sim::ServoPulse& pulse : pulses_) {
+  setpoint_hash_.append(setpoints());
+  for (const sim::ServoPulse& pulse : gait_.pulses()) {
     servo_hash_.append(pulse.command);
     commands_[pulse.joint] = pulse.command;
   }
@@ -153,21 +148,17 @@ void GaitCheck::compare(unsigned joint, unsigned channel, const std::optional<St
     return;
   }
   ++compared_;
-  const StateFrame expected = comparable(chain_.kernel(joint).frame(joint, channel));
+  const StateFrame expected = comparable(gait_.chain().kernel(joint).frame(joint, channel));
   if (comparable(*found) == expected) {
     return;
   }
   if (++differences_ == 1) {
-    first_difference_ = "tick " + std::to_string(chain_.tick() - 1) + ", " + name_of(joint) + ": state frame: found " +
+    first_difference_ = "tick " + std::to_string(gait_.tick() - 1) + ", " + name_of(joint) + ": state frame: found " +
                         bytes_text(comparable(*found)) + ", expected " + bytes_text(expected);
   }
 }
 
 sim::TickSample GaitCheck::sample(const host::RobotDrive& drive) {
-  auto value = internal_values_.begin();
-  sim::for_each_internal_value(scenario_.kernel, [&](unsigned slot, unsigned joint, unsigned number) {
-    *value++ = chain_.kernel(joint).internal_value(slot, joint, number);
-  });
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
     if (const auto& measured = drive.monitoring(joint)) {
       if (measured->angle != canopen::Monitoring::not_measured) {
@@ -176,8 +167,15 @@ sim::TickSample GaitCheck::sample(const host::RobotDrive& drive) {
       currents_[joint] = measured->current_ma;
     }
   }
-  return {chain_.tick() - 1, link_contacts_, chain_.setpoints(), internal_values_, pulses_, commands_, poses_,
-          angles_,           torques_,       currents_,          forces_,          {}};
+  sim::TickSample sample = gait_.sample();
+  sample.latched_contacts = link_contacts_;
+  sample.servo_commands = commands_;
+  sample.link_poses = poses_;
+  sample.joint_angles = angles_;
+  sample.motor_torques = torques_;
+  sample.servo_currents = currents_;
+  sample.contact_forces = forces_;
+  return sample;
 }
 
 }  // namespace proleg::tools

@@ -10,7 +10,7 @@
 
 #include "host/robot/robot_drive.hpp"
 #include "host/robot/setpoint_check.hpp"
-#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/record/recorder.hpp"
@@ -25,6 +25,8 @@ class GaitCheck {
  public:
   /// scenario: must outlive the check.
   explicit GaitCheck(const sim::Scenario& scenario);
+  GaitCheck(const GaitCheck&) = delete;
+  GaitCheck& operator=(const GaitCheck&) = delete;
 
   /// A change, which takes effect at its tick. Call this before the tick is followed.
   void add_change(const sim::Change& change);
@@ -44,7 +46,7 @@ class GaitCheck {
   [[nodiscard]] sim::TickSample sample(const host::RobotDrive& drive);
 
   /// Of the gait, after the last tick: 90 degrees = 2^30.
-  [[nodiscard]] std::span<const std::int32_t> setpoints() const { return chain_.setpoints(); }
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const { return gait_.chain().setpoints(); }
   /// Of the run, without those while the robot stopped.
   [[nodiscard]] std::uint32_t ticks() const { return ticks_; }
   [[nodiscard]] std::uint64_t compared() const { return compared_; }
@@ -70,13 +72,11 @@ class GaitCheck {
   [[nodiscard]] std::string name_of(unsigned joint) const;
 
   const sim::Scenario& scenario_;
-  sim::KernelChain chain_;
+  std::vector<sim::Change> changes_;  ///< by tick
+  sim::Gait gait_;
   std::uint32_t ticks_ = 0;
   host::SetpointCheck setpoint_check_;
-  bool knows_setpoints_ = true;  ///< of all ticks, also while the robot stops
-  sim::ServoPulses pulse_source_;
-  std::vector<sim::Change> changes_;  ///< by tick
-  std::size_t next_change_ = 0;
+  bool knows_setpoints_ = true;         ///< of all ticks, also while the robot stops
   bool senses_contacts_ = false;        ///< an algorithm of the gait reads them
   std::vector<std::uint8_t> contacts_;  ///< by joint
   std::uint64_t compared_ = 0;
@@ -91,8 +91,6 @@ class GaitCheck {
   ValueHash servo_hash_;
   // For sample().
   std::vector<std::uint8_t> link_contacts_;
-  std::vector<std::int32_t> internal_values_;
-  std::vector<sim::ServoPulse> pulses_;
   std::vector<std::int32_t> commands_;
   std::vector<sim::Pose> poses_;
   std::vector<double> angles_;

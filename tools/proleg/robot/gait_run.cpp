@@ -21,20 +21,12 @@ GaitRun::GaitRun(const sim::Scenario& scenario, host::BusConnection& bus, const 
       changes_(scenario, std::move(input_.changes)),
       drive_(bus_, input_.setup, master_options(options.holds), changes_.span()),
       watch_(bus_, {input_.setup.nodes.begin(), input_.setup.nodes.end()}),
+      answer_times_attachment_(bus_, answer_times_),
+      change_times_attachment_(bus_, change_times_),
+      drive_attachment_(bus_, drive_),
+      watch_attachment_(bus_, watch_),
       check_(scenario),
-      end_tick_(options.end_tick) {
-  bus_.attach(answer_times_);  // before the master: it answers an answer with the next request
-  bus_.attach(change_times_);
-  bus_.attach(drive_);
-  bus_.attach(watch_);
-}
-
-GaitRun::~GaitRun() {
-  bus_.detach(drive_);
-  bus_.detach(watch_);
-  bus_.detach(answer_times_);
-  bus_.detach(change_times_);
-}
+      end_tick_(options.end_tick) {}
 
 canopen::MasterOptions GaitRun::master_options(bool holds) const {
   canopen::MasterOptions options;

@@ -15,7 +15,7 @@
 #include "host/robot/change_times.hpp"
 #include "host/robot/gait_watch.hpp"
 #include "host/robot/robot_drive.hpp"
-#include "sim/scenario/master_input.hpp"
+#include "sim/hardware_loop/master_input.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/robot/gait_check.hpp"
 #include "tools/proleg/robot/live_changes.hpp"
@@ -31,7 +31,6 @@ class GaitRun {
  public:
   /// scenario, bus: must outlive this.
   GaitRun(const sim::Scenario& scenario, host::BusConnection& bus, const GaitRunOptions& options);
-  ~GaitRun();
   GaitRun(const GaitRun&) = delete;
   GaitRun& operator=(const GaitRun&) = delete;
 
@@ -106,6 +105,10 @@ class GaitRun {
   host::AnswerTimes answer_times_;
   host::ChangeTimes change_times_;
   host::GaitWatch watch_;
+  host::BusAttachment answer_times_attachment_;  ///< before the master: it answers an answer with the next request
+  host::BusAttachment change_times_attachment_;
+  host::BusAttachment drive_attachment_;
+  host::BusAttachment watch_attachment_;
   GaitCheck check_;
   std::vector<std::uint8_t> rejoined_;
   bool is_following_ = true;  ///< no observer has failed

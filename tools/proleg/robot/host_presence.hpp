@@ -7,10 +7,7 @@ namespace proleg::tools {
 /// Shows other hosts, while it exists and is active, that a host works on this robot: then they change nothing.
 class HostPresence final : public host::BusUser {
  public:
-  explicit HostPresence(host::BusConnection& bus) : bus_(bus) { bus_.attach(*this); }
-  ~HostPresence() { bus_.detach(*this); }
-  HostPresence(const HostPresence&) = delete;
-  HostPresence& operator=(const HostPresence&) = delete;
+  explicit HostPresence(host::BusConnection& bus) : bus_(bus), attachment_(bus, *this) {}
 
   /// A master sends heartbeats itself.
   void set_active(bool is_active) { is_active_ = is_active; }
@@ -21,6 +18,7 @@ class HostPresence final : public host::BusUser {
 
  private:
   host::BusConnection& bus_;
+  host::BusAttachment attachment_;
   bool is_active_ = true;
   Microseconds next_ = 0;
 };

@@ -138,7 +138,7 @@ int run(const MonitorOptions& options) {
   catch_interrupts();
   host::BusConnection& connection = bus.connection();
   host::BusMonitor monitor(connection);
-  connection.attach(monitor);
+  const host::BusAttachment attachment(connection, monitor);
   const bool redraws = isatty(STDOUT_FILENO) == 1;
   const Microseconds begin = connection.now();
   const auto is_over = [&] {
@@ -154,7 +154,6 @@ int run(const MonitorOptions& options) {
     const host::BusMonitor::Traffic traffic = monitor.take_traffic(now);
     options.json ? print_json(monitor, traffic, now) : print_table(monitor, traffic, now, redraws);
   }
-  connection.detach(monitor);
   if (!connection.state().is_connected) {
     std::cerr << "proleg monitor: " << connection.diagnosis() << '\n';
     return exit_failed;

@@ -98,7 +98,7 @@ int nmt(const NmtOptions& options) {
     found = answering(bus, *listed_nodes);  // afterwards it answers no more
   }
   Requests requests;
-  bus.connection().attach(requests);
+  const host::BusAttachment attachment(bus.connection(), requests);
   const std::size_t before = requests.count();
   std::size_t sent = 0;
   bus.wait_for("room for a frame", 1'000'000, [&] {
@@ -115,7 +115,6 @@ int nmt(const NmtOptions& options) {
     bus.connection().run_until(bus.connection().now() + boot_time, all_have_booted);
     found = requests.booted;
   }
-  bus.connection().detach(requests);
   if (!listed_nodes) {
     return exit_success;
   }

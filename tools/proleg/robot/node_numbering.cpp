@@ -22,19 +22,17 @@ constexpr Microseconds releasing_time = 20'000;
 template <typename Machine>
 bool run(BusAccess& bus, Machine& machine, const std::string& what) {
   constexpr Microseconds longest = 300'000'000;  // the machines end by themselves; this bounds one with a fault
-  host::MachineUser<Machine> user(machine);
-  bus.connection().attach(user);
-  machine.start(bus.connection().now());
   try {
+    host::MachineUser<Machine> user(machine);
+    const host::BusAttachment attachment(bus.connection(), user);
+    machine.start(bus.connection().now());
     bus.wait_for(what, longest, [&] { return machine.state() != Machine::State::working; });
   } catch (...) {
-    bus.connection().detach(user);
     // No module stays selected: the next master would configure it with its own.
     static_cast<void>(bus.connection().send(canopen::lss_release_request()));
     bus.connection().run_for(releasing_time);
     throw;
   }
-  bus.connection().detach(user);
   return machine.state() == Machine::State::done;
 }
 

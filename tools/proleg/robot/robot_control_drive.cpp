@@ -47,14 +47,9 @@ class HookedGait final : public host::SetpointSource {
 
 }  // namespace
 
-ScenarioGait::ScenarioGait(const sim::Scenario& scenario)
-    : scenario_(scenario), chain_(scenario.kernel, scenario.joint_limits, scenario.settings) {}
-
 void ScenarioGait::advance(std::span<const std::uint8_t> contacts) {
-  if (next_change_ < scenario_.changes.size() && scenario_.changes[next_change_].tick == chain_.tick()) {
-    chain_.apply(scenario_.changes[next_change_++]);
-  }
-  chain_.advance(contacts);
+  gait_.apply_due_changes();
+  gait_.advance(contacts);
 }
 
 host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario) {

@@ -10,7 +10,7 @@
 #include "host/robot_control/drive_loop.hpp"
 #include "host/robot_control/gait_driver.hpp"
 #include "host/robot_control/robot_control.hpp"
-#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/gait.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg {
@@ -19,19 +19,17 @@ namespace proleg {
 class ScenarioGait final : public host::SetpointSource {
  public:
   /// scenario: must outlive the gait.
-  explicit ScenarioGait(const sim::Scenario& scenario);
+  explicit ScenarioGait(const sim::Scenario& scenario) : gait_(scenario) {}
   explicit ScenarioGait(const sim::Scenario&&) = delete;
 
-  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return chain_.setpoints(); }
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return chain().setpoints(); }
   void advance(std::span<const std::uint8_t> contacts) override;
   /// A change for the coming tick, beside those of the scenario.
-  void apply(const sim::Change& change) { chain_.apply(change); }
-  [[nodiscard]] const sim::KernelChain& chain() const { return chain_; }
+  void apply(const sim::Change& change) { gait_.chain().apply(change); }
+  [[nodiscard]] const sim::KernelChain& chain() const { return gait_.chain(); }
 
  private:
-  const sim::Scenario& scenario_;
-  sim::KernelChain chain_;
-  std::size_t next_change_ = 0;
+  sim::Gait gait_;
 };
 
 /// What the plug-in learns of the scenario's robot. Throws InputError if the robot's file has no <robot_control>.

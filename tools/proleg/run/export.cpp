@@ -1,5 +1,5 @@
-// proleg export: a recording as a table for other programs, as a data file of the thesis, or as a page that plays it; a
-// data file as a table.
+// proleg export: writes a recording as a table for other programs, as a data file of the thesis, or as a page that
+// plays it; writes a data file as a table.
 
 #include <array>
 #include <cstdint>
@@ -43,14 +43,14 @@ struct Options {
   bool json = false;
 };
 
-/// What is exported, and how.
+/// The data to export, and their form.
 struct Export {
   std::filesystem::path file;
   PlannedOutput output;
   std::function<void(const Write&)> write_with;
 };
 
-/// What is known of a run when it is exported.
+/// The length of an exported run, as far as it is known.
 struct Length {
   std::uint64_t ticks = 0;
   double seconds = 0.0;
@@ -70,7 +70,7 @@ Export data_file_of(const sim::Recording& recording, const std::filesystem::path
           }};
 }
 
-/// Reads all that can be wrong before anything is written.
+/// Reads and checks all inputs of the page before a file is written.
 Export page_of(const sim::Recording& recording, const std::filesystem::path& file) {
   const auto player = std::make_shared<const PlayerPage>(built_page("player", "player.html") / "player.html");
   const auto scenario = std::make_shared<const sim::Scenario>(scenario_of(recording));
@@ -108,7 +108,7 @@ void print_result(const Options& options, const Length& length, const std::strin
   standard_output.finish();
 }
 
-/// remark: printed if the command is not refused. length: called when everything is written.
+/// remark: prints a remark if the command is not refused. length: called when all is written.
 int write_export(const Options& options, const Export& planned, const std::function<void()>& remark,
                  const std::function<Length()>& length) {
   const bool to_standard_output = options.out == "-";
@@ -135,7 +135,7 @@ int write_export(const Options& options, const Export& planned, const std::funct
       print_result(options, written, planned.file.string(), bytes);
     }
   } catch (const ReaderGone&) {
-    return exit_failed;  // `head` does this; no message
+    return exit_failed;  // `head` closes the pipe like this, which needs no message
   }
   return exit_success;
 }

@@ -27,17 +27,17 @@ class ColumnBlock {
 
   explicit ColumnBlock(std::size_t columns) : columns_(columns) {}
 
-  /// Only if the block is not full.
+  /// Adds a row; the block must not be full.
   void add(std::span<const std::int32_t> row);
   [[nodiscard]] bool is_empty() const { return rows_ == 0; }
   [[nodiscard]] bool is_full() const { return rows_ == max_rows; }
-  /// The rows as text, in base64. The block is empty then.
+  /// Takes the rows as text, in base64, and empties the block.
   [[nodiscard]] std::string take();
 
  private:
   std::size_t columns_;
   std::size_t rows_ = 0;
-  std::vector<std::int32_t> values_;  ///< row by row
+  std::vector<std::int32_t> values_;  ///< values row by row
 };
 
 void ColumnBlock::add(std::span<const std::int32_t> row) {
@@ -66,7 +66,7 @@ std::string ColumnBlock::take() {
 
 constexpr std::string_view place_mark = "<!-- the recording -->";
 
-/// JSON as the text of an HTML element. Names come from files of other people: without a "<" no text can end the
+/// JSON as the text of an HTML element. Names come from files of other people: a text without "<" cannot end the
 /// element.
 std::string element_text(const json& document) {
   std::string text;

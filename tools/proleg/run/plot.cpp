@@ -1,4 +1,4 @@
-// proleg plot: a recording, or columns of it or of a data file, as a picture.
+// proleg plot: draws a recording, or columns of it or of a data file, as a picture.
 
 #include <algorithm>
 #include <array>
@@ -54,8 +54,8 @@ class WorkFolder {
   std::string path_;
 };
 
-/// An SVG picture as PNG, two pixels for each of its own, made by librsvg's rsvg-convert if it is installed. Throws
-/// BadInput that names the Debian package if it is not, and std::runtime_error if it fails.
+/// An SVG picture as PNG, with two pixels for each of its own, made by librsvg's rsvg-convert. Throws BadInput that
+/// names the Debian package if this is not installed, and std::runtime_error if it fails.
 std::string png_of(const std::string& svg) {
   const WorkFolder folder;
   write_file(folder.path() + "/picture.svg", svg);
@@ -86,7 +86,7 @@ struct Options {
   bool png = false;
 };
 
-/// A picture, and what the user is told beside it.
+/// A picture, and the messages about it.
 struct Drawing {
   std::string svg;
   std::string remark;
@@ -99,12 +99,12 @@ void require_finite(const char* option, const std::optional<double>& seconds) {
 }
 
 bool is_svg(const std::filesystem::path& path) {
-  constexpr std::size_t max_head = 1000;  // with a declaration and comments of another program
+  constexpr std::size_t max_head = 1000;  // enough for a declaration and comments of another program
   const std::string head = first_bytes(path, max_head);
   return head.starts_with('<') && head.find("<svg") != std::string::npos;
 }
 
-/// Throws InputError for a name that promises a picture of another format.
+/// Throws InputError if the name's extension belongs to another format.
 void require_format(const std::filesystem::path& picture, bool png) {
   constexpr std::array<std::string_view, 13> known{".svg", ".png",  ".jpg", ".jpeg", ".gif", ".webp", ".bmp",
                                                    ".tif", ".tiff", ".pdf", ".ps",   ".eps", ".html"};
@@ -140,8 +140,8 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
-/// What of a data file is drawn without --series: what its modules command; else what the joints do; else the first
-/// type.
+/// The series of a data file that are drawn without --series: the commands of its modules; else the motion of the
+/// joints; else the first type.
 std::vector<std::string> usual_series(const sim::DataFile& data) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& type) {
@@ -215,7 +215,7 @@ int plot(const CommandLine& command_line, const Options& options) {
     standard_output.write(to_standard_output ? bytes : picture.string() + "\n");
     standard_output.finish();
   } catch (const ReaderGone&) {
-    // The program at the other end of the pipe needed no more of the picture, or not its name.
+    // The program at the other end of the pipe needed no more of the picture or its name.
   }
   return exit_success;
 }

@@ -1,4 +1,4 @@
-// proleg receipt: a run in one line, and whether it can be repeated here.
+// proleg receipt: prints a run in one line, or checks whether it can be repeated here.
 
 #include <chrono>
 #include <cmath>
@@ -29,19 +29,19 @@ namespace {
 using namespace proleg;
 using namespace proleg::tools;
 
-/// What repeats a run, and what it gave: one line that another machine can verify.
+/// The inputs that repeat a run, and its result: one line that another computer can verify.
 ///
 ///   proleg-receipt:1 scenario=9f86... core=1a2b3c4d engine=reduced-1 seconds=30 seed=7 set=amplitude=41
 ///   distance=1.6408 world=0f81...
 struct Receipt {
   std::string scenario;               ///< SHA-256 of the texts of its files
   std::string core;                   ///< fingerprint of the algorithms
-  std::string engine;                 ///< with its version
-  std::string seconds;                ///< as --seconds
-  sim::OverrideWords overrides;       ///< as the options; no engine
-  std::vector<std::string> settings;  ///< as --set, in their order
-  std::string measure;                ///< its name
-  std::string value;                  ///< of the measure
+  std::string engine;                 ///< name of the engine with its version
+  std::string seconds;                ///< value of --seconds
+  sim::OverrideWords overrides;       ///< values of the options, without engine
+  std::vector<std::string> settings;  ///< values of --set, in their order
+  std::string measure;                ///< name of the measure
+  std::string value;                  ///< value of the measure
   std::string world;                  ///< hash of the states of the world
 
   bool operator==(const Receipt&) const = default;
@@ -108,7 +108,7 @@ void read_word(std::string_view word, Receipt& receipt) {
   }
 }
 
-/// Without a line feed. No text may contain white space.
+/// Text of a receipt, without a line feed. The parts must not contain white space.
 std::string text_of(const Receipt& receipt) {
   std::string text(first_word);
   const auto add = [&](std::string_view name, const std::string& value) {
@@ -131,7 +131,7 @@ std::string text_of(const Receipt& receipt) {
   return text;
 }
 
-/// White space between the words may be any. Throws InputError.
+/// Parses a receipt, with any white space between the words. Throws InputError.
 Receipt read_receipt(std::string_view text) {
   const std::vector<std::string_view> all = words(text);
   if (all.empty() || all.front() != first_word) {
@@ -158,8 +158,8 @@ struct ReceiptOptions : ScenarioOptions {
   std::vector<std::string> receipt;  ///< its words; only for `check`
 };
 
-/// Of the texts of a scenario's files, in the order in which they name each other. Paths and names of files do not
-/// count.
+/// Hash of the texts of a scenario's files, in the order in which they name each other, without paths and names of
+/// files.
 std::string hash_of_files(const sim::Scenario& scenario) {
   std::string text;
   for (const sim::SourceFile& source : scenario.sources) {
@@ -207,14 +207,14 @@ int print_receipt(const ReceiptOptions& options) {
   return exit_success;
 }
 
-/// Values of an equal motion differ by rounding at most, where a measure uses the system's mathematics.
+/// Whether two values are equal except for rounding: a measure may use the system's mathematics.
 bool are_equal(const std::string& a, const std::string& b) {
   const std::optional<double> value_a = parse_number(a);
   const std::optional<double> value_b = parse_number(b);
   return a == b || (value_a && value_b && std::abs(*value_a - *value_b) <= 1e-9 * std::abs(*value_a));
 }
 
-/// What makes a repetition impossible; empty: nothing.
+/// Text with the version that makes a repetition impossible; empty if it is possible.
 std::string other_version(const Receipt& stated, const Receipt& here) {
   if (stated.scenario != here.scenario) {
     return "the files of the scenario are not those of the receipt: their hash is " + here.scenario +

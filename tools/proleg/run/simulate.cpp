@@ -123,7 +123,7 @@ int simulate(const ScenarioOptions& options) {
     print_setup(setup.scenario);
   }
   check_outputs(planned_recording(options));
-  sim::Simulation simulation(setup.scenario, &setup.losses);  // may refuse the scenario, so before any file
+  sim::Simulation simulation(setup.scenario, &setup.losses);  // made before any file because it may refuse the scenario
   const std::unique_ptr<sim::Recorder> recorder = open_recorder(options, setup.scenario, "simulate");
   catch_interrupts();
   std::optional<Result> finished;

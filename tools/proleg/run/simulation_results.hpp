@@ -10,8 +10,8 @@
 
 namespace proleg::tools {
 
-/// The results of a run, as its recording keeps them. lost_frames: withheld by losses in the whole run. Only after a
-/// tick.
+/// The results of a run, as its recording keeps them. lost_frames: number of frames lost in the whole run. Must be
+/// called after a tick.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> results_of(const sim::Simulation& simulation,
                                                                           const sim::Scenario& scenario,
                                                                           std::uint64_t lost_frames);

@@ -1,4 +1,4 @@
-// proleg confirm: whether a gait is real or lives on an error of the physics.
+// proleg confirm: checks whether a gait is real or depends on an error of the physics.
 
 #include <cstdio>
 #include <iostream>
@@ -58,7 +58,7 @@ int confirm(const ConfirmOptions& options) {
   if (!worlds || *worlds < 1 || *worlds > 10'000) {
     throw InputError("--worlds", 0, in_quotes(options.worlds), "1 to 10000");
   }
-  static_cast<void>(sim::Simulation(setup.scenario));  // an engine that does not have the world refuses it now
+  static_cast<void>(sim::Simulation(setup.scenario));  // an engine without the features of the world refuses it now
   print_warnings("proleg confirm", setup.scenario);
   catch_interrupts();
   RunProgress progress("confirming", 1.0);

@@ -34,10 +34,10 @@ namespace {
 
 using namespace proleg;
 using namespace proleg::tools;
-/// By method.
+/// The curves of each method.
 using Curves = std::map<std::string, optimize::BestCurves>;
 
-/// The mean of the best so far after 100, 200, 400, ... evaluations.
+/// The means of the best so far after 100, 200, 400, ... evaluations.
 Json course(const optimize::BestCurves& curves) {
   Json means = Json::empty_object();
   for (std::size_t evaluations = 100; evaluations <= curves.mean.size(); evaluations *= 2) {
@@ -94,7 +94,7 @@ Json differences_json(const std::vector<optimize::MethodRuns>& runs) {
   return list;
 }
 
-/// results: one for each chosen method. checks: may be empty.
+/// results: one for each chosen method. checks may be empty.
 Json experiment_json(const std::vector<ChosenMethod>& chosen, const std::vector<MethodResult>& results,
                      const std::vector<optimize::Reference>& references, const std::vector<CheckedGait>& checks) {
   Curves curves;
@@ -157,7 +157,8 @@ std::string conditions_text(const optimize::Experiment& experiment, double wall_
   return text + time.data();
 }
 
-/// The files at the top of the folder. Those of a folder in which a method has a store are an earlier experiment's.
+/// Checks the files at the top of the folder. If a method has a store in the folder, they belong to an earlier
+/// experiment.
 void check_folder(const fs::path& folder, const optimize::ThesisExperiment& thesis,
                   const std::vector<ChosenMethod>& chosen) {
   std::vector<std::string_view> files{thesis.comparison_figure, "summary.txt"};

@@ -42,7 +42,7 @@ sim::Scenario best_scenario(const optimize::Experiment& experiment, const Method
   return scenario;
 }
 
-/// What an experiment asks of a gait on level ground.
+/// The check of an experiment's gaits on level ground.
 class LevelGround {
  public:
   LevelGround(const optimize::ThesisExperiment& thesis, const optimize::Experiment& experiment,
@@ -52,7 +52,7 @@ class LevelGround {
     plain_ = reference_scenario(*level, experiment, scenarios);
   }
   [[nodiscard]] const sim::EnvironmentModel& environment() const { return plain_.environment; }
-  /// Whether the scenario's gait goes about as far there as the plain one, in an engine.
+  /// Whether the scenario's gait goes about as far on level ground as the plain one, in an engine.
   [[nodiscard]] bool is_kept_by(sim::Scenario scenario, sim::PhysicsEngine engine) {
     const double plain = plain_distance(engine);
     scenario.environment = plain_.environment;
@@ -76,7 +76,7 @@ class LevelGround {
   std::map<sim::PhysicsEngine, double> plain_m_;
 };
 
-/// Tells a person what is done; each gait takes half a minute.
+/// Shows the user the progress; each gait takes half a minute.
 class CheckProgress {
  public:
   void begin_gait(const std::string& name) { begin("checks " + name + " in other worlds"); }
@@ -101,7 +101,7 @@ class CheckProgress {
   std::string text_;
 };
 
-/// The farthest gait of a method that keeps the level, by the judging engine.
+/// The gait of a method that keeps the level and goes farthest in the judging engine.
 std::optional<optimize::Evaluation> best_that_keeps(LevelGround& level, const optimize::Experiment& experiment,
                                                     const MethodResult& result, CheckProgress& progress) {
   constexpr std::size_t most_of_a_repetition = 200;
@@ -120,7 +120,7 @@ std::optional<optimize::Evaluation> best_that_keeps(LevelGround& level, const op
     progress.show_search(i, candidates.size());
     optimize::Evaluation& candidate = candidates[i];
     const sim::Scenario own = optimize::own_world(experiment, candidate);
-    // First in the engine of the search, if that is the faster one.
+    // The gait is checked first in the engine of the search, if that is the faster one.
     if ((optimize::is_judged(experiment) && !level.is_kept_by(own, experiment.scenario.environment.engine)) ||
         !level.is_kept_by(own, optimize::judging_engine)) {
       continue;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The gaits of an experiment of the thesis: those without a search, and the best of each method.
+// Checks the gaits of an experiment of the thesis: those without a search, and the best of each method.
 
 #include <array>
 #include <filesystem>
@@ -21,10 +21,10 @@ inline constexpr std::array<std::string_view, 2> gait_check_figures{"figure_6_8.
                                                                    const optimize::Experiment& experiment,
                                                                    const std::filesystem::path& scenarios);
 
-/// The references on the obstacle, the best of each method, and its best that keeps the level, if there is one: each in
-/// its own world, in other worlds and on level ground. Writes figures 6.8, the crossing of the best, and 7.3, all
-/// distances on a ruler, to the folder, and the gaits that keep the level to those of the methods. results: one for
-/// each chosen method. The experiment has a level ground. Throws CheckInterrupted.
+/// Checks the references on the obstacle, the best of each method, and its best that keeps the level, if it has one:
+/// each in its own world, in other worlds and on level ground. Writes figures 6.8, the crossing of the best, and 7.3,
+/// all distances on a ruler, to the folder, and the gaits that keep the level to those of the methods. results: one for
+/// each chosen method. The experiment must have a level ground. Throws CheckInterrupted.
 [[nodiscard]] std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis,
                                                    const std::vector<ChosenMethod>& chosen,
                                                    const std::vector<MethodResult>& results,

@@ -35,7 +35,7 @@ std::vector<ExperimentMethod> all_methods(const optimize::ThesisExperiment& thes
   return methods;
 }
 
-/// Throws InputError unless there is a method of that name.
+/// Throws InputError unless a method has the name.
 void check_method_name(const std::vector<ExperimentMethod>& methods, const std::string& name) {
   if (std::ranges::count(methods, name, &ExperimentMethod::name) == 0) {
     std::vector<std::string> names;
@@ -52,13 +52,13 @@ optimize::Experiment experiment_of(const MethodChoice& choice, const ExperimentM
     settings.algorithm = method.name;
     experiment.method = settings;
   }
-  experiment.has_baseline = false;  // the thesis's searches have none; the references are in the summary
+  experiment.has_baseline = false;  // the thesis's searches have no baseline; the references are in the summary
   apply_options(choice.options, experiment);
   return experiment;
 }
 
 /// Whether the store in a folder has all repetitions of this experiment. Its method is then part of the comparison,
-/// even if it is not asked for now.
+/// even if the user did not name it.
 bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitions, const fs::path& folder) {
   try {
     optimize::Store store(store_path(folder), experiment, result_key, optimize::Store::Opening::resume);
@@ -69,7 +69,7 @@ bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitio
     }
     return true;
   } catch (const optimize::StoreError&) {
-    return false;  // no store, or one of another experiment
+    return false;  // the folder has no store, or one of another experiment
   }
 }
 

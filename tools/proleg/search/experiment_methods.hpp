@@ -1,6 +1,6 @@
 #pragma once
 
-// The methods that take part in an experiment of the thesis, and what each of them searches.
+// The methods that take part in an experiment of the thesis, and the experiment that each of them searches.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +21,7 @@ struct ExperimentMethod {
   std::string table;
   std::string runs_figure;
   std::string spread_figure;
-  bool shipped = true;  ///< the file is for it; else another algorithm of pagmo searches the file's space
+  bool shipped = true;  ///< the file is for this method; else another algorithm of pagmo searches the file's space
 };
 
 struct ChosenMethod {
@@ -31,13 +31,13 @@ struct ChosenMethod {
 
 struct MethodChoice {
   ExperimentOptions options;
-  std::vector<std::string> names;  ///< that the user asked for; empty: those of the thesis, and CMA-ES
+  std::vector<std::string> names;  ///< methods that the user named; empty: those of the thesis, and CMA-ES
   std::uint32_t repetitions = 0;
   std::filesystem::path scenarios;  ///< folder of the experiment's files
-  std::filesystem::path folder;     ///< of the results
+  std::filesystem::path folder;     ///< folder of the results
 };
 
-/// Throws InputError if there is none of that name.
+/// Finds an experiment by its name; throws InputError if none has it.
 [[nodiscard]] const optimize::ThesisExperiment& find_experiment(const std::string& name);
 
 /// The folder of an experiment's files: the given one, or one below the working directory or a folder above this
@@ -45,7 +45,7 @@ struct MethodChoice {
 [[nodiscard]] std::filesystem::path find_experiment_files(const optimize::ThesisExperiment& thesis,
                                                           const std::optional<std::string>& given);
 
-/// The methods that were asked for, and those of which the folder has all repetitions. At least one. Throws InputError,
+/// The methods that the user named, and those of which the folder has all repetitions; at least one. Throws InputError,
 /// and BadInput if a search would write over its own files.
 [[nodiscard]] std::vector<ChosenMethod> choose_methods(const optimize::ThesisExperiment& thesis,
                                                        const MethodChoice& choice);

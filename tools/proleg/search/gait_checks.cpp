@@ -17,7 +17,7 @@ namespace {
 
 using optimize::CrossingStage;
 
-/// A tenth of friction and masses, and the thesis's robot placed by hand.
+/// Variation by a tenth of friction and masses, and by 5 mm, as if the thesis's robot were placed by hand.
 constexpr optimize::WorldVariation variation{.spread = {.friction = 0.1, .mass = 0.1}, .start_m = 0.005};
 constexpr std::uint64_t worlds_seed = 1;
 
@@ -46,7 +46,7 @@ double deviation_of(const std::vector<double>& values) {
 double lowest(const std::vector<double>& values) { return values.empty() ? NAN : values.front(); }
 double highest(const std::vector<double>& values) { return values.empty() ? NAN : values.back(); }
 
-/// Of the links' origins, along y.
+/// Middle of the links' origins along y.
 double middle_of(const sim::Plant& plant) {
   double sum = 0.0;
   for (const sim::Pose& pose : plant.link_poses()) {
@@ -123,7 +123,7 @@ Json gait_checks_json(const std::vector<CheckedGait>& gaits) {
 std::vector<CrossingStage> crossing_stages(sim::Scenario scenario) {
   struct Place {
     const char* name;
-    double share;  ///< of the obstacle
+    double share;  ///< share of the obstacle
   };
   constexpr std::array<Place, 4> places{
       {{"on the second hill", 0.375}, {"in the pit", 0.625}, {"leaving the pit", 0.75}, {"on the last hill", 0.875}}};
@@ -145,7 +145,7 @@ std::vector<CrossingStage> crossing_stages(sim::Scenario scenario) {
       }
     }
   } catch (const sim::PhysicsError&) {
-    return stages;  // up to the failure
+    return stages;  // only the stages before the failure
   }
   return stages;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `proleg optimise` and `proleg experiment` have in common: a store in a folder, workers, and a run of a search.
+// Common parts of `proleg optimise` and `proleg experiment`: a store in a folder, workers, and a run of a search.
 
 #include <cstdint>
 #include <filesystem>
@@ -44,22 +44,22 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
 struct SearchOutcome {
   std::vector<optimize::Evaluation> evaluations;
   optimize::SearchProgress progress;
-  std::string ending;  ///< why it ended; empty if it was interrupted
+  std::string ending;  ///< reason of its end; empty if it was interrupted
   double wall_s = 0.0;
-  double confirmation_wall_s = 0.0;  ///< of the fresh runs after the search
+  double confirmation_wall_s = 0.0;  ///< wall time of the fresh runs after the search
   double own_cpu_s = 0.0;            ///< processor time of optimiser, store and scheduling
 };
 
 /// Runs a search until its method ends, its evaluations are used up, or the user interrupts it. Shows progress on the
-/// terminal, under this label.
+/// terminal, with a label.
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
 
-/// Whether a run has ended: with more evaluations than it had, one that has used them up goes on.
+/// Whether a run has ended. A run that has used up its evaluations goes on if the experiment now has more of them.
 [[nodiscard]] bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run);
 
-/// Rates the best candidates of a search again, if it has ended and needs_confirmation(); otherwise returns nothing.
-/// Best first. If the user interrupts, the result is empty, and the search counts as interrupted.
+/// Rates the best candidates of a search again, if it has ended and needs_confirmation(), and returns them best first;
+/// otherwise returns none. If the user interrupts, the result is empty, and the search counts as interrupted.
 [[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,
                                                                optimize::Workers& workers, optimize::Store& store,
                                                                SearchOutcome& outcome);

@@ -174,7 +174,8 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::filesystem::path folder = folder_of(options, experiment);
   print_warnings("proleg optimise", experiment.scenario);
   refuse_overwriting(experiment, folder);
-  if (!options.resume && !std::filesystem::exists(store_path(folder))) {  // otherwise the store says how to go on
+  if (!options.resume &&
+      !std::filesystem::exists(store_path(folder))) {  // otherwise the store has the command to continue
     check_result_folder(folder, search_result_files);
   }
   if (options.verbose) {
@@ -184,7 +185,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     std::cerr << experiment.space.dimensions.size() << " dimensions, " << experiment.space.size() << " candidates\n";
   }
   catch_interrupts();
-  // Before the store is opened: workers are processes that should not inherit it.
+  // The workers are made before the store is opened: they are processes that should not inherit it.
   const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
   const std::unique_ptr<optimize::Store> store = open_store(
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);

@@ -29,11 +29,11 @@ void add_optimise_options(CommandLine& command_line, OptimiseOptions& options);
 /// Throws InputError or BadInput.
 [[nodiscard]] optimize::Experiment read_experiment(const OptimiseOptions& options);
 
-/// Makes the workers: processes of this computer, or of a cluster.
+/// Makes the workers, which are processes of this computer or of a cluster.
 using WorkersMaker =
     std::function<std::unique_ptr<optimize::Workers>(const optimize::Experiment&, const OptimiseOptions& options)>;
 
-/// The subcommand, with the workers that `make_workers` makes.
+/// Runs the subcommand with the workers that `make_workers` makes.
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers);
 
 }  // namespace proleg::tools

@@ -16,7 +16,7 @@
 
 namespace {
 
-/// Returns only if the program cannot be started.
+/// Becomes the program for MPI; returns only if it cannot be started.
 void run_over_mpi(char** argv) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);

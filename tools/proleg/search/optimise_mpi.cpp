@@ -23,16 +23,17 @@ int search(int argc, char** argv) {
   });
 }
 
-/// An error on this rank is most probably one on rank 0, too. Rank 0 reports it first, and then mpirun ends all ranks.
+/// Waits until rank 0 has reported an error: an error on this rank is most probably one on rank 0, too. Then mpirun
+/// ends all ranks.
 void let_rank_0_report() { std::this_thread::sleep_for(std::chrono::seconds(2)); }
 
-/// The work of ranks above 0.
+/// Does the work of ranks above 0.
 int serve(int argc, char** argv, int rank) {
   CommandLine command_line("proleg optimise, rank " + std::to_string(rank), "");
   OptimiseOptions options;
   add_optimise_options(command_line, options);
   optimize::Experiment experiment;
-  // Rank 0 has the same words and reports errors in them.
+  // Rank 0 has the same arguments and reports errors in them.
   bool understood = false;
   std::cout.setstate(std::ios::failbit);
   std::cerr.setstate(std::ios::failbit);

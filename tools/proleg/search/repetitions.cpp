@@ -22,7 +22,7 @@ using optimize::Evaluation;
 using optimize::Experiment;
 using optimize::Store;
 
-/// A search that has ended, with its best, which is rated again if the experiment is judged.
+/// A search that has ended, with its best evaluation, which is rated again if the experiment is judged.
 struct Repetition {
   SearchOutcome outcome;
   Evaluation winner;
@@ -33,7 +33,7 @@ class Repetitions {
   Repetitions(std::string name, const Experiment& experiment, std::uint32_t count, fs::path folder)
       : name_(std::move(name)), experiment_(experiment), count_(count), folder_(std::move(folder)) {}
 
-  /// Those that have not ended. Takes what processes of an earlier program left.
+  /// The runs that have not ended. Takes over the results that processes of an earlier program left.
   [[nodiscard]] std::vector<std::uint32_t> unfinished() const {
     const std::unique_ptr<Store> store = open();
     add_parts(*store);
@@ -46,7 +46,7 @@ class Repetitions {
     return runs;
   }
 
-  /// Each search has a process and a store of its own, which then becomes part of that of the experiment.
+  /// Runs searches, each in a process with a store of its own, which then becomes part of the experiment's store.
   void search_side_by_side(std::uint32_t worker_count, std::span<const std::uint32_t> runs) const {
     for (const std::uint32_t run : runs) {
       open_store(part(run), experiment_, Store::Opening::fresh)->add(store_path(folder_), run);
@@ -111,7 +111,7 @@ class Repetitions {
     }
   }
 
-  /// Nothing if the user interrupts. Prints a line if anything was simulated.
+  /// Runs a search; nothing if the user interrupts. Prints a line if it has simulated a candidate.
   [[nodiscard]] std::optional<Repetition> search(std::uint32_t run, optimize::Workers& workers, Store& store,
                                                  std::ostream& out) const {
     const std::string label = name_ + " " + std::to_string(run + 1) + "/" + std::to_string(count_);

@@ -22,9 +22,9 @@ struct MethodResult {
   double wall_s = 0.0;
 };
 
-/// Runs the repetitions side by side, with shared workers; what the store in the folder has is not simulated again.
-/// Fewer if the user interrupts. The result does not depend on the number of workers. repetitions: at most
-/// max_repetitions. Throws BadInput, and std::runtime_error if no evaluation of a repetition has a score.
+/// Runs the repetitions side by side, with shared workers; evaluations in the folder's store are not simulated again.
+/// The result has fewer repetitions if the user interrupts. It does not depend on the number of workers. repetitions:
+/// at most max_repetitions. Throws BadInput, and std::runtime_error if no evaluation of a repetition has a score.
 [[nodiscard]] MethodResult run_repetitions(const std::string& name, const optimize::Experiment& experiment,
                                            std::uint32_t repetitions, std::uint32_t workers,
                                            const std::filesystem::path& folder);

@@ -73,7 +73,7 @@ std::string spark_line(const std::vector<double>& values, std::size_t width) {
   const std::size_t columns = std::min(width, values.size());
   std::string line;
   for (std::size_t column = 0; column < columns; ++column) {
-    // The last value that falls into the column.
+    // The column shows its last value.
     const double value = values[(column + 1) * values.size() / columns - 1];
     const double share = *high > *low ? (value - *low) / (*high - *low) : 0.0;
     line += blocks[static_cast<std::size_t>(std::lround(share * (blocks.size() - 1)))];

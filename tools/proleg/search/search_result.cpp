@@ -39,19 +39,20 @@ std::vector<double> scores_of(const Experiment& experiment, const sim::MeasureVa
   return scores;
 }
 
-/// Whether the best scenario's own run decided: a judged search without random numbers has one fresh run of each
-/// finalist, in the world of the scenario.
+/// Whether the best scenario's own run decided the result: a judged search without random numbers has one fresh run of
+/// each finalist, in the world of the scenario.
 bool own_run_decided(const Experiment& experiment, const SearchResult& result) {
   return optimize::is_judged(experiment) && !depends_on_seed(experiment) && !result.confirmations.empty();
 }
 
-/// What decides between the best and the baseline: the means of their fresh runs, or their scores in the search.
+/// The numbers that decide between the best and the baseline: the means of their fresh runs, or their scores in the
+/// search.
 struct Comparison {
   double best;
   double baseline;
 };
 
-/// Nothing without a score to compare with.
+/// Compares the best with the baseline; nothing without a score of the baseline.
 std::optional<Comparison> compare_with_baseline(const Experiment& experiment, const SearchResult& result) {
   if (!result.baseline || !optimize::has_own_score(experiment, *result.baseline, 0)) {
     return std::nullopt;
@@ -64,7 +65,7 @@ std::optional<Comparison> compare_with_baseline(const Experiment& experiment, co
   return Comparison{result.best.scores.front(), result.baseline->scores.front()};
 }
 
-/// How much better the best is than the baseline, in per cent of the baseline.
+/// Gain of the best over the baseline, in per cent of the baseline.
 std::optional<double> gain_percent(const Experiment& experiment, const SearchResult& result) {
   const std::optional<Comparison> scores = compare_with_baseline(experiment, result);
   if (!scores || scores->baseline == 0.0) {
@@ -74,7 +75,7 @@ std::optional<double> gain_percent(const Experiment& experiment, const SearchRes
   return (experiment.objectives.front().goal == optimize::Goal::maximise ? gain : -gain) + 0.0;
 }
 
-/// Whether the search found a candidate that is better than the baseline; nothing without a score to compare with.
+/// Whether the search found a candidate that is better than the baseline; nothing without a score of the baseline.
 std::optional<bool> beats_baseline(const Experiment& experiment, const SearchResult& result) {
   const std::optional<Comparison> scores = compare_with_baseline(experiment, result);
   if (!scores) {
@@ -84,7 +85,7 @@ std::optional<bool> beats_baseline(const Experiment& experiment, const SearchRes
          experiment.objectives.front().better(scores->best, scores->baseline);
 }
 
-/// What follows a score: the engine that it is from, if the search has two.
+/// Text after a score: the engine that gave it, if the search has two engines.
 std::string engine_text(const Experiment& experiment, sim::PhysicsEngine engine) {
   return optimize::is_judged(experiment) ? " (" + std::string(sim::name_of(engine)) + ")" : "";
 }
@@ -148,7 +149,7 @@ void print_baseline(const Experiment& experiment, const SearchResult& result) {
   }
 }
 
-/// With its unit.
+/// Text of a value with its unit.
 std::string value_text(const Experiment& experiment, const optimize::Candidate& candidate, std::size_t dimension) {
   const std::string unit = sim::shown_unit(experiment.space.dimensions[dimension].unit);
   return experiment.space.value_text(candidate, dimension) + (unit.empty() ? "" : " ") + unit;

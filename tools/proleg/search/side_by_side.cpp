@@ -57,7 +57,8 @@ struct Pipe {
   int write_end = -1;
 };
 
-/// All numbers in a pipe: each is read by one process. A pipe holds more of them than there are repetitions (64 KiB).
+/// Writes all numbers into a pipe, from which each is read by one process. A pipe has room for 64 KiB, which is enough
+/// for all repetitions.
 void fill(Pipe& numbers, std::span<const std::uint32_t> values) {
   for (const std::uint32_t value : values) {
     if (write(numbers.write_end, &value, sizeof value) != static_cast<ssize_t>(sizeof value)) {
@@ -104,7 +105,7 @@ class Process {
   [[nodiscard]] std::array<pollfd, 2> sockets() const {
     return {{{lines_.read_end, POLLIN, 0}, {progress_.read_end, POLLIN, 0}}};
   }
-  /// Reads what is there. Returns whole lines of standard output, and keeps the last one of standard error.
+  /// Reads the available text. Returns whole lines of standard output, and keeps the last line of standard error.
   std::string receive(bool has_lines, bool has_progress) {
     std::string lines;
     if (has_lines && read_from(lines_, lines_begun_)) {
@@ -145,10 +146,10 @@ class Process {
     }
     std::fflush(stdout);
     std::cout.flush();
-    _exit(status);  // not exit(): the parent has open what this would close
+    _exit(status);  // exit() would close files that the parent has open
   }
 
-  /// False, and closed, at the end.
+  /// Reads from a pipe; at its end closes it and returns false.
   static bool read_from(Pipe& pipe, std::string& text) {
     std::array<char, 4096> bytes{};
     const ssize_t size = read(pipe.read_end, bytes.data(), bytes.size());
@@ -169,7 +170,7 @@ class Process {
   std::string latest_;
 };
 
-/// Prints and draws what the processes write, until they end.
+/// Prints and draws the output of the processes, until they end.
 class Relay {
  public:
   explicit Relay(std::vector<std::unique_ptr<Process>>& processes) : processes_(processes) {}
@@ -193,20 +194,20 @@ class Relay {
   }
 
  private:
-  /// False when all have ended.
+  /// Waits for output; returns false when all processes have ended.
   bool wait() {
     constexpr int look_at_interrupts_ms = 200;
     ready_.clear();
     bool is_over = true;
     for (const auto& process : processes_) {
       for (const pollfd& socket : process->sockets()) {
-        ready_.push_back(socket);  // poll() leaves out those that are closed (-1)
+        ready_.push_back(socket);  // poll() ignores closed ones (-1)
       }
       is_over = is_over && process->has_ended();
     }
     if (!is_over && poll(ready_.data(), ready_.size(), look_at_interrupts_ms) < 0) {
       for (pollfd& socket : ready_) {
-        socket.revents = 0;  // a signal
+        socket.revents = 0;  // a signal interrupted poll()
       }
     }
     return !is_over;
@@ -253,7 +254,7 @@ void work_side_by_side(std::uint32_t processes, std::span<const std::uint32_t> n
       if (all.empty()) {
         throw;
       }
-      break;  // those that did start do the work
+      break;  // the processes that have started do the work
     }
   }
   started();

@@ -51,9 +51,9 @@ struct SweepResult {
   std::vector<SweepGroup> groups;
   std::vector<std::filesystem::path> files;
   std::uint64_t failed = 0;
-  const SweepRun* first_failure = nullptr;  ///< in the order of the combinations
+  const SweepRun* first_failure = nullptr;  ///< first failed run, in the order of the combinations
   std::uint64_t limited = 0;                ///< runs whose servos cannot follow the gait
-  const SweepRun* worst_limited = nullptr;  ///< with the largest difference between an angle and that of its pulse
+  const SweepRun* worst_limited = nullptr;  ///< run with the largest difference between an angle and that of its pulse
   std::uint32_t workers = 0;
   double wall_s = 0.0;
 };
@@ -77,7 +77,7 @@ std::filesystem::path result_folder(const SweepOptions& options) {
   return folder;
 }
 
-/// Several seeds of a gait without noise give equal runs.
+/// Warns if several seeds give equal runs because the gait has no noise.
 void warn_of_equal_runs(const Sweep& sweep) {
   for (const SweptQuantity& quantity : sweep.quantities) {
     if (quantity.name.find("noise") != std::string::npos) {
@@ -155,7 +155,7 @@ void write_results(const Sweep& sweep, sim::Measure measure, const std::filesyst
   }
 }
 
-/// "amplitude 10, seed 1".
+/// Text of a combination: "amplitude 10, seed 1".
 std::string values_text(const Sweep& sweep, const optimize::Candidate& combination, bool with_seed) {
   std::string text;
   for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
@@ -176,7 +176,7 @@ std::string description(const Sweep& sweep, const SweepRun& run) {
   return values_text(sweep, sweep.combination(run.number), true);
 }
 
-/// "amplitude 10, seed 1: the robot fell".
+/// Text of the first failure: "amplitude 10, seed 1: the robot fell".
 std::string first_failure(const Sweep& sweep, const SweepResult& result) {
   return description(sweep, *result.first_failure) + ": " + one_line(result.first_failure->result.failure);
 }
@@ -253,7 +253,7 @@ void warn_of_limited_servos(const Sweep& sweep, const SweepResult& result) {
   }
 }
 
-/// Why there is no value of the measure.
+/// Text with the reason why no run has a value of the measure.
 std::string why_without_values(const Sweep& sweep, const SweepOptions& options, const SweepResult& result) {
   const std::string runs = std::to_string(result.runs.size());
   if (result.failed == result.runs.size()) {
@@ -271,7 +271,7 @@ int sweep(const SweepOptions& options) {
   const Sweep sweep = optimize::read_sweep(std::move(setup.scenario), options.over, options.scenario.settings);
   const std::uint32_t worker_count = parse_workers(options.workers);
   const std::filesystem::path folder = result_folder(options);
-  static_cast<void>(sim::Simulation(sweep.scenario));  // an engine that does not have the world refuses it now
+  static_cast<void>(sim::Simulation(sweep.scenario));  // an engine without the features of the world refuses it now
   catch_interrupts();
   create_result_folder(folder);
   print_warnings("proleg sweep", sweep.scenario);

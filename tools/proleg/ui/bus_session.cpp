@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "shared/canopen/declared_objects.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/master/controlwords.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/bus_document.hpp"
@@ -68,8 +68,8 @@ BusSession::~BusSession() {
 }
 
 void BusSession::run() {
-  bus_.attach(monitor_);
-  bus_.attach(stops_of_others_);
+  const host::BusAttachment monitor_attachment(bus_, monitor_);
+  const host::BusAttachment stops_attachment(bus_, stops_of_others_);
   begin_scan();
   traffic_from_ = Clock::now();
   while (!requests_.ends()) {
@@ -77,8 +77,6 @@ void BusSession::run() {
   }
   close();
   end_scan();
-  bus_.detach(stops_of_others_);
-  bus_.detach(monitor_);
 }
 
 void BusSession::serve() {
@@ -109,16 +107,15 @@ void BusSession::close() {
 }
 
 void BusSession::begin_scan() {
+  end_scan();
   scan_.emplace(bus_);
-  bus_.attach(*scan_);
+  scan_attachment_.emplace(bus_, *scan_);
   scan_->start(bus_.now());
 }
 
 void BusSession::end_scan() {
-  if (scan_) {
-    bus_.detach(*scan_);
-    scan_.reset();
-  }
+  scan_attachment_.reset();
+  scan_.reset();
 }
 
 /// What was asked for before a STOP has no effect after it.

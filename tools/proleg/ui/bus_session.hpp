@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/robot/bus_connection.hpp"
 #include "host/robot/bus_monitor.hpp"
 #include "host/robot/bus_scan.hpp"
 #include "host/server/session_output.hpp"
@@ -107,6 +108,7 @@ class BusSession {
   host::BusMonitor monitor_;
   host::SdoQueue stops_of_others_;  ///< quick stops while this program drives nothing
   std::optional<host::BusScan> scan_;
+  std::optional<host::BusAttachment> scan_attachment_;
   ParameterEdits edits_;
   ChangeDelivery delivery_;
   sim::Scenario started_;  ///< what the robot was started with

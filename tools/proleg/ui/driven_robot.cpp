@@ -7,7 +7,7 @@
 
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
-#include "shared/computer/master/controlwords.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/servo_command.hpp"
 
@@ -37,14 +37,12 @@ DrivenRobot::DrivenRobot(const sim::Scenario& scenario, host::BusConnection& bus
       listener_(std::move(listener)),
       gait_(scenario, bus, {last_tick, holds}),
       requests_(bus),
+      requests_attachment_(bus, requests_),
       targets_(scenario.joint_limits, scenario.kernel.tick_period_us),
       ghost_(scenario),
       commands_(scenario.joint_limits.size()) {
-  bus_.attach(requests_);
   gait_.start();
 }
-
-DrivenRobot::~DrivenRobot() { bus_.detach(requests_); }
 
 void DrivenRobot::poll() {
   if (state_ == State::starting && gait_.state() == canopen::MasterState::running) {

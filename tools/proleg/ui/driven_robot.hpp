@@ -46,7 +46,6 @@ class DrivenRobot {
   /// gait from tick 0 on, and recorder (or null) gets it.
   DrivenRobot(const sim::Scenario& scenario, host::BusConnection& bus, bool holds,
               std::unique_ptr<sim::Recorder> recorder, Listener listener);
-  ~DrivenRobot();
   DrivenRobot(const DrivenRobot&) = delete;
   DrivenRobot& operator=(const DrivenRobot&) = delete;
 
@@ -106,6 +105,7 @@ class DrivenRobot {
   Listener listener_;
   GaitRun gait_;
   host::SdoQueue requests_;  ///< modes and quick stops
+  host::BusAttachment requests_attachment_;
   JointTargets targets_;
   Ghost ghost_;
   State state_ = State::starting;

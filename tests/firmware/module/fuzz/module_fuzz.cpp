@@ -45,8 +45,8 @@ class Setup {
 };
 
 struct Meters final : firmware::SensorPort {
-  firmware::ServoReadings take_readings() override { return readings; }
-  firmware::ServoReadings readings;
+  ServoReadings take_readings() override { return readings; }
+  ServoReadings readings;
 };
 
 class Flash final : public firmware::FlashPort {

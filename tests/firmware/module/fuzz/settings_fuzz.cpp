@@ -216,7 +216,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmwar
   }
   void off() override {}
   std::uint8_t read() override { return 0; }
-  firmware::ServoReadings take_readings() override { return {}; }
+  ServoReadings take_readings() override { return {}; }
   void calibrate(const BoardRecord& board) override { require(board.valid(), "settings are in their ranges"); }
 
   Microseconds now_ = 0;

@@ -17,7 +17,7 @@ struct NoPorts final : proleg::CanPort, proleg::firmware::ServoPort, proleg::fir
 };
 
 struct NoSensors final : proleg::firmware::SensorPort {
-  proleg::firmware::ServoReadings take_readings() override { return {}; }
+  proleg::ServoReadings take_readings() override { return {}; }
 };
 
 struct NoFlash final : proleg::firmware::FlashPort {
@@ -55,7 +55,7 @@ NoProgram program;
 
 }  // namespace
 
-/// Its size is read from the symbol table.
+/// The test reads the size of this object from the symbol table.
 Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash, &line, &program});
 
 extern "C" {

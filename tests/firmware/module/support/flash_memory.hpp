@@ -18,15 +18,15 @@ struct PowerCut : std::runtime_error {
   PowerCut() : std::runtime_error("power cut") {}
 };
 
-/// NOR flash: bits go from 1 to 0 word by word, back to 1 by sectors. The power can fail at any operation, which then
-/// has done a part of its work.
+/// NOR flash: words are programmed from 1 to 0, sectors are erased to 1. The power can fail at any operation, which
+/// then is done in part.
 class FlashMemory final : public firmware::FlashPort {
  public:
-  /// Small, so that the log comes round often.
+  /// The sectors are small, so that the log often returns to its start.
   static constexpr std::size_t sector_size = 4 * firmware::BoardRecord::size;
 
   std::array<Sector, 2> sectors{Sector(sector_size, 0xFF), Sector(sector_size, 0xFF)};
-  int operations = 0;   ///< words programmed and sectors erased
+  int operations = 0;   ///< number of words programmed and sectors erased
   int cut_at = -1;      ///< the operation that does not end
   int refused_at = -1;  ///< the operation that reports an error
   std::mt19937 noise{20};

@@ -14,25 +14,25 @@
 
 namespace proleg::test {
 
-/// The module's sensors, with readings that a test sets.
+/// The module's sensors, whose readings a test sets.
 struct Meters final : firmware::SensorPort {
-  [[nodiscard]] firmware::ServoReadings take_readings() override {
+  [[nodiscard]] ServoReadings take_readings() override {
     ++count;
     return readings;
   }
-  firmware::ServoReadings readings;
-  std::size_t count = 0;  ///< how often they were read
+  ServoReadings readings;
+  std::size_t count = 0;  ///< number of times that they were read
 };
 
 /// A command to the servo.
 struct Pulse {
-  Microseconds time;                  ///< of the bus
-  std::optional<std::int32_t> width;  ///< nothing: off
+  Microseconds time;                  ///< time on the bus
+  std::optional<std::int32_t> width;  ///< width of the pulse; nothing: off
 
   friend bool operator==(const Pulse&, const Pulse&) = default;
 };
 
-/// The place of the program in flash, and what was asked of the bootloader.
+/// The place of the program in flash, and the requests to the bootloader.
 struct ProgramPlace final : firmware::ProgramPort {
   std::span<std::uint8_t> buffer() override { return ram; }
   [[nodiscard]] std::span<const std::uint8_t> header() const override { return header_bytes; }
@@ -65,7 +65,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
  public:
   static constexpr std::size_t mailboxes = 3;
 
-  /// clock_offset: what the module's clock shows when that of the bus shows 0.
+  /// clock_offset: time on the module's clock when that of the bus is 0.
   explicit ModuleNode(const firmware::ModuleIdentity& identity, Microseconds clock_offset = 0)
       : clock_offset_(clock_offset), module(identity, {*this, *this, *this, meters, flash, nullptr, &program}) {
     // The board was made for this module.
@@ -82,7 +82,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   void receive(Microseconds now, const CanFrame& frame) { at(now).receive(local(now), frame); }
   void transmitted(Microseconds now, const CanFrame& frame) { at(now).transmitted(local(now), frame); }
   void poll(Microseconds now) { at(now).poll(local(now)); }
-  /// The controller drops its pending frames.
+  /// Makes the controller drop its pending frames.
   void bus_off(Microseconds now) {
     pending.clear();
     at(now).bus_off(local(now));
@@ -98,11 +98,11 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
 
   /// Frames in the mailboxes, in the order in which they were handed over; no two with one identifier.
   std::vector<CanFrame> pending;
-  /// Identifiers of the state frames that the module wants to receive.
+  /// Identifiers of the state frames that the module listens to.
   std::vector<std::uint16_t> listened;
-  /// Times at which the controller was asked to come back.
+  /// Times at which the controller was asked to recover.
   std::vector<Microseconds> recoveries;
-  /// Pulses and switches to off since the start; those that change nothing included.
+  /// Pulses and switches to off since the start, including those that change nothing.
   std::vector<Pulse> pulses;
   [[nodiscard]] bool is_pulsing() const { return !pulses.empty() && pulses.back().width.has_value(); }
   [[nodiscard]] std::size_t pulse_count() const {
@@ -112,13 +112,13 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     }
     return count;
   }
-  std::uint32_t pulse_period_us = 0;  ///< of the last pulse
+  std::uint32_t pulse_period_us = 0;  ///< period of the last pulse
   Meters meters;
   FlashMemory flash;
   ProgramPlace program;
-  /// Touch sensors as they are now.
+  /// Present state of the touch sensors.
   std::uint8_t sensors = 0;
-  /// Times at which they were read.
+  /// Times at which the touch sensors were read.
   std::vector<Microseconds> readings;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace proleg::test {
 
-/// A servo that keeps what it was commanded.
+/// A servo that records its commands.
 struct ServoRecorder final : firmware::ServoPort {
   void pulse(std::int32_t width, std::uint32_t repetition_us) override {
     widths.push_back(width);
@@ -17,7 +17,7 @@ struct ServoRecorder final : firmware::ServoPort {
   void off() override { widths.push_back(std::nullopt); }
 
   std::vector<std::optional<std::int32_t>> widths;  ///< in twelfths of a microsecond; nothing: off
-  std::uint32_t period_us = 0;                      ///< of the last pulse
+  std::uint32_t period_us = 0;                      ///< period of the last pulse
 };
 
 }  // namespace proleg::test

@@ -54,7 +54,7 @@ class TestBus {
     now_ = end;
   }
   void run_for(Microseconds time) { run_until(now_ + time); }
-  /// Until a frame that `wanted` accepts was sent; false after `longest`.
+  /// Runs until a frame that `wanted` accepts was sent; false after `longest`.
   bool run_until_sent(const std::function<bool(const CanFrame&)>& wanted, Microseconds longest = 1'000'000) {
     const Microseconds end = now_ + longest;
     std::size_t seen = log.size();
@@ -75,7 +75,7 @@ class TestBus {
     run_until_sent([&](const CanFrame& sent) { return sent == frame; });
   }
 
-  // SDO as a host does it.
+  // SDO transfers as a host makes them.
   canopen::AbortCode write(std::uint8_t node, canopen::Address address, std::uint8_t size, std::uint32_t value) {
     return transfer(client_.write(now_, node, address, size, value));
   }
@@ -87,7 +87,7 @@ class TestBus {
     value = client_.value();
     return code;
   }
-  /// A value that must be there.
+  /// Reads a value that must exist.
   std::uint32_t value(std::uint8_t node, canopen::Address address) {
     std::uint32_t value = 0;
     EXPECT_EQ(read(node, address, value), canopen::AbortCode::none)
@@ -96,7 +96,7 @@ class TestBus {
   }
   std::uint32_t value(std::uint8_t node, const canopen::Object& entry) { return value(node, entry.address); }
 
-  /// A value of a long type.
+  /// Reads a value of a long type.
   canopen::AbortCode read_text(std::uint8_t node, canopen::Address address, std::string& text,
                                const canopen::SdoTransferOptions& options = {}) {
     std::array<std::uint8_t, 100> buffer{};
@@ -113,7 +113,7 @@ class TestBus {
     return transfer.state() == canopen::SdoTransfer::State::done ? canopen::AbortCode::none : transfer.abort_code();
   }
 
-  // What was sent.
+  // Frames that were sent.
   [[nodiscard]] std::vector<Sent> sent(std::uint16_t identifier, std::size_t from = 0) const {
     std::vector<Sent> found;
     std::copy_if(log.begin() + static_cast<std::ptrdiff_t>(from), log.end(), std::back_inserter(found),

@@ -45,7 +45,7 @@ class TestRobot {
   [[nodiscard]] unsigned joints() const { return setup.kernel.joint_count; }
   void limit(unsigned joint, std::int32_t lower, std::int32_t upper) { limits_[joint] = {lower, upper}; }
 
-  /// Power on, and all the boot-up messages.
+  /// Switches the modules on, and runs until all boot-up messages were sent.
   void boot() {
     for (const auto& node : bus.nodes) {
       node->power_on(bus.now());
@@ -62,7 +62,7 @@ class TestRobot {
           << write.value;
     }
   }
-  /// All modules are configured.
+  /// Configures all modules.
   void set_up() {
     boot();
     for (unsigned joint = 0; joint < joints(); ++joint) {
@@ -81,7 +81,7 @@ class TestRobot {
         bus.write(node(joint), canopen::object::sync_identifier, canopen::produces_sync | canopen::identifier::sync),
         canopen::AbortCode::none);
   }
-  /// Set-up and start; SYNC 0 is the next one.
+  /// Sets the modules up and starts them; SYNC 0 is the next one.
   void drive() {
     set_up();
     start();
@@ -93,7 +93,7 @@ class TestRobot {
     }
     ASSERT_EQ(module(joint).power(), canopen::PowerState::operation_enabled);
   }
-  /// Until `count` SYNCs were sent from now on, and the modules have answered each.
+  /// Runs until `count` SYNCs were sent from now on, and the modules have answered each.
   void run_syncs(unsigned count) {
     for (unsigned i = 0; i < count; ++i) {
       ASSERT_TRUE(bus.run_until_sent(is_sync)) << "no SYNC";
@@ -114,7 +114,7 @@ class TestRobot {
   std::vector<canopen::AngleLimits> limits_;
 };
 
-/// A single configured module whose SYNC and TICK the test sends, and neighbours that are not there.
+/// A single configured module. The test sends its SYNC and TICK; its neighbours do not exist.
 class TestModule : public TestRobot {
  public:
   static constexpr unsigned joint = 0;
@@ -134,20 +134,20 @@ class TestModule : public TestRobot {
   }
   [[nodiscard]] std::uint32_t crc() const { return canopen::configuration_crc(setup); }
 
-  /// Configured and Operational.
+  /// Configures the module and enters Operational.
   void set_up_and_start() {
     boot();
     configure(0);
     start();
   }
   void tick(std::uint32_t tick) { bus.deliver(encode(canopen::TickMessage{tick, crc()})); }
-  /// A tick period after the one before, or now if that is later.
+  /// Sends SYNC a tick period after the one before, or now if that is later.
   void sync(std::uint32_t tick) {
     bus.run_until(std::max(bus.now(), next_sync_));
     next_sync_ = bus.now() + setup.kernel.tick_period_us;
     bus.deliver(canopen::encode_sync(tick));
   }
-  /// TICK and SYNC 0 and what follows, up to and including SYNC `last`, a tick period apart.
+  /// Sends TICK, SYNC 0 and further SYNCs, up to and including SYNC `last`, a tick period apart.
   void run(std::uint32_t last) {
     tick(0);
     for (std::uint32_t k = 0; k <= last; ++k) {
@@ -166,7 +166,7 @@ class TestModule : public TestRobot {
   Microseconds next_sync_ = 0;
 };
 
-/// Its node id, for short.
+/// Node id of the module.
 inline constexpr std::uint8_t node = TestModule::node_id;
 
 }  // namespace proleg::test

@@ -1,6 +1,6 @@
-// Exercises the drivers that the module's program rarely uses: floods the console, then appends board records without
-// end. Its power may fail at any time: it continues from the record that it finds. driver_test_result has what it has
-// done.
+// Exercises the drivers that the module's program rarely uses: writes more to the console than it has room for, then
+// appends board records without end. Its power may fail at any time: it continues from the record that it finds. Its
+// results are in driver_test_result.
 
 #include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/gpio.hpp"
@@ -17,12 +17,12 @@ enum class Phase : std::uint32_t { none, started, no_clocks, flooded, appending 
 
 struct Result {
   Phase phase = Phase::none;
-  std::uint32_t found = 0;         ///< node of the newest record at the start; 0: there was none
-  std::uint32_t appended = 0;      ///< records since the start, each with the next node (126 is followed by 1)
-  std::uint32_t failed = 0;        ///< records that were not written, or did not read back as the newest
-  std::uint32_t last_failure = 0;  ///< firmware::AppendResult
+  std::uint32_t found = 0;     ///< node of the newest record at the start; 0: none
+  std::uint32_t appended = 0;  ///< number of records since the start, each with the next node (126 is followed by 1)
+  std::uint32_t failed = 0;    ///< number of records that were not written, or did not read back as the newest
+  std::uint32_t last_failure = 0;  ///< the last firmware::AppendResult that was not ok
   std::uint32_t max_append_us = 0;
-  std::uint32_t deadlines = 0;  ///< interrupts of TIM5, one a millisecond except during an append
+  std::uint32_t deadlines = 0;  ///< number of interrupts of TIM5, one a millisecond except during an append
 };
 
 constexpr unsigned flood_lines = 100;
@@ -31,7 +31,7 @@ constexpr unsigned flood_lines = 100;
 
 extern "C" {
 
-/// The test reads it at any time.
+/// The results. The test reads them at any time.
 [[gnu::used]] constinit volatile Result driver_test_result;
 
 }  // extern "C"

@@ -5,6 +5,7 @@ import { countDifferences, countPixels, isBlue, pixelsOf } from './support/pixel
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
 import type { Viewer } from './support/viewer.js';
+import { waitForFrames, waitUntil } from './support/waiting.js';
 
 describe('a live simulation', () => {
   const ui = useUi(() => UiProgram.start());
@@ -155,9 +156,8 @@ describe('a live simulation', () => {
     await ui.viewer.waitForTick(tick + 500);
     await ui.viewer.button('Fastest').click();
     // On a busy computer the page may have had no time to show that it is there; then the program pauses by itself.
-    const pauses = ui.viewer.button('Pause').click({ timeout: 2000 }).catch(() => undefined);
+    void ui.viewer.button('Pause').click().catch(() => undefined);
     await ui.viewer.waitForState('paused');
-    await pauses;
   });
 });
 
@@ -169,19 +169,18 @@ async function settledTick(viewer: Viewer): Promise<number> {
       return now;
     }
     before = now;
-    await viewer.page.waitForTimeout(300);
+    await waitForFrames(viewer.page, 20);
   }
 }
 
-// Waits until each joint's wanted and confirmed values fulfil the condition; at most 500 looks.
+// Waits until each joint's wanted and confirmed values fulfil the condition.
 async function confirmedValues(viewer: Viewer, name: string, matches: (value: string, joint: number) => boolean) {
-  for (let look = 0; look < 500; look += 1) {
-    const values = await viewer.valuesOf(name);
-    if (values.every(({ wanted, confirmed }, joint) => wanted === confirmed && matches(confirmed, joint))) {
-      await viewer.waitForConfirmation(name);
-      return values;
-    }
-    await viewer.page.waitForTimeout(20);
-  }
-  throw new Error(`${name}: found ${JSON.stringify(await viewer.valuesOf(name))}, expected other values that are confirmed`);
+  let values = await viewer.valuesOf(name);
+  const isConfirmed = await waitUntil(async () => {
+    values = await viewer.valuesOf(name);
+    return values.every(({ wanted, confirmed }, joint) => wanted === confirmed && matches(confirmed, joint));
+  });
+  assert.ok(isConfirmed, `${name}: found ${JSON.stringify(values)}, expected other values that are confirmed`);
+  await viewer.waitForConfirmation(name);
+  return values;
 }

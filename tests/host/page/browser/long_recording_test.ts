@@ -64,7 +64,7 @@ describe('a long recording', () => {
       await page.mouse.down();
       for (let seek = 0; seek < seeks; seek += 1) {
         if (seek === seeks / 2) {
-          await page.getByTestId('indexing').waitFor({ state: 'detached', timeout: 120_000 });
+          await page.getByTestId('indexing').waitFor({ state: 'detached', timeout: 300_000 });
         }
         await page.mouse.move(track.x + 2 + (track.width - 4) * random.next(), track.y + 10);
         const shown = await page.waitForFunction(() => {

@@ -8,6 +8,7 @@ import { resultOf, shownCommand } from './support/command_line.js';
 import { countDifferences, isBlue, pixelsInside, pixelsOf } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram, uniform } from './support/ui_program.js';
+import { waitUntil } from './support/waiting.js';
 
 describe('moving the robot', () => {
   const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
@@ -26,20 +27,14 @@ describe('moving the robot', () => {
   // Waits until the program has the head nearer than 2 mm to a place.
   const waitForHead = async (place: Place) => {
     let head = await headOfProgram();
-    for (let look = 0; look < 500 && !(distance(head, place) <= 0.002); look += 1) {
-      await ui.viewer.page.waitForTimeout(20);
-      head = await headOfProgram();
-    }
-    assert.ok(distance(head, place) <= 0.002, `found the head at ${head.join()}, expected ${place.join()}`);
+    const isThere = await waitUntil(async () => distance((head = await headOfProgram()), place) <= 0.002);
+    assert.ok(isThere, `found the head at ${head.join()}, expected ${place.join()}`);
   };
   // Waits until the program has the head at another place than this, and returns where.
   const headOtherThan = async (before: Place) => {
     let head = await headOfProgram();
-    for (let look = 0; look < 500 && distance(head, before) < 0.02; look += 1) {
-      await ui.viewer.page.waitForTimeout(20);
-      head = await headOfProgram();
-    }
-    assert.ok(distance(head, before) >= 0.02, `the program has the head at ${head.join()}`);
+    const isElsewhere = await waitUntil(async () => distance((head = await headOfProgram()), before) >= 0.02);
+    assert.ok(isElsewhere, `the program has the head at ${head.join()}`);
     return head;
   };
   // Waits until the 3D view shows the head at another place than this, and returns where.

@@ -7,6 +7,7 @@ import { countPixelsWhen } from './support/pixels.js';
 import { moduleOf, ScriptedRobot } from './support/scripted_robot.js';
 import { useUi } from './support/ui_fixture.js';
 import type { Look } from './support/viewer.js';
+import { waitForFrames, waitUntil } from './support/waiting.js';
 
 const isGhost = (red: number, green: number, blue: number) => green > red + 20 && green > blue;
 
@@ -27,10 +28,8 @@ describe('the page of a robot on a bus', () => {
 
   // Waits until the robot was sent to the angles that fulfil the condition.
   async function waitForPose(matches: (angles: (number | null)[]) => boolean): Promise<void> {
-    for (let look = 0; look < 300 && !ui.program.poses.some(({ angles }) => matches(angles)); look += 1) {
-      await ui.viewer.page.waitForTimeout(20);
-    }
-    assert.ok(ui.program.poses.some(({ angles }) => matches(angles)), `found ${JSON.stringify(ui.program.poses.at(-1))}`);
+    const isThere = await waitUntil(() => ui.program.poses.some(({ angles }) => matches(angles)));
+    assert.ok(isThere, `found ${JSON.stringify(ui.program.poses.at(-1))}`);
   }
 
   it('names the bus beside the badge, and shows its load', async () => {
@@ -104,11 +103,11 @@ describe('the page of a robot on a bus', () => {
     let x = box.x + box.width * 0.3;
     for (; (await lit.count()) === 0 && x < box.x + box.width * 0.7; x += 12) {
       await mouse.move(x, y);
-      await ui.viewer.page.waitForTimeout(60);
+      await waitForFrames(ui.viewer.page, 4);
     }
     await mouse.down();
     await mouse.move(x, y - 15);
-    await ui.viewer.page.waitForTimeout(100);
+    await waitForFrames(ui.viewer.page, 6);
     await mouse.move(x, y - 40, { steps: 5 });
     await waitForPose((angles) => angles.some((angle) => angle !== null && Math.abs(angle) > 3));
     assert.equal(ui.program.poses.at(-1)?.angles.filter((angle) => angle !== null).length, 1);

@@ -1,6 +1,7 @@
 // Markers and loop in the time view, from the keyboard.
 import assert from 'node:assert/strict';
 import { before, describe, it } from 'node:test';
+import { waitUntil } from './support/waiting.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
 
@@ -47,8 +48,7 @@ describe('markers and loop', () => {
     await ui.viewer.button('Pause loop').waitFor();
     const seen = new Set<number>();
     await ui.viewer.page.waitForFunction(() => document.querySelector('.cursor-time') !== null);
-    for (let look = 0; look < 400 && seen.size < 5; look += 1) seen.add(await cursor());
-    assert.ok(seen.size >= 5, 'the cursor moves');
+    assert.ok(await waitUntil(async () => seen.add(await cursor()).size >= 5), 'the cursor moves');
     for (const time of seen) assert.ok(time >= from && time <= to, `${time} s is in the loop`);
     await ui.viewer.screenshot('loop');
     await ui.viewer.button('Run').focus();

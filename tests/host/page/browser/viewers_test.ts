@@ -4,6 +4,7 @@ import { beforeEach, describe, it } from 'node:test';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
 import { lostConnection, type Viewer } from './support/viewer.js';
+import { longest } from './support/waiting.js';
 
 describe('viewers', () => {
   const ui = useUi(() => UiProgram.start());
@@ -66,6 +67,7 @@ describe('viewers', () => {
 
   it('without the right token read what to do', async () => {
     const page = await ui.browser.newPage();
+    page.setDefaultTimeout(longest);
     const address = ui.program.address.replace(/#.*/, '');
     await page.goto(address);
     await page.getByText('This address has no token').waitFor();

@@ -1,4 +1,4 @@
-// A user's algorithm behind its guard: the same values, and each mistake as one line.
+// A user's algorithm that is guarded: it gives the same values, and each error is reported in one line.
 
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 
@@ -32,7 +32,7 @@ KernelConfiguration configuration_of(const ActuationModule& algorithm) {
   return configuration;
 }
 
-/// Ticks until the failure; its text.
+/// Runs ticks until the failure. Returns its text.
 std::string failure_of(const ActuationModule& algorithm) {
   KernelOf<joints> kernel;
   EXPECT_EQ(kernel.configure(configuration_of(algorithm), 0), Status::ok);

@@ -1,5 +1,5 @@
-// The LSS master against slaves that are written for the test, on the simulated bus. tests/sim/loop has the same with
-// modules.
+// The LSS master with slaves that are written for the test, on the simulated bus. tests/sim/loop has the same tests
+// with modules.
 
 #include "shared/computer/master/lss_master.hpp"
 
@@ -36,13 +36,13 @@ class LssMasterTest : public testing::Test, sim::BusListener {
     slaves.push_back(std::make_unique<SlaveNode>(bus, address));
     return *slaves.back();
   }
-  /// Entries for node ids 1 to count.
+  /// Adds entries for node ids 1 to count.
   void list(unsigned count) {
     for (unsigned i = 1; i <= count; ++i) {
       modules.push_back({static_cast<std::uint8_t>(i)});
     }
   }
-  /// Until the master has ended. It must, within `longest`.
+  /// Runs until the master has ended. It must end within `longest`.
   void run(const LssMasterOptions& options = {}, BusTime longest = 60'000'000 * us) {
     master = std::make_unique<LssMaster>(controller_, modules, options);
     const BusTime begin = bus.now();
@@ -56,7 +56,7 @@ class LssMasterTest : public testing::Test, sim::BusListener {
     bus.advance_to(bus.now() + 1'000 * us);
     duration = bus.now() - begin;
   }
-  /// Answers to the master are lost with this probability.
+  /// Loses answers to the master with this probability.
   void lose(double probability, std::uint64_t seed) {
     loss_ = probability;
     random_.seed(seed);
@@ -130,7 +130,7 @@ TEST_F(LssMasterTest, FindsModulesOfAnyIdentity) {
   };
   list(40);
   for (unsigned i = 0; i < 40; ++i) {
-    // Some differ from another one in a single bit.
+    // Some addresses differ from another one in a single bit.
     LssAddress address{word(), word(), word(), word()};
     if (i % 2 != 0) {
       address = slaves.back()->address;
@@ -216,7 +216,7 @@ TEST_F(LssMasterTest, AModuleThatIsNotInTheListEndsItAndStaysWithoutANodeId) {
   expect_problem(LssProblem::unexpected_module);
   EXPECT_EQ(master->found(), slave.address);
   EXPECT_EQ(slave.node, 0);
-  // It is not selected any more.
+  // The module is not selected any more.
   modules[0].serial = 7;
   run();
   EXPECT_EQ(slave.node, 1);
@@ -234,7 +234,7 @@ TEST_F(LssMasterTest, AModuleThatLeavesDuringTheScanEndsItAfterSomeAttempts) {
   SlaveNode& other = add({vendor, 1, revision, 7});
   other.answers_left = 20;
   run();
-  // The second scan finds no module at all.
+  // The second scan finds no module.
   EXPECT_EQ(master->state(), LssMaster::State::done);
   EXPECT_EQ(master->assigned(), 0U);
 }
@@ -295,7 +295,7 @@ TEST_F(LssMasterTest, AModuleThatDoesNotBootIsReported) {
   expect_problem(LssProblem::no_boot_up, 9);
 }
 
-/// Lines that tshark prints for a log.
+/// The lines that tshark prints for a log.
 std::vector<std::string> dissect(const std::filesystem::path& log, const std::string& options) {
   return test::lines_of(std::string(PROLEG_TSHARK) + " -r " + log.string() + " -d can.subdissector,canopen " + options +
                         " 2>/dev/null");

@@ -1,4 +1,5 @@
-// Modules get other node ids, on the simulated bus. tests/host/robot has the same with the program of the modules.
+// Modules get other node ids, on the simulated bus. tests/host/robot has the same tests with the program of the
+// modules.
 
 #include "shared/computer/master/lss_renumbering.hpp"
 
@@ -29,7 +30,7 @@ class LssRenumberingTest : public testing::Test, sim::BusListener {
     slaves.back()->node = node;
     return *slaves.back();
   }
-  /// Until it has ended. It must, within a minute.
+  /// Runs until it has ended. It must end within a minute.
   void run() {
     constexpr BusTime longest = 60'000'000 * us;
     renumbering = std::make_unique<LssRenumbering>(controller_, modules, options);
@@ -55,7 +56,7 @@ class LssRenumberingTest : public testing::Test, sim::BusListener {
   std::vector<std::unique_ptr<SlaveNode>> slaves;
   std::vector<RenumberedModule> modules;
   LssRenumberingOptions options;
-  unsigned lost_boot_ups = 0;  ///< that the master does not receive from now on
+  unsigned lost_boot_ups = 0;  ///< number of boot-ups from now on that the master does not receive
   std::unique_ptr<LssRenumbering> renumbering;
 
  private:

@@ -12,12 +12,12 @@
 
 namespace proleg::canopen {
 
-/// A node with an LSS slave, which boots when it gets a node id, or is reset, and faults that a test chooses.
+/// A node with an LSS slave. It boots when it gets a node id, or is reset, and has faults that a test chooses.
 class SlaveNode final : public sim::BusListener, LssStorage {
  public:
   SlaveNode(sim::Bus& bus, const LssAddress& its_address) : address(its_address), controller_(bus.attach(*this)) {}
 
-  /// Without a node id.
+  /// Makes a node without a node id.
   void power_on() {
     slave_ = {};
     node = 0;
@@ -28,9 +28,9 @@ class SlaveNode final : public sim::BusListener, LssStorage {
   std::vector<std::uint8_t> stored;
   Result store_result;
   bool boots = true;
-  unsigned answers_left = ~0U;       ///< before it is silent
-  std::uint8_t refuses_service = 0;  ///< answers it with error 1
-  lss::Service ignores{};            ///< does not answer it
+  unsigned answers_left = ~0U;       ///< number of answers before it is silent
+  std::uint8_t refuses_service = 0;  ///< service that it answers with error 1
+  lss::Service ignores{};            ///< service that it does not answer
   unsigned answered = 0;
   unsigned resets = 0;
 

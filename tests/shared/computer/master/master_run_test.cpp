@@ -1,4 +1,4 @@
-// The robot runs: changes in flight, modules that restart or fall silent, the end.
+// The master while the robot runs: changes in flight, modules that restart or are silent, the end.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace canopen;
 
-/// Parameter `number` of slot 0 of joints 0 to count - 1.
+/// Parameter `number` of slot 0 for joints 0 to count - 1.
 std::vector<ChangedValue> for_all(unsigned joints, std::uint8_t number, std::int32_t value) {
   std::vector<ChangedValue> values;
   for (unsigned joint = 0; joint < joints; ++joint) {
@@ -27,7 +27,7 @@ std::uint32_t value_of(ScriptedRobot& robot, unsigned joint, std::uint8_t number
   return robot.module(joint).value(in_force(number));
 }
 
-/// What should come into force in a module by the plan.
+/// The values that must take effect in a module by the plan.
 std::vector<ScriptedModule::Effect> planned_effects(const ScriptedRobot& robot, unsigned joint) {
   std::vector<ScriptedModule::Effect> effects;
   for (std::size_t i = 0; i < robot.plan.size(); ++i) {
@@ -40,7 +40,8 @@ std::vector<ScriptedModule::Effect> planned_effects(const ScriptedRobot& robot, 
   return effects;
 }
 
-/// Each COMMIT on the bus: how often, and how many ticks after the SYNC before it it takes effect.
+/// Checks each COMMIT on the bus: its number of repetitions, and the ticks from the SYNC before it until it takes
+/// effect.
 void check_commits(const ScriptedRobot& robot, std::uint32_t lead) {
   std::map<std::uint16_t, unsigned> copies;
   std::optional<std::uint32_t> tick;
@@ -213,7 +214,7 @@ std::vector<PlannedChange> steady_plan(unsigned joints, std::uint32_t ticks) {
   return plan;
 }
 
-/// All parameters in force agree with the plan at the master's tick.
+/// Checks that all parameters in force are those of the plan at the master's tick.
 void expect_values_of_plan(ScriptedRobot& robot) {
   std::map<std::pair<unsigned, unsigned>, std::int32_t> values;
   for (std::size_t i = 0; i < robot.plan.size(); ++i) {
@@ -257,7 +258,7 @@ TEST(MasterRestart, ARestartedModuleGetsItsSetupAndEverythingThatHasChanged) {
     EXPECT_EQ(robot.emergencies(), 0U);
     EXPECT_EQ(robot.master().problem().code, ProblemCode::none);
     EXPECT_EQ(robot.master().state(), MasterState::running);
-    // The others have seen nothing of it.
+    // The other modules have not noticed the restart.
     for (const unsigned joint : {0U, 2U, 3U}) {
       EXPECT_EQ(robot.module(joint).effects, planned_effects(robot, joint));
       EXPECT_EQ(robot.module(joint).boots, 1U);
@@ -395,7 +396,7 @@ TEST(MasterRestart, AModuleThatCannotBeSetUpAgainIsNamedAndLeftAlone) {
   }
 }
 
-// Silence.
+// Modules without answers or heartbeats.
 
 TEST(MasterSilence, IsReportedOnceAndChangesAreMadeWithoutTheModule) {
   ScriptedRobot robot(4, steady_plan(4, 600));
@@ -547,7 +548,7 @@ TEST(MasterStop, EndsWhenEverItIsAskedForAndWhoeverIsGone) {
   }
 }
 
-// Anything on the bus.
+// Arbitrary frames on the bus.
 
 TEST(MasterRobustness, RandomFramesNeverBreakIt) {
   for (unsigned seed = 1; seed <= 30; ++seed) {

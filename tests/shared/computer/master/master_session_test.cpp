@@ -1,5 +1,5 @@
-// A session of a host with a robot: the lease, the way of the joints to the start of the gait, and the checksums of the
-// set-points at its end.
+// A session of a host with a robot: the lease, the movement of the joints to the start of the gait, and the checksums
+// of the set-points at its end.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ bool has_sent(const ScriptedRobot& robot, std::uint16_t identifier) {
   });
 }
 
-/// As a module without the object answers.
+/// The answer of a module without the object.
 AbortCode lacks(Address missing, Address address) {
   return address.index == missing.index ? AbortCode::no_such_object : AbortCode::none;
 }

@@ -1,4 +1,4 @@
-// The start of a robot: what the master asks for, in which order, and the name of everything that can go wrong.
+// The start of a robot: the requests of the master, their order, and the name of every possible problem.
 
 #include <gtest/gtest.h>
 
@@ -175,7 +175,7 @@ TEST(MasterProblem, TwoModulesWithOneNodeIdAreNamed) {
 
 TEST(MasterProblem, TwoModulesWithOneNodeIdThatBootInOneInstantAreNamed) {
   ScriptedRobot robot(3);
-  // Their boot-up messages become one, as do their answers until they are asked for their serial numbers.
+  // Their boot-up messages become one, and so do their answers until the master asks for their serial numbers.
   robot.add_module(robot.module(1).node).serial = 0x777;
   const Problem problem = robot.problem_of_start();
   EXPECT_EQ(problem.code, ProblemCode::duplicate_node);

@@ -1,9 +1,9 @@
 #pragma once
 
-// A module as the master sees it: dictionary, network states and transactions by the rules of docs/protocol.md, for the
-// tests alone. It packs and reads all frames by itself, from CiA 301 and docs/protocol.md; it shares with the code
-// under test the names of states, codes and addresses, and the transmit queue. It computes nothing, records what takes
-// effect when, and misbehaves on request.
+// A module as the master sees it, for the tests alone: dictionary, network states and transactions by the rules of
+// docs/protocol.md. It packs and reads all frames by itself, from CiA 301 and docs/protocol.md; it shares with the code
+// under test the names of states, codes and addresses, and the transmit queue. It computes nothing, records the values
+// that take effect and their ticks, and has faults on request.
 
 #include <algorithm>
 #include <functional>
@@ -23,7 +23,7 @@ class ScriptedModule final : public sim::BusListener {
  public:
   struct Effect {
     std::uint32_t tick;
-    canopen::Address address;  ///< of the value in force
+    canopen::Address address;  ///< address of the value in force
     std::int32_t value;
 
     friend bool operator==(const Effect&, const Effect&) = default;
@@ -39,7 +39,7 @@ class ScriptedModule final : public sim::BusListener {
     controller.switch_off();
   }
 
-  // The world.
+  // Events from outside.
   void power_on(Microseconds now) {
     controller.switch_on();
     reset(now);
@@ -109,30 +109,30 @@ class ScriptedModule final : public sim::BusListener {
   std::uint8_t node;
   sim::Controller& controller;
 
-  // Properties and misbehaviour.
+  // Properties and faults.
   std::uint32_t product = 0;
   std::uint32_t serial = 0x5E41A1;
   std::uint32_t fingerprint = 0xF1A9;
   std::uint32_t configuration_crc = 0;
   Microseconds boot_delay_us = 3000;
-  Microseconds answer_delay_us = 0;                       ///< of SDO
-  std::map<std::uint8_t, std::uint32_t> user_algorithms;  ///< 0x200F: by sub-index
+  Microseconds answer_delay_us = 0;                       ///< delay of SDO answers
+  std::map<std::uint8_t, std::uint32_t> user_algorithms;  ///< sources of users' algorithms (0x200F), by sub-index
   bool ignores_sdo = false;                               ///< answers no SDO request
   bool silent = false;                                    ///< sends no heartbeat
   bool never_starts = false;                              ///< stays in Pre-operational
-  std::size_t max_pending = 32;                           ///< transactions
-  std::uint32_t lease = 0;                                ///< whose the module is, 0x2002; a reset ends it
+  std::size_t max_pending = 32;                           ///< greatest number of transactions
+  std::uint32_t lease = 0;                                ///< token that has the lease (0x2002); a reset ends it
   bool measures_angle = true;
-  std::int32_t measured = 0;    ///< 0x6064
-  Microseconds ramp_in_us = 0;  ///< from the power to the start of the gait
-  /// Answers instead of the module, unless `none`.
+  std::int32_t measured = 0;    ///< measured angle, 0x6064
+  Microseconds ramp_in_us = 0;  ///< time from the power to the start of the gait
+  /// Abort code that the module answers, unless it is `none`.
   std::function<canopen::AbortCode(canopen::Address, bool writes, std::uint32_t value)> refusal;
 
-  // What happened.
+  // Records of events.
   std::vector<Effect> effects;
   std::vector<canopen::EmergencyCode> emergencies;
   std::size_t boots = 0;
-  std::vector<std::pair<canopen::Address, std::uint32_t>> writes;  ///< since the last boot
+  std::vector<std::pair<canopen::Address, std::uint32_t>> writes;  ///< writes since the last boot
 
  private:
   void reset(Microseconds now) {
@@ -199,7 +199,7 @@ class ScriptedModule final : public sim::BusListener {
     }
   }
 
-  /// NMT (CiA 301, 7.2.8.3.1).
+  /// Handles NMT (CiA 301, 7.2.8.3.1).
   void change_state(std::uint8_t command) {
     switch (command) {
       case 0x01:
@@ -262,7 +262,7 @@ class ScriptedModule final : public sim::BusListener {
     }
   }
 
-  /// Expedited transfers (CiA 301, 7.2.4.3).
+  /// Handles expedited transfers (CiA 301, 7.2.4.3).
   CanFrame sdo_answer(const CanFrame& request) {
     const canopen::Address address{static_cast<std::uint16_t>(field(request, 1, 2)), request.data[3]};
     const auto answer = [&](std::uint8_t command, std::uint32_t data) {
@@ -312,8 +312,8 @@ class ScriptedModule final : public sim::BusListener {
     open_.reset();
   }
 
-  /// SYNC: transactions for this tick take effect; after a restart also those for earlier ticks, without internal
-  /// values.
+  /// Handles SYNC: transactions for this tick take effect; after a restart also those for earlier ticks, without
+  /// internal values.
   void pass(std::uint8_t counter) {
     if (announced_tick_ && *announced_tick_ % 128 + 1 == counter) {
       tick_ = announced_tick_;
@@ -378,7 +378,7 @@ class ScriptedModule final : public sim::BusListener {
     return address == canopen::Address{0x2001, 6} ? configuration_crc : value(address);
   }
 
-  /// CiA 402; bit 10: has ramped in.
+  /// The statusword (CiA 402); bit 10: has ramped in.
   std::uint32_t statusword() const {
     switch (power_) {
       case canopen::PowerState::ready_to_switch_on:

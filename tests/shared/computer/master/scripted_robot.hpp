@@ -17,7 +17,7 @@
 
 namespace proleg::test {
 
-/// 0 to count - 1.
+/// A random number, 0 to count - 1.
 inline unsigned pick(std::mt19937_64& random, unsigned count) { return static_cast<unsigned>(random() % count); }
 
 class MasterNode final : public sim::BusListener, private CanPort {
@@ -30,7 +30,7 @@ class MasterNode final : public sim::BusListener, private CanPort {
   void transmitted(sim::BusTime time, const CanFrame& frame) override { master.transmitted(time / 1000, frame); }
 
   sim::Controller& controller;
-  /// Frames that vanish on the way out.
+  /// Whether a frame is lost when it is sent.
   std::function<bool(const CanFrame&)> vanishes;
   canopen::Master master;
 
@@ -60,7 +60,7 @@ class ScriptedRobot {
     bus.set_frame_listener([this](const sim::Transmission& transmission) { transmissions.push_back(transmission); });
   }
 
-  /// A module more, with its own power switch.
+  /// Adds a module with its own power switch.
   ScriptedModule& add_module(std::uint8_t node) {
     modules.push_back(std::make_unique<ScriptedModule>(bus, node));
     modules.back()->configuration_crc = canopen::configuration_crc(setup());
@@ -78,7 +78,7 @@ class ScriptedRobot {
   }
   [[nodiscard]] Microseconds now() const { return now_; }
 
-  /// The master starts, and power comes on for all modules.
+  /// Starts the master, then switches all modules on.
   void start() {
     master().start(now_);
     for (const auto& one : modules) {
@@ -134,7 +134,7 @@ class ScriptedRobot {
   [[nodiscard]] bool settled() {
     return master().state() == canopen::MasterState::running || master().state() == canopen::MasterState::failed;
   }
-  /// Runs until the start has failed, and says why.
+  /// Runs until the start has failed, and returns the problem.
   canopen::Problem problem_of_start() {
     start();
     EXPECT_TRUE(run_until([this] { return settled(); }, 20'000'000)) << "the start does not end";
@@ -155,7 +155,7 @@ class ScriptedRobot {
   }
 
   sim::Bus bus;
-  std::vector<std::unique_ptr<ScriptedModule>> modules;  ///< by joint, then those that were added
+  std::vector<std::unique_ptr<ScriptedModule>> modules;  ///< modules by joint, then those that were added
   std::vector<PlannedChange> plan;
   std::vector<canopen::Change> changes;
   canopen::MasterOptions options;

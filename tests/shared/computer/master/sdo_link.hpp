@@ -30,7 +30,7 @@ inline Bytes random_bytes(std::size_t size, std::uint32_t seed = 1) {
   return bytes;
 }
 
-/// A client and a server, each with a controller, and the frames on the wire.
+/// A client and a server, each with a controller, and the frames between them.
 class SdoLink {
  public:
   static constexpr std::uint8_t node = 9;
@@ -62,7 +62,7 @@ class SdoLink {
       }
     }
   }
-  /// Of a value of `bytes`; checks the result.
+  /// Uploads a value of `bytes` bytes, and checks the result.
   void download(const Bytes& bytes, const canopen::SdoTransferOptions& options = {}) {
     begin();
     client.download(node, domain, bytes, options);
@@ -83,9 +83,9 @@ class SdoLink {
   DeviceMemory device;
   canopen::SdoServer server{node, device};
   canopen::SdoTransfer client;
-  std::vector<CanFrame> sends;  ///< frames on the wire, in order
+  std::vector<CanFrame> sends;  ///< frames that were sent, in order
   std::function<bool(const CanFrame& sent, std::size_t position)> loses;
-  /// Answers instead of the server, if it returns a frame.
+  /// Makes the answer in place of the server, if it returns a frame.
   std::function<std::optional<CanFrame>(const CanFrame& request)> answers_instead;
 
  private:
@@ -103,7 +103,7 @@ class SdoLink {
   }
   [[nodiscard]] Microseconds now() const { return bus.now() / 1'000; }
   static sim::BusTime at(Microseconds time) { return time == never ? sim::never_on_bus : time * 1'000; }
-  /// As a program does it that keeps the bus busy: two frames at the controller.
+  /// Whether the program sends a frame. Like a program that keeps the bus busy, it has two frames at the controller.
   static bool has_room(const sim::Controller& controller) { return controller.free_mailboxes() > 1; }
   [[nodiscard]] bool is_quiet() const {
     return client_controller.free_mailboxes() == 3 && server_controller.free_mailboxes() == 3;

@@ -40,7 +40,7 @@ TEST(SdoTransfer, TheKindOfTransferFollowsFromTheSize) {
     std::size_t size;
     unsigned download;
     unsigned upload;
-    std::size_t frames;  ///< of the download
+    std::size_t frames;  ///< number of frames of the download
   };
   // First frames by CiA 301: 0x21 segmented, 0xC6 block; answers to an upload: 0x41 segmented, 0xC6 block.
   for (const Case& c : {Case{1, 0x2F, 0x4F, 2}, Case{4, 0x23, 0x43, 2}, Case{5, 0x21, 0x41, 4}, Case{21, 0x21, 0x41, 8},
@@ -102,7 +102,7 @@ TEST(SdoTransfer, AnySingleLostFrameIsMadeUpFor) {
 }
 
 TEST(SdoTransfer, LostFramesOfABlockDoNotBeginItAgain) {
-  // Of the frames after the first two, which ask and agree.
+  // The lost frames are after the first two, with which client and server agree on the transfer.
   for (const bool is_download : {true, false}) {
     const Bytes bytes = random_bytes(2'000);
     for (std::size_t lost = 2; lost < 290; ++lost) {

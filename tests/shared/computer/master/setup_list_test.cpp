@@ -14,7 +14,7 @@
 namespace proleg::canopen {
 namespace {
 
-/// A setup with the memory behind its spans.
+/// A setup with the memory for its spans.
 struct Robot {
   explicit Robot(unsigned joints, std::uint8_t first_node = 10) : limits(joints, AngleLimits{-(1 << 30), 1 << 30}) {
     for (unsigned i = 0; i < joints; ++i) {
@@ -175,7 +175,7 @@ TEST(SetupList, IsEmptyWithoutJointNodesOrLimits) {
   EXPECT_TRUE(robot.writes(0).empty());
 }
 
-/// The configuration as the objects of a module hold it.
+/// The configuration as it is in the objects of a module.
 RobotConfiguration read_back(const test::DeviceMemory& device, std::uint8_t own_node,
                              std::vector<std::uint8_t>& nodes) {
   RobotConfiguration setup;

@@ -1,4 +1,4 @@
-// A gait with a user's algorithm: the modules must have it, from the same sources, before anything moves.
+// A gait with a user's algorithm: the modules must have it, with the same sources, before a joint moves.
 
 #include <gtest/gtest.h>
 

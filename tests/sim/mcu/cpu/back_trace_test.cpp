@@ -103,9 +103,9 @@ TEST_F(BackTraceTest, EndsAtTheLatestAfter32Frames) {
   // A stack that holds only return addresses into one function, as if it had called itself again and again.
   registers_[15] = address_of("second_function") + 20;
   registers_[14] = registers_[15] | 1U;
-  registers_[13] = Cpu::ram_start;
+  registers_[13] = ChipMemory::ram_start;
   for (std::uint32_t i = 0; i < 0x4000; i += 4) {
-    rig_.set_word(Cpu::ram_start + i, (address_of("second_function") + 20) | 1U);
+    rig_.set_word(ChipMemory::ram_start + i, (address_of("second_function") + 20) | 1U);
   }
   EXPECT_LE(tracer_.trace(registers_, read_).size(), BackTracer::max_frames);
 }

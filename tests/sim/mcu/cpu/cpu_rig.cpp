@@ -80,7 +80,7 @@ Programs::Programs() {
   for (const ElfImage::Segment& segment : image().segments()) {
     cpu_.write(segment.load_address, segment.bytes);
   }
-  rig_.set_word(Cpu::flash_start, initial_stack);
+  rig_.set_word(ChipMemory::flash_start, initial_stack);
   const ElfImage::Symbol& scripts = image().symbol("scripts");
   cpu_.write(scripts.address, std::vector<std::uint8_t>(scripts.size));
 }
@@ -91,7 +91,7 @@ void Programs::start(std::string_view function) {
 }
 
 void Programs::set_vector(unsigned exception, std::string_view function) {
-  rig_.set_word(Cpu::flash_start + 4 * exception, address_of(function) | 1U);
+  rig_.set_word(ChipMemory::flash_start + 4 * exception, address_of(function) | 1U);
 }
 
 void Programs::script(unsigned exception, std::initializer_list<step::Step> steps) {

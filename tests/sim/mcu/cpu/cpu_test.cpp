@@ -29,7 +29,7 @@ TEST_F(CpuTest, CountsInstructionsOfTwoAndFourBytesExactly) {
 }
 
 TEST_F(CpuTest, CountsABlockOfAnyLengthEachTimeItRuns) {
-  constexpr std::uint32_t program = Cpu::flash_start + 0x1000;
+  constexpr std::uint32_t program = ChipMemory::flash_start + 0x1000;
   for (const std::uint32_t length : {2U, 253U, 254U, 255U, 256U, 257U, 400U}) {
     std::vector<std::uint8_t> code;
     const auto add = [&code](std::uint32_t instruction) {
@@ -42,8 +42,8 @@ TEST_F(CpuTest, CountsABlockOfAnyLengthEachTimeItRuns) {
     add(0xE000U | ((0U - (length + 1)) & 0x7FFU));  // b, to the first one
     CpuRig rig;
     rig.cpu.write(program, code);
-    rig.set_word(Cpu::flash_start, initial_stack);
-    rig.set_word(Cpu::flash_start + 4, program | 1U);
+    rig.set_word(ChipMemory::flash_start, initial_stack);
+    rig.set_word(ChipMemory::flash_start + 4, program | 1U);
     rig.cpu.reset();
     constexpr unsigned rounds = 10;
     EXPECT_EQ(rig.cpu.run(rounds * length), Cpu::State::running);
@@ -64,16 +64,16 @@ TEST_F(CpuTest, RunsForTheGivenInstructionsUpToTheEndOfABlock) {
 
 TEST_F(CpuTest, NewMemoryIsErasedFlashAndTheSameNoiseInEveryRam) {
   CpuRig other;
-  std::vector<std::uint8_t> ram(Cpu::ram_size);
-  std::vector<std::uint8_t> other_ram(Cpu::ram_size);
+  std::vector<std::uint8_t> ram(ChipMemory::ram_size);
+  std::vector<std::uint8_t> other_ram(ChipMemory::ram_size);
   CpuRig fresh;
-  fresh.cpu.read(Cpu::ram_start, ram);
-  other.cpu.read(Cpu::ram_start, other_ram);
+  fresh.cpu.read(ChipMemory::ram_start, ram);
+  other.cpu.read(ChipMemory::ram_start, other_ram);
   EXPECT_EQ(ram, other_ram);
-  EXPECT_NE(ram, std::vector<std::uint8_t>(Cpu::ram_size, ram[0]));
-  EXPECT_EQ(fresh.word(Cpu::flash_start), 0xFFFF'FFFFU);
-  EXPECT_EQ(fresh.word(Cpu::flash_start + Cpu::flash_size - 4), 0xFFFF'FFFFU);
-  EXPECT_THROW(static_cast<void>(fresh.word(Cpu::flash_start + Cpu::flash_size - 2)), std::out_of_range);
+  EXPECT_NE(ram, std::vector<std::uint8_t>(ChipMemory::ram_size, ram[0]));
+  EXPECT_EQ(fresh.word(ChipMemory::flash_start), 0xFFFF'FFFFU);
+  EXPECT_EQ(fresh.word(ChipMemory::flash_start + ChipMemory::flash_size - 4), 0xFFFF'FFFFU);
+  EXPECT_THROW(static_cast<void>(fresh.word(ChipMemory::flash_start + ChipMemory::flash_size - 2)), std::out_of_range);
   EXPECT_THROW(static_cast<void>(fresh.word(0x4000'0000)), std::out_of_range);
   EXPECT_THROW(fresh.set_word(0, 1), std::out_of_range);
 }

@@ -34,7 +34,7 @@ std::string output_of_qemu(const std::string& image) {
   }
   close(ends[1]);
   std::string output;
-  constexpr int max_silence_ms = 60'000;
+  constexpr int max_silence_ms = 300'000;
   pollfd waiting{ends[0], POLLIN, 0};
   while (!output.ends_with(last_line) && poll(&waiting, 1, max_silence_ms) > 0) {
     std::array<char, 256> buffer{};

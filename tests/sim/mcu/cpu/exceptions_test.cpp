@@ -308,7 +308,7 @@ TEST_F(ExceptionOrder, SupervisorCallWhereItsPriorityDoesNotAllowItIsAHardFault)
 TEST_F(ExceptionOrder, VtorMovesTheVectorTableAlsoIntoRam) {
   for (const std::uint32_t table : {0x0802'0000U, 0x2000'4000U}) {
     for (unsigned i = 0; i < 98; ++i) {
-      rig_.set_word(table + 4 * i, rig_.word(Cpu::flash_start + 4 * i));
+      rig_.set_word(table + 4 * i, rig_.word(ChipMemory::flash_start + 4 * i));
     }
     rig_.set_word(table + 4 * irq(0), address_of("short_handler") | 1U);
     script(0, {step::store(scs::iser, all), step::store(scs::ispr, 1), step::mark(1), step::store(scs::vtor, table),
@@ -464,8 +464,8 @@ class Slices : public Programs {
     for (unsigned i = 0; i <= 16; ++i) {
       end.registers.push_back(cpu_.core_register(i));
     }
-    end.ram.resize(Cpu::ram_size);
-    cpu_.read(Cpu::ram_start, end.ram);
+    end.ram.resize(ChipMemory::ram_size);
+    cpu_.read(ChipMemory::ram_start, end.ram);
     end.instructions = cpu_.instructions();
     end.time = rig_.now();
     return end;

@@ -215,7 +215,7 @@ TEST_F(Faults, AFaultUnderFaultmaskLocksUp) {
 
 TEST_F(Faults, AStackOverflowEndsWhereTheRamBegins) {
   const CpuFault fault = fault_of("stack_overflow");
-  EXPECT_EQ(fault.registers[13], Cpu::ram_start);
+  EXPECT_EQ(fault.registers[13], ChipMemory::ram_start);
   EXPECT_TRUE(fault.cause.starts_with("store to 0x1FFFFF") || fault.cause.starts_with("the stack at 0x1FFFFF"))
       << fault.cause;
 }
@@ -249,7 +249,7 @@ TEST_F(Faults, AnErasedFlashLocksUpAtOnce) {
 }
 
 TEST_F(Faults, AResetVectorThatIsNotThumbIsAFault) {
-  rig_.set_word(Cpu::flash_start + 4, address_of("counted_loop"));
+  rig_.set_word(ChipMemory::flash_start + 4, address_of("counted_loop"));
   cpu_.reset();
   rig_.run(1000);
   const std::vector<CpuFault> faults = cpu_.take_faults();
@@ -259,7 +259,7 @@ TEST_F(Faults, AResetVectorThatIsNotThumbIsAFault) {
 }
 
 TEST_F(Faults, AVectorThatIsNotThumbIsAnotherFault) {
-  rig_.set_word(Cpu::flash_start + 64, address_of("short_handler"));
+  rig_.set_word(ChipMemory::flash_start + 64, address_of("short_handler"));
   script(0, {step::store(scs::iser, 1), step::store(scs::ispr, 1)});
   const CpuFault fault = fault_of("reset_handler");
   EXPECT_TRUE(fault.cause.starts_with("the vector of exception 16 is 0x")) << fault.cause;

@@ -61,7 +61,7 @@ class FlashImageTest : public testing::Test {
     for (std::size_t i = 0; i < header.e_phnum; ++i) {
       const std::size_t offset = header.e_phoff + i * sizeof(Elf32_Phdr);
       const auto segment = read<Elf32_Phdr>(valid_, offset);
-      if (segment.p_type == PT_LOAD && segment.p_paddr == Cpu::flash_start) {
+      if (segment.p_type == PT_LOAD && segment.p_paddr == ChipMemory::flash_start) {
         return offset;
       }
     }
@@ -92,7 +92,7 @@ class FlashImageTest : public testing::Test {
 
 TEST_F(FlashImageTest, AProgramForThisChipIsAccepted) {
   EXPECT_EQ(rejection(valid_), "");
-  EXPECT_EQ(FlashImage(image_file("cpu_programs")).elf().segments()[0].load_address, Cpu::flash_start);
+  EXPECT_EQ(FlashImage(image_file("cpu_programs")).elf().segments()[0].load_address, ChipMemory::flash_start);
 }
 
 TEST_F(FlashImageTest, AProgramForCortexM0IsAcceptedToo) {
@@ -132,8 +132,8 @@ TEST_F(FlashImageTest, AProgramForAnotherChipIsRejectedWithItsAddress) {
 }
 
 TEST_F(FlashImageTest, AProgramThatDoesNotFitIsRejected) {
-  const std::string text =
-      refusal_with_segment([](Elf32_Phdr& segment) { segment.p_paddr = Cpu::flash_start + Cpu::flash_size - 16; });
+  const std::string text = refusal_with_segment(
+      [](Elf32_Phdr& segment) { segment.p_paddr = ChipMemory::flash_start + ChipMemory::flash_size - 16; });
   EXPECT_NE(text.find("expected at most 1048576 bytes from 0x8000000 on"), std::string::npos) << text;
 }
 
@@ -164,11 +164,11 @@ TEST_F(FlashImageTest, AProgramWithoutVectorTableIsRejected) {
 }
 
 TEST_F(FlashImageTest, TheInitialStackPointerMustEndAMemory) {
-  const std::uint32_t start = Cpu::flash_start + 0x201;
-  EXPECT_EQ(refusal_with_vectors(Cpu::ram_start + Cpu::ram_size, start), "");
-  EXPECT_EQ(refusal_with_vectors(Cpu::ccm_start + Cpu::ccm_size, start), "");
-  for (const std::uint32_t stack : {0U, Cpu::ram_start, Cpu::ram_start + Cpu::ram_size + 4, Cpu::ram_start + 1026,
-                                    0xFFFF'FFFFU, Cpu::flash_start + 1024}) {
+  const std::uint32_t start = ChipMemory::flash_start + 0x201;
+  EXPECT_EQ(refusal_with_vectors(ChipMemory::ram_start + ChipMemory::ram_size, start), "");
+  EXPECT_EQ(refusal_with_vectors(ChipMemory::ccm_start + ChipMemory::ccm_size, start), "");
+  for (const std::uint32_t stack : {0U, ChipMemory::ram_start, ChipMemory::ram_start + ChipMemory::ram_size + 4,
+                                    ChipMemory::ram_start + 1026, 0xFFFF'FFFFU, ChipMemory::flash_start + 1024}) {
     EXPECT_TRUE(refusal_with_vectors(stack, start)
                     .starts_with("found a vector table at 0x8000000 with the initial stack pointer "))
         << stack;
@@ -176,9 +176,10 @@ TEST_F(FlashImageTest, TheInitialStackPointerMustEndAMemory) {
 }
 
 TEST_F(FlashImageTest, TheStartAddressMustBeThumbCodeOfTheProgram) {
-  const std::uint32_t stack = Cpu::ram_start + Cpu::ram_size;
+  const std::uint32_t stack = ChipMemory::ram_start + ChipMemory::ram_size;
   for (const std::uint32_t start :
-       {0U, Cpu::flash_start + 0x200, Cpu::flash_start + Cpu::flash_size - 1, Cpu::ram_start + 1, 0xFFFF'FFFFU}) {
+       {0U, ChipMemory::flash_start + 0x200, ChipMemory::flash_start + ChipMemory::flash_size - 1,
+        ChipMemory::ram_start + 1, 0xFFFF'FFFFU}) {
     EXPECT_TRUE(
         refusal_with_vectors(stack, start).starts_with("found a vector table at 0x8000000 with the start address "))
         << start;

@@ -50,7 +50,7 @@ class Client {
   /// Whether the next that comes is this; what the server has sent may still be on its way.
   [[nodiscard]] testing::AssertionResult gets(const std::string& expected) const {
     std::string text;
-    for (int patience = 100; text.size() < expected.size() && patience > 0; --patience) {
+    for (int patience = 6'000; text.size() < expected.size() && patience > 0; --patience) {
       static_cast<void>(something_comes());
       text += received();
     }
@@ -60,7 +60,7 @@ class Client {
     return testing::AssertionFailure() << "got " << text << ", expected " << expected;
   }
   [[nodiscard]] bool is_turned_away() const {
-    for (int patience = 100; patience > 0 && !something_comes(); --patience) {
+    for (int patience = 6'000; patience > 0 && !something_comes(); --patience) {
     }
     char byte = 0;
     return recv(socket_, &byte, 1, MSG_DONTWAIT) <= 0;
@@ -97,7 +97,7 @@ class Server : public testing::Test {
   testing::AssertionResult answers(const Client& client, const std::string& expected,
                                    StopReason reason = StopReason::attached) {
     std::string text;
-    int patience = 50;
+    int patience = 6'000;
     const Resume resume = server.serve(reason, [&] {
       text += client.received();
       return text.size() >= expected.size() || --patience == 0;
@@ -109,7 +109,7 @@ class Server : public testing::Test {
   }
   // What was sent may still be on its way.
   bool is_interrupted() {
-    for (int patience = 1000; patience > 0; --patience) {
+    for (int patience = 300'000; patience > 0; --patience) {
       if (server.interrupt_requested()) {
         return true;
       }
@@ -118,7 +118,7 @@ class Server : public testing::Test {
     return false;
   }
   bool loses_its_client() {
-    for (int patience = 1000; patience > 0 && server.has_client(); --patience) {
+    for (int patience = 300'000; patience > 0 && server.has_client(); --patience) {
       EXPECT_FALSE(server.interrupt_requested());
       usleep(1000);
     }

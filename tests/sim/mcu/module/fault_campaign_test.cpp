@@ -13,7 +13,7 @@
 
 #include "sim/fault/fault_reader.hpp"
 #include "sim/fault/random_faults.hpp"
-#include "sim/loop/fault_run.hpp"
+#include "sim/hardware_loop/fault_run.hpp"
 #include "tests/support/from_environment.hpp"
 #include "virtual_robot.hpp"
 

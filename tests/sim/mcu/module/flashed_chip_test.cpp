@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "changed_image.hpp"
-#include "sim/loop/fault_run.hpp"
-#include "sim/loop/native_program.hpp"
+#include "sim/hardware_loop/fault_run.hpp"
+#include "sim/hardware_loop/native_program.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "virtual_robot.hpp"

@@ -10,8 +10,8 @@
 #include "changed_image.hpp"
 #include "firmware/module/module_identity.hpp"
 #include "shared/broadcast/image_sender.hpp"
+#include "sim/hardware_loop/module_making.hpp"
 #include "sim/live/live_robot.hpp"
-#include "sim/loop/module_making.hpp"
 #include "sim/mcu/module/flashed_chip.hpp"
 #include "virtual_robot.hpp"
 

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "lss_robot.hpp"
-#include "sim/loop/native_module.hpp"
+#include "sim/hardware_loop/native_module.hpp"
 #include "virtual_robot.hpp"
 
 namespace proleg::sim {
@@ -14,7 +14,7 @@ TEST(LssRobot, FlashedChipsWithoutNodeIdsGetThemBesideANativeModuleThatHasOne) {
   LssRobot robot;
   std::vector<std::string> console;
   for (unsigned i = 0; i < count; ++i) {
-    const auto readings = [] { return firmware::ServoReadings{}; };
+    const auto readings = [] { return ServoReadings{}; };
     ModuleParts parts{
         robot.bus, i,       {}, Crystal(static_cast<std::int32_t>(i) * 50'000 - 75'000), [] { return std::uint8_t{0}; },
         readings,  readings};

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "shipped.hpp"
-#include "sim/loop/hardware_loop.hpp"
+#include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/mcu/module/virtual_module.hpp"
 

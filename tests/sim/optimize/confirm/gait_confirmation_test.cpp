@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "sim/mujoco/mujoco_world.hpp"
-#include "sim/optimize/confirm/doubts.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"

@@ -163,10 +163,10 @@ TEST_F(LocalWorkersTest, NameTheTaskOfABatchThatEndsThreeWorkersAlone) {
 TEST_F(LocalWorkersTest, HaveTheTimeOfAllTheirTasks) {
   // Each task takes less than its limit, together they take more than one.
   LocalWorkers workers(experiment_, 1, one_by_one([](const Experiment& experiment, const Task& task) {
-                         usleep(300'000);
+                         usleep(700'000);
                          return made_up_trial(experiment, task);
                        }),
-                       {milliseconds(1000), 0.0});
+                       {milliseconds(3000), 0.0});
   workers.start(five_tasks());
   expect_five_results(experiment_, workers);
   EXPECT_TRUE(workers.messages().empty());
@@ -178,7 +178,7 @@ TEST_F(LocalWorkersTest, GiveABatchUpThatHangs) {
                            pause();
                          }
                        }),
-                       {milliseconds(100), 0.0});
+                       {milliseconds(2000), 0.0});
   workers.start(five_tasks());
   expect_five_results(experiment_, workers);
   const std::vector<std::string> messages = workers.messages();
@@ -283,7 +283,7 @@ TEST_F(LocalWorkersTest, ReplaceOneThatHangs) {
                            pause();
                          }
                        }),
-                       {milliseconds(200), 0.0});
+                       {milliseconds(5000), 0.0});
   start(workers, 1, task_);
   EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
   const std::vector<std::string> messages = workers.messages();

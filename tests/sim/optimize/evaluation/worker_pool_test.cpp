@@ -178,7 +178,7 @@ TEST(WorkerPool, ReplacesAWorkerThatHangsWhileAnotherIsIdle) {
     }
     return made_up_trial(its, task);
   });
-  WorkerPool pool(experiment, 2, 1, run, {.fixed = milliseconds(300), .per_simulated_second = 0.0});
+  WorkerPool pool(experiment, 2, 1, run, {.fixed = milliseconds(5000), .per_simulated_second = 0.0});
   const std::vector<int> statuses =
       statuses_of(pool, 1, [&](std::uint32_t /*search*/, const std::unique_ptr<Workers>& workers) {
         const Task task{0, 3, 0, {1, 0, 0}, {}};

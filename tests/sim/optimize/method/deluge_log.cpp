@@ -4,7 +4,6 @@
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 
-#include "landscape_problem.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 
 namespace proleg::optimize {

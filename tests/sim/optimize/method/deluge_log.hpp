@@ -2,19 +2,12 @@
 
 // A great deluge on a landscape, without a simulation. Only the source file includes pagmo.
 
-#include <functional>
 #include <vector>
 
+#include "landscape_problem.hpp"
 #include "sim/optimize/method/great_deluge.hpp"
 
 namespace proleg::optimize {
-
-/// A box of whole numbers with any level.
-struct Landscape {
-  std::vector<double> lower = {0.0, 0.0, 0.0};
-  std::vector<double> upper = {160.0, 160.0, 160.0};
-  std::function<double(const std::vector<double>&)> level;
-};
 
 /// The log of a search on a landscape, with one chain for each start; also of one that the landscape ended with
 /// SearchEnded.

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <utility>
 #include <vector>
 
-#include "deluge_log.hpp"
-
 namespace proleg::optimize {
+
+/// A box of whole numbers with any level.
+struct Landscape {
+  std::vector<double> lower = {0.0, 0.0, 0.0};
+  std::vector<double> upper = {160.0, 160.0, 160.0};
+  std::function<double(const std::vector<double>&)> level;
+};
 
 /// A landscape as a problem of pagmo.
 struct LandscapeProblem {

@@ -220,10 +220,10 @@ void continues_without_a_rank_that_stopped() {
       lost_rank_2 = lost_rank_2 || message.find("rank 2 has not answered") == 0;
     }
   };
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(100);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(300);
   std::uint64_t ticket = 0;
   while (!lost_rank_2) {
-    expect(std::chrono::steady_clock::now() < end, "a message within 100 s");
+    expect(std::chrono::steady_clock::now() < end, "a message within 300 s");
     for (; workers.idle() > 0; ++ticket) {
       start(workers, ticket, {0, ticket, 0, {1, 1, 1}, {}});
       open.insert(ticket);
@@ -231,7 +231,7 @@ void continues_without_a_rank_that_stopped() {
     receive();
   }
   while (!open.empty()) {
-    expect(std::chrono::steady_clock::now() < end, "all results within 100 s");
+    expect(std::chrono::steady_clock::now() < end, "all results within 300 s");
     receive();
   }
   expect(workers.count() == 4 - lost, "the workers that were not lost");

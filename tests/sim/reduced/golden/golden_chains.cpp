@@ -1,9 +1,7 @@
 #include "tests/sim/reduced/golden/golden_chains.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
 
 namespace proleg::sim::reduced::golden {
 namespace {
@@ -11,8 +9,8 @@ namespace {
 constexpr double half_length = 0.036;  // m, between the joints of a link
 
 /// What all chains have in common.
-ChainModel make_form() {
-  ChainModel form;
+ChainModel<Planar> make_form() {
+  ChainModel<Planar> form;
   for (std::size_t link = 0; link < link_count; ++link) {
     form.links.push_back({{half_length, 0.0}, {-half_length, 0.0}, {1.0, 0.0}, {0.0, -1.0}});
     form.shapes.push_back({link, Rectangle{{0.0, 0.0}, {1.0, 0.0}, 0.03, 0.026}, 0.04});
@@ -29,29 +27,29 @@ ChainModel make_form() {
 }
 
 /// What all snakes have in common.
-SpatialModel make_snake_form() {
-  SpatialModel form;
+ChainModel<Spatial> make_snake_form() {
+  ChainModel<Spatial> form;
   for (std::size_t link = 0; link < link_count; ++link) {
     form.links.push_back({{0.0, half_length, 0.0}, {0.0, -half_length, 0.0}, {1.0, 0.0, 0.0}});
-    BoxForm box;
+    Spatial::Shape box;
     box.link = link;
     box.sides[0] = {0.026, 0.0, 0.0};
     box.sides[1] = {0.0, 0.03, 0.0};
     box.sides[2] = {0.0, 0.0, 0.026};
     box.radius = 0.05;
-    for (unsigned number = 0; number < corners_of_box; ++number) {
+    for (unsigned number = 0; number < Spatial::corners_of_shape; ++number) {
       const auto sign = [&](unsigned bit) { return (number & bit) != 0 ? 1.0 : -1.0; };
       const int sensor = sign(4) > 0.0 ? 0 : (sign(2) < 0.0 ? 1 : 2);
       box.corners[number] = {{0.026 * sign(1), 0.03 * sign(2), 0.026 * sign(4)}, sensor};
     }
-    form.boxes.push_back(box);
+    form.shapes.push_back(box);
   }
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     // Right-angled triangles of sides 7, 24, 25.
     const Point3 axis = joint % 2 == 0 ? Point3{0.96, 0.0, 0.28} : Point3{-0.28, 0.0, 0.96};
-    form.joints.push_back({axis, {-1.5, 1.5}});
+    form.joints.push_back({{-1.5, 1.5}, axis});
   }
-  form.floor = {{0.0, 0.0, 0.0}, {0.96, 0.28, 0.0}, 2.0, 0.5, 0.05};
+  form.terrain = {{{0.0, 0.0, 0.0}, {0.96, 0.28, 0.0}, 2.0, 0.5, 0.05}};
   form.self_collision = true;
   form.step_s = 0.001;
   return form;
@@ -73,11 +71,11 @@ int scattered(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
 
 }  // namespace
 
-std::vector<ChainModel> make_chains() {
+std::vector<ChainModel<Planar>> make_chains() {
   constexpr std::array frictions{0.0, 0.05, 0.1, 0.3, 0.5, 1.0, 2.0};
-  std::vector<ChainModel> chains(chain_count, make_form());
+  std::vector<ChainModel<Planar>> chains(chain_count, make_form());
   for (std::size_t number = 0; number < chain_count; ++number) {
-    ChainModel& chain = chains[number];
+    ChainModel<Planar>& chain = chains[number];
     for (std::size_t link = 0; link < link_count; ++link) {
       const double mass = 0.05 + 0.00625 * static_cast<double>((number * 5 + link * 3) % 17);
       chain.masses.push_back(mass);
@@ -85,10 +83,10 @@ std::vector<ChainModel> make_chains() {
     }
     const std::size_t shapes = chain.shapes.size();
     for (std::size_t i = 0; i < shapes * chain.terrain.size(); ++i) {
-      chain.terrain_friction.push_back(frictions[(number + i) % frictions.size()]);
+      chain.friction.push_back(frictions[(number + i) % frictions.size()]);
     }
     for (std::size_t i = 0; i < shapes * shapes; ++i) {
-      chain.self_friction.push_back(frictions[number % frictions.size()]);
+      chain.friction.push_back(frictions[number % frictions.size()]);
     }
     chain.gravity = {0.125 * static_cast<double>(number % 3), -9.81};
     // The first half falls onto the hill.
@@ -99,11 +97,11 @@ std::vector<ChainModel> make_chains() {
   return chains;
 }
 
-std::vector<SpatialModel> make_snakes() {
+std::vector<ChainModel<Spatial>> make_snakes() {
   constexpr std::array frictions{0.0, 0.05, 0.1, 0.3, 0.5, 1.0, 2.0};
-  std::vector<SpatialModel> snakes(chain_count, make_snake_form());
+  std::vector<ChainModel<Spatial>> snakes(chain_count, make_snake_form());
   for (std::size_t number = 0; number < chain_count; ++number) {
-    SpatialModel& snake = snakes[number];
+    ChainModel<Spatial>& snake = snakes[number];
     for (std::size_t link = 0; link < link_count; ++link) {
       const double mass = 0.05 + 0.00625 * static_cast<double>((number * 5 + link * 3) % 17);
       snake.masses.push_back(mass);
@@ -116,8 +114,7 @@ std::vector<SpatialModel> make_snakes() {
     snake.first_link = {0.0, 0.125 * static_cast<double>(number % 4), 0.03125 * static_cast<double>(number % 5 + 1)};
     // Half of them lie at an angle.
     if (number % 2 == 1) {
-      constexpr double turned[] = {0.96, 0.0, 0.0, 0.28};
-      std::copy(std::begin(turned), std::end(turned), snake.orientation);
+      snake.orientation = {0.96, 0.0, 0.0, 0.28};
     }
   }
   return snakes;

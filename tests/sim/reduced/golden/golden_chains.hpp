@@ -5,8 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim/reduced/chain_model.hpp"
-#include "sim/reduced/spatial_model.hpp"
+#include "sim/reduced/chain_batch.hpp"
 
 namespace proleg::sim::reduced::golden {
 
@@ -15,9 +14,9 @@ inline constexpr std::size_t link_count = 6;
 inline constexpr std::size_t joint_count = link_count - 1;
 
 /// They differ in mass, friction, gravity and start. The terrain has a floor, a step and a hill.
-[[nodiscard]] std::vector<ChainModel> make_chains();
+[[nodiscard]] std::vector<ChainModel<Planar>> make_chains();
 /// As many. Their joints have different axes; the floor is level and not so large that no chain leaves it.
-[[nodiscard]] std::vector<SpatialModel> make_snakes();
+[[nodiscard]] std::vector<ChainModel<Spatial>> make_snakes();
 
 /// Of a motor, Nm. Some are too weak for what they shall do, some give none. chain: its number among make_chains() or
 /// make_snakes().

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "sim/reduced/chain_batch.hpp"
-#include "sim/reduced/spatial_batch.hpp"
 #include "tests/sim/reduced/golden/golden_chains.hpp"
 
 namespace {
@@ -53,24 +52,24 @@ struct Outcome {
   Hash state;                     ///< of the chains' hashes of all their states and poses
 };
 
-void add_state(const ChainBatch& batch, std::size_t place, Hash& hash) {
+void add_state(const ChainBatch<Planar>& batch, std::size_t place, Hash& hash) {
   for (const double value : batch.state(place)) {
     hash.add(std::bit_cast<std::uint64_t>(value));
   }
   for (std::size_t link = 0; link < link_count; ++link) {
-    const ChainBatch::LinkPlace at = batch.link_place(place, link);
+    const ChainBatch<Planar>::LinkPlace at = batch.link_place(place, link);
     for (const double value : {at.position.x, at.position.z, at.half_sine, at.half_cosine}) {
       hash.add(std::bit_cast<std::uint64_t>(value));
     }
   }
 }
 
-void add_state(const SpatialBatch& batch, std::size_t place, Hash& hash) {
+void add_state(const ChainBatch<Spatial>& batch, std::size_t place, Hash& hash) {
   for (const double value : batch.state(place)) {
     hash.add(std::bit_cast<std::uint64_t>(value));
   }
   for (std::size_t link = 0; link < link_count; ++link) {
-    const SpatialBatch::LinkPlace at = batch.link_place(place, link);
+    const ChainBatch<Spatial>::LinkPlace at = batch.link_place(place, link);
     for (const Point3& point : {at.position, at.axes[0], at.axes[1], at.axes[2]}) {
       for (const double value : {point.x, point.y, point.z}) {
         hash.add(std::bit_cast<std::uint64_t>(value));
@@ -79,7 +78,7 @@ void add_state(const SpatialBatch& batch, std::size_t place, Hash& hash) {
   }
 }
 
-bool touches_itself(const ChainBatch& batch, std::size_t place) {
+bool touches_itself(const ChainBatch<Planar>& batch, std::size_t place) {
   double force = 0.0;
   for (std::size_t link = 0; link < link_count; ++link) {
     force += batch.contact_force(place, link);
@@ -87,7 +86,9 @@ bool touches_itself(const ChainBatch& batch, std::size_t place) {
   return force > batch.sliding(place).normal_force * 1.001;
 }
 
-bool touches_itself(const SpatialBatch& batch, std::size_t place) { return batch.touching_links(place).has_value(); }
+bool touches_itself(const ChainBatch<Spatial>& batch, std::size_t place) {
+  return batch.touching_links(place).has_value();
+}
 
 template <typename Batch>
 void count(const Batch& batch, std::size_t place, std::size_t chain, Outcome& outcome) {
@@ -170,8 +171,8 @@ void print(std::FILE* file, const std::string& start, const ChainKernel& kernel,
                  static_cast<unsigned long>(steps), outcome.failures, outcome.on_terrain, outcome.on_itself,
                  outcome.weak_motors, static_cast<unsigned long long>(outcome.state.value()));
   };
-  print_line("plane", run<ChainBatch>(make_chains(), kernel, batch_size, steps));
-  print_line("space", run<SpatialBatch>(make_snakes(), kernel, batch_size, steps));
+  print_line("plane", run<ChainBatch<Planar>>(make_chains(), kernel, batch_size, steps));
+  print_line("space", run<ChainBatch<Spatial>>(make_snakes(), kernel, batch_size, steps));
 }
 
 int write_golden(const char* name) {

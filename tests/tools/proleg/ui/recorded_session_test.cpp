@@ -47,7 +47,7 @@ class RecordingViewers final : public host::SessionOutput {
 
   Answer wait_for(std::uint64_t request) {
     std::unique_lock lock(mutex_);
-    if (!changed_.wait_for(lock, std::chrono::minutes(2), [&] { return answers_.contains(request); })) {
+    if (!changed_.wait_for(lock, std::chrono::minutes(5), [&] { return answers_.contains(request); })) {
       throw std::runtime_error("no answer in 2 minutes");
     }
     return answers_[request];

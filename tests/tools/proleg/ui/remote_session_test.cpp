@@ -25,7 +25,7 @@ class Log {
   /// Whether the line comes, now or later.
   bool has(const std::string& line) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::minutes(1), [&] { return text_.find(line) != std::string::npos; });
+    return changed_.wait_for(lock, std::chrono::minutes(5), [&] { return text_.find(line) != std::string::npos; });
   }
   std::string text() {
     const std::lock_guard lock(mutex_);

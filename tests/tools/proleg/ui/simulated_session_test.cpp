@@ -36,7 +36,7 @@ class Viewers final : public host::SessionOutput {
   template <typename Condition, typename Result>
   auto when(const Condition& condition, const Result& result) {
     std::unique_lock lock(mutex_);
-    if (!changed_.wait_for(lock, std::chrono::minutes(2), condition)) {
+    if (!changed_.wait_for(lock, std::chrono::minutes(5), condition)) {
       throw std::runtime_error("it did not come in 2 minutes");
     }
     return result();

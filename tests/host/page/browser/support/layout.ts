@@ -1,6 +1,7 @@
 // What does not fit the window.
 import assert from 'node:assert/strict';
 import type { Viewer } from './viewer.js';
+import { waitUntil } from './waiting.js';
 
 // The page, if it is wider than the window; texts and controls that are cut, where nothing can be scrolled to see them.
 function whatIsCut(): string[] {
@@ -26,10 +27,7 @@ function whatIsCut(): string[] {
 
 // Waits: a canvas follows the window with the next frames.
 export async function assertNothingIsCut(viewer: Viewer): Promise<void> {
-  let cut = await viewer.page.evaluate(whatIsCut);
-  for (let look = 0; look < 40 && cut.length > 0; look += 1) {
-    await viewer.page.waitForTimeout(50);
-    cut = await viewer.page.evaluate(whatIsCut);
-  }
+  let cut: string[] = [];
+  await waitUntil(async () => (cut = await viewer.page.evaluate(whatIsCut)).length === 0);
   assert.deepEqual(cut, []);
 }

@@ -1,5 +1,6 @@
 // Pixels of an element, as the user sees them.
 import type { Locator, Page } from 'playwright-core';
+import { waitUntil } from './waiting.js';
 
 export interface Pixels {
   width: number;
@@ -36,19 +37,16 @@ export function countPixels({ data }: Pixels, matches: (red: number, green: numb
   return count;
 }
 
-// Looks until the number of pixels of the element that match is as expected, at most 100 times: a view may need a while for
-// its next picture. Returns the last number, expected or not.
+// Looks until the number of pixels of the element that match is as expected: a view may need a while for its next picture.
+// Returns the last number, expected or not.
 export async function countPixelsWhen(
   page: Page,
   element: Locator,
   matches: (red: number, green: number, blue: number) => boolean,
   isExpected: (count: number) => boolean,
 ): Promise<number> {
-  let count = countPixels(await pixelsOf(page, element), matches);
-  for (let look = 0; look < 100 && !isExpected(count); look += 1) {
-    await page.waitForTimeout(100);
-    count = countPixels(await pixelsOf(page, element), matches);
-  }
+  let count = 0;
+  await waitUntil(async () => isExpected((count = countPixels(await pixelsOf(page, element), matches))));
   return count;
 }
 

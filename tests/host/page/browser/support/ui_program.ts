@@ -1,8 +1,8 @@
 // Starts `proleg ui`, and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
+import { longest } from './waiting.js';
 
 export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
-const startTimeout = 20000; // milliseconds
 
 export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
 export const sixty = 'sim/scenarios/long_chain/sixty.simulation.xml';
@@ -28,7 +28,7 @@ export class UiProgram {
     const child = spawn(program, ['ui', ...words, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';
-      const timer = setTimeout(() => fail('no address in time'), startTimeout);
+      const timer = setTimeout(() => fail('no address in time'), longest);
       const fail = (what: string) => {
         clearTimeout(timer);
         child.kill('SIGKILL');

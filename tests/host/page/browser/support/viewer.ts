@@ -1,6 +1,7 @@
 // A viewer of the page in a browser context of its own, with the words of a user: take control, run, read the table.
 import assert from 'node:assert/strict';
 import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+import { longest } from './waiting.js';
 
 const screenshots = 'build/page_test';
 export const lostConnection = /WebSocket connection .* failed/;
@@ -49,6 +50,8 @@ export class Viewer {
     before: () => void,
   ): Promise<Viewer> {
     const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
+    context.setDefaultTimeout(longest);
+    context.setDefaultNavigationTimeout(longest);
     await context.addInitScript(before);
     const viewer = new Viewer(await context.newPage(), context);
     viewer.page.on('console', (message) => {

@@ -1,0 +1,177 @@
+#include "sim/hardware_loop/module_rack.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "sim/hardware_loop/module_making.hpp"
+#include "sim/hardware_loop/native_module.hpp"
+#include "sim/loop/touch_inputs.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// Longer than a SYNC waits for a frame on the wire, plus the drift of the crystals in a tick.
+constexpr BusTime max_sync_jitter = 500'000;
+
+/// What a native module measures: its current is the mean over the steps of the plant since the reading before.
+class ServoMeter {
+ public:
+  ServoMeter(const Plant& plant, unsigned joint) : plant_(&plant), joint_(joint) {}
+  ServoReadings operator()() {
+    ServoReadings readings = plant_->servo_readings(joint_);
+    const Plant::DrawnCurrent drawn = plant_->drawn_current(joint_);
+    if (drawn.steps != before_.steps) {
+      const double mean = (drawn.sum_ma - before_.sum_ma) / static_cast<double>(drawn.steps - before_.steps);
+      readings.current_ma = static_cast<std::uint16_t>(std::lround(mean));
+      before_ = drawn;
+    }
+    return readings;
+  }
+
+ private:
+  const Plant* plant_;
+  unsigned joint_;
+  Plant::DrawnCurrent before_{0.0, 0};
+};
+
+}  // namespace
+
+ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options)
+    : scenario_(scenario),
+      options_(options),
+      records_(scenario.modules.size()),
+      ticks_before_(scenario.modules.size()) {
+  for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
+    firmware::ModuleIdentity identity = make_identity(scenario, joint);
+    if (options.change_identity) {
+      options.change_identity(joint, identity);
+    }
+    const auto sensors = [&plant, &options, joint] {
+      const std::uint8_t contacts = joint_contacts(plant.link_contacts(), joint);
+      return options.change_sensors ? options.change_sensors(joint, contacts) : contacts;
+    };
+    const ModuleParts parts{bus,
+                            joint,
+                            identity,
+                            make_crystal(scenario, joint, options.crystal_error_ppm),
+                            sensors,
+                            [&plant, joint] { return plant.servo_readings(joint); },
+                            ServoMeter(plant, joint),
+                            options.gateway && options.gateway->joint == joint};
+    std::unique_ptr<JointModule> module = options.make_module ? options.make_module(parts) : nullptr;
+    modules_.push_back(module ? std::move(module) : make_native(parts));
+  }
+  if (options.gateway) {
+    modules_.at(options.gateway->joint)
+        ->set_serial_watch(
+            [host = options.gateway->host](BusTime time, std::uint8_t byte) { host->received(time, byte); });
+  }
+}
+
+std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) const {
+  auto module = std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors,
+                                               parts.take_readings, parts.is_gateway);
+  module->set_start_time(options_.start_time_us);
+  if (options_.tamper) {
+    module->set_tamper([&options = options_, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
+      options.tamper(joint, frame, deliver);
+    });
+  }
+  return module;
+}
+
+void ModuleRack::watch_pulses(const PulseWatch& watch) {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    modules_[joint]->set_pulse_watch([watch, joint](const JointModule::WatchedPulse& pulse) { watch(joint, pulse); });
+  }
+}
+
+void ModuleRack::watch_commands(const CommandWatch& watch) {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    modules_[joint]->set_command_watch([watch, joint](BusTime time, std::int32_t /*width*/) { watch(joint, time); });
+  }
+}
+
+void ModuleRack::power_on(BusTime now) {
+  for (const auto& module : modules_) {
+    module->power_on(now);
+  }
+}
+
+BusTime ModuleRack::next_event() const {
+  BusTime next = next_serial_input();
+  for (const auto& module : modules_) {
+    next = std::min(next, module->next_event());
+  }
+  return next;
+}
+
+BusTime ModuleRack::next_serial_input() const {
+  return options_.gateway ? options_.gateway->host->next_event() : never_on_bus;
+}
+
+void ModuleRack::take_serial_input(BusTime now) {
+  SerialHost& host = *options_.gateway->host;
+  while (const auto character = host.take(now)) {
+    modules_[options_.gateway->joint]->begin_serial_input(now, *character, host.bit_time());
+  }
+}
+
+void ModuleRack::advance_to(BusTime now, BusTime quiet_until) {
+  if (next_serial_input() <= now) {
+    take_serial_input(now);
+  }
+  quiet_until = std::min(quiet_until, next_serial_input());
+  for (const auto& module : modules_) {
+    if (module->next_event() <= now) {
+      module->advance_to(now, quiet_until);
+    }
+  }
+}
+
+void ModuleRack::catch_up_before(BusTime time) {
+  for (const auto& module : modules_) {
+    module->catch_up_before(time);
+  }
+}
+
+void ModuleRack::begin_tick(std::uint32_t tick, BusTime now) {
+  restarted_ = {};
+  for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
+    restart(options_.restarts[next_restart_].joint, now);
+  }
+  for (const auto& module : modules_) {
+    module->note_sync(tick);
+  }
+}
+
+void ModuleRack::restart(unsigned joint, BusTime now) {
+  // A module with a slow crystal still owes pulses of the tick before.
+  modules_[joint]->run_out(now, now + max_sync_jitter);
+  last_pulses_[joint] = modules_[joint]->pulse();
+  modules_[joint]->power_on(now);
+  restarted_.insert(joint);
+}
+
+void ModuleRack::end_tick() {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    ticks_before_[joint] = records_[joint].tick;
+    records_[joint] = modules_[joint]->last_tick();
+  }
+}
+
+void ModuleRack::take_problems(std::uint32_t tick, HardwareReport& report) {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    while (const auto problem = modules_[joint]->take_problem()) {
+      report.problems.push_back({tick, joint, *problem});
+      if (options_.notice) {
+        options_.notice(scenario_.robot.joints[joint].name + " (node " + std::to_string(scenario_.modules[joint].node) +
+                        "): " + *problem);
+      }
+    }
+  }
+}
+
+}  // namespace proleg::sim

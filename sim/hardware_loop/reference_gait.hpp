@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/hardware_loop/hardware_report.hpp"
+#include "sim/loop/gait.hpp"
+#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/touch_inputs.hpp"
+#include "sim/robot/servo_pulse.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+/// The gait in memory that the modules are compared with. It gets the same changes, losses and touch sensors, and its
+/// joints stop and join when their modules do.
+class ReferenceGait {
+ public:
+  /// scenario, losses: must outlive this. losses: null for none.
+  ReferenceGait(const Scenario& scenario, const Losses* losses);
+
+  /// What the module of a joint did in a tick.
+  struct ModuleTick {
+    bool has_computed;   ///< its record holds the tick
+    bool has_sent;       ///< it sent its state frame after the tick's SYNC
+    bool has_restarted;  ///< the run restarted it at the tick's SYNC
+  };
+  /// Before advance(), for each joint: stops it or lets it join, as its module did. Reports failures of the module.
+  void follow(unsigned joint, const ModuleTick& module, HardwareReport& report);
+  /// Position in the scenario of the change for the coming tick, if there is one.
+  [[nodiscard]] std::optional<std::size_t> due_change() const { return gait_.due_change(); }
+  /// Before advance(): the current that the module of a joint read for the tick, in mA.
+  void set_current(unsigned joint, std::uint16_t current_ma);
+  /// Computes the tick. link_contacts: as they were at its SYNC. is_change_made: the modules have the due change; if
+  /// not, it never takes effect. Returns the change that took effect, if any.
+  const Change* advance(std::span<const std::uint8_t> link_contacts, bool is_change_made);
+
+  // After advance(), about the tick that it computed.
+  /// Reports what differs. pulses: in the order of time, then of joints, without those of failed modules.
+  void compare(std::span<const std::int32_t> setpoints, std::span<const ServoPulse> pulses, HardwareReport& report);
+  /// The module of this joint failed and has not joined again.
+  [[nodiscard]] bool has_failed(unsigned joint) const { return failed_[joint]; }
+  /// The joint still runs in the reference, but its module failed after it had sent its state. The module cannot be
+  /// asked for its values, so the reference's are used.
+  [[nodiscard]] bool stands_in_for(unsigned joint) const { return failed_[joint] && chain().is_running(joint); }
+  /// Debounced touch sensors of a joint, in the bits of the state frame's flags.
+  [[nodiscard]] std::uint8_t contacts(unsigned joint) const { return touch_.contacts()[joint]; }
+  /// By joint, what its algorithms got in the tick.
+  [[nodiscard]] std::span<const JointReadings> readings() const { return readings_; }
+  [[nodiscard]] const KernelChain& chain() const { return gait_.chain(); }
+
+ private:
+  void fail(unsigned joint, HardwareReport& report);
+  void stop(unsigned joint, HardwareReport& report);
+
+  Gait gait_;
+  TouchInputs touch_;
+  std::vector<bool> failed_;  ///< by joint
+  std::vector<JointReadings> readings_;
+  std::vector<ServoPulse> expected_pulses_;
+};
+
+}  // namespace proleg::sim

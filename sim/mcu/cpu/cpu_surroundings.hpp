@@ -1,0 +1,53 @@
+#pragma once
+
+// What the parts of a CPU and their users share: where its memory is, what lies around it, and its faults.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/mcu/cpu/local_time.hpp"
+
+namespace proleg::sim {
+
+/// The memory of a chip, by address.
+struct ChipMemory {
+  static constexpr std::uint32_t flash_start = 0x0800'0000;
+  static constexpr std::uint32_t flash_size = 1024 * 1024;
+  static constexpr std::uint32_t ram_start = 0x2000'0000;
+  static constexpr std::uint32_t ram_size = 128 * 1024;
+  static constexpr std::uint32_t ccm_start = 0x1000'0000;  ///< core-coupled memory
+  static constexpr std::uint32_t ccm_size = 64 * 1024;
+  static constexpr std::uint32_t system_memory_start = 0x1FFF'0000;  ///< with unique id and calibration values
+  static constexpr std::uint32_t system_memory_size = 32 * 1024;
+};
+
+/// What lies behind the CPU's addresses, other than memory and its own system registers.
+class CpuSurroundings {
+ public:
+  /// An access in 0x40000000 to 0x5FFFFFFF, of 1, 2 or 4 bytes; one to a bit-band alias arrives as load and store of
+  /// the word. These are called in the middle of a block: they must not throw, and may use all functions of the CPU
+  /// except reset(), run(), step(), set_breakpoints() and set_core_register().
+  [[nodiscard]] virtual std::uint32_t load(std::uint32_t address, unsigned size) = 0;
+  virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
+  /// A store to flash, which changes nothing by itself: Cpu::write() does. False: the bus rejects it, a fault of the
+  /// program.
+  [[nodiscard]] virtual bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
+  /// For SysTick: local time and period of its clock (HCLK).
+  [[nodiscard]] virtual LocalTime now() const = 0;
+  [[nodiscard]] virtual LocalTime core_period() const = 0;
+  /// SYSRESETREQ. The run ends before the next block; the caller of run() must call reset().
+  virtual void reset_requested() = 0;
+
+ protected:
+  ~CpuSurroundings() = default;
+};
+
+/// What went wrong, and the registers before the instruction that did it.
+struct CpuFault {
+  std::string cause;  ///< "store to 0x20030000, where there is no memory", "undefined instruction" ...
+  std::vector<std::uint32_t> registers;  ///< r0-r12, sp, lr, pc, xpsr
+  bool locked_up = false;                ///< a fault within HardFault or NMI: the CPU stands still
+};
+
+}  // namespace proleg::sim

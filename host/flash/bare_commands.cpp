@@ -14,7 +14,7 @@ using Words = std::vector<std::string>;
 
 std::string address_word(const FlashPart& part) { return hexadecimal(part.address, 8); }
 
-/// ADDRESS:SIZE, as dfu-util and stm32flash take it.
+/// The range ADDRESS:SIZE as an argument of dfu-util and stm32flash.
 std::string range_word(std::uint32_t address, std::uint32_t size) {
   return hexadecimal(address, 8) + ':' + std::to_string(size);
 }
@@ -27,7 +27,7 @@ std::vector<BareStep> openocd_steps() {
            false}};
 }
 
-/// For both protocols of the ROM bootloader.
+/// Makes the steps for both protocols of the ROM bootloader.
 class RomSteps {
  public:
   explicit RomSteps(const BarePlan& plan) : plan_(plan) {}
@@ -46,8 +46,8 @@ class RomSteps {
   }
 
  private:
-  /// stm32flash begins with the byte by which the ROM bootloader measures the baud rate. From the second command on
-  /// that would be taken for a command.
+  /// A command of stm32flash. It begins with the byte by which the ROM bootloader measures the baud rate. The second
+  /// and later commands must omit it, because it would be taken for a command.
   [[nodiscard]] Words stm32flash(const Words& options, const std::string& range) const {
     Words words{"stm32flash", "-b", "115200"};
     if (!steps_.empty()) {
@@ -70,11 +70,11 @@ class RomSteps {
                       result, expected, false});
   }
 
-  /// Neither an exit status nor an answer of the ROM bootloader says that a sector was not protected: so it is read
-  /// back.
+  /// Adds the steps that write a part and read it back: neither an exit status nor an answer of the ROM bootloader
+  /// says that a sector was not protected.
   void write(const std::string& what, const FlashPart& part, std::uint32_t size, const std::string& file) {
-    // With its size: without it stm32flash erases all up to the end of the flash. -f: the file is binary, whatever its
-    // bytes are.
+    // The range has a size: without it stm32flash erases all up to the end of the flash. -f: the file is binary,
+    // whatever its bytes are.
     steps_.push_back({"write " + what,
                       plan_.probe == BareProbe::dfu
                           ? dfu_util(address_word(part), "-D", file)
@@ -152,7 +152,7 @@ shutdown
 void write_sectors(std::ostream& out, const char* indent, const char* file, const FlashPart& part) {
   const std::string address = address_word(part);
   out << indent << "flash erase_address " << address << ' ' << part.size << '\n';
-  // Without its option `erase`, which programs the rest of the sector with 0xFF.
+  // The option `erase` is not used: it programs the rest of the sector with 0xFF.
   out << indent << "flash write_image " << file << ' ' << address << " bin\n";
   out << indent << "verify_image " << file << ' ' << address << " bin\n";
 }
@@ -198,7 +198,7 @@ std::string shell_text(const Words& command) {
     text += '\'';
     for (const char character : word) {
       if (character == '\'') {
-        text += "'\\'";  // ends the quotes, and is one; the next character begins them again
+        text += "'\\'";  // ends the quotes and adds an apostrophe; the next character opens the quotes again
       }
       text += character;
     }

@@ -1,8 +1,8 @@
 #pragma once
 
 // What puts a bootloader and a first image on an empty STM32F405: the command lines of openocd (ST-LINK, SWD), of
-// dfu-util (the chip's ROM bootloader over USB, AN3156) and of stm32flash (the same over a UART, AN3155). Only text, no
-// input or output.
+// dfu-util (the chip's ROM bootloader over USB, AN3156) and of stm32flash (that bootloader over a UART, AN3155). Text
+// only, no input or output.
 //
 // The order is: board record, image, bootloader, option bytes. The chip starts from sector 0, so that is written when
 // all that it starts is there, and it is protected when it is right. Each step writes the same bytes again at a second
@@ -15,7 +15,7 @@
 
 namespace proleg::host {
 
-/// How the computer reaches the chip.
+/// The way in which the computer reaches the chip.
 enum class BareProbe : std::uint8_t {
   stlink,  ///< openocd
   dfu,     ///< dfu-util; BOOT0 is high
@@ -33,7 +33,7 @@ namespace bare_file {
 inline constexpr const char* bootloader = "bootloader.bin";
 inline constexpr const char* image = "image.pimg";
 inline constexpr const char* settings = "settings.bin";  ///< settings_file_size() bytes, 0xFF behind the record
-inline constexpr const char* present = "present.bin";    ///< what the chip has where the bootloader goes
+inline constexpr const char* present = "present.bin";    ///< the bytes of the chip in the place of the bootloader
 inline constexpr const char* script = "bare.tcl";
 }  // namespace bare_file
 
@@ -53,7 +53,7 @@ struct BareStep {
   std::vector<std::string> command;      ///< the program and its arguments; no shell takes part
   std::string result;                    ///< a file that the command writes; empty: none
   std::string expected;                  ///< a file that the result must equal; empty: the result decides (see below)
-  bool is_for_other_bootloader = false;  ///< only if `present` differs from `bootloader`
+  bool is_for_other_bootloader = false;  ///< the step is needed only if `present` differs from `bootloader`
 };
 
 /// Bytes of the file with a board record of record_size bytes. dfu-util erases the sectors that it writes to, and all
@@ -63,8 +63,8 @@ struct BareStep {
 /// The steps in their order. With openocd there is one, which runs bare_script().
 [[nodiscard]] std::vector<BareStep> bare_steps(const BarePlan& plan);
 
-/// The script for openocd, in Tcl. It writes option bytes, too: brown-out level 3 and the write protection of sector 0,
-/// each only if the chip does not have it.
+/// The script for openocd, in Tcl. It also writes option bytes: brown-out level 3 and the write protection of sector
+/// 0, each only if the chip does not have it.
 [[nodiscard]] std::string bare_script(const BarePlan& plan);
 
 /// Whether the steps set the option bytes. The ROM bootloader takes them, too, but as 16 bytes with the read protection

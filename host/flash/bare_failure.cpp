@@ -7,7 +7,7 @@
 namespace proleg::host {
 namespace {
 
-/// What a program prints, in the versions of Debian 12, and what it means.
+/// A text that a program prints, in the version of Debian 12, and its meaning.
 struct Symptom {
   std::string_view text;
   std::string_view meaning;
@@ -15,7 +15,7 @@ struct Symptom {
 
 constexpr std::string_view udev_hint = "host/udev/70-proleg.rules gives them to you; the file says how to install it";
 
-// The first that fits counts: the causes come before their consequences.
+// The first symptom that fits counts: causes are listed before their consequences.
 constexpr Symptom openocd_symptoms[] = {
     {"LIBUSB_ERROR_ACCESS", "found an ST-LINK without the rights to open it, expected rights: "},
     {"LIBUSB_ERROR_BUSY", "found an ST-LINK that another program uses, expected a free one: close it"},
@@ -75,7 +75,7 @@ std::string missing_program(const std::string& program) {
 }
 
 std::string bare_failure(const BarePlan& plan, const BareStep& step, std::string_view output) {
-  // A line of bare_script().
+  // The beginning of a line that bare_script() prints.
   constexpr std::string_view refused = "refused: ";
   if (const std::size_t at = output.find(refused); at != std::string_view::npos) {
     const std::string_view rest = output.substr(at + refused.size());

@@ -7,13 +7,14 @@
 
 namespace proleg::host {
 
-/// What a person can do about a step (bare_steps()) whose program is not installed: one line.
+/// One line that says what a person can do about a step (bare_steps()) whose program is not installed.
 [[nodiscard]] std::string missing_program(const std::string& program);
 
-/// The same for a program that has failed. output: all that it has printed.
+/// One line that says what a person can do about a step whose program has failed. output: all text that it has
+/// printed.
 [[nodiscard]] std::string bare_failure(const BarePlan& plan, const BareStep& step, std::string_view output);
 
-/// The same for a result that is not what was written.
+/// One line that says what a person can do about a step whose result differs from the bytes that were written.
 [[nodiscard]] std::string bare_difference(const BareStep& step);
 
 }  // namespace proleg::host

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "host/flash/image_file.hpp"
-#include "host/flash/program_format.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
@@ -36,7 +35,7 @@ std::string range_text(const FlashPart& sector) {
   return hexadecimal(sector.address, 8) + " to " + hexadecimal(sector.address + sector.size - 1, 8);
 }
 
-/// Of the parts of an ELF file that are loaded, where the flash holds them (physical addresses).
+/// The bytes of the loaded parts of an ELF file, in their places in the flash (physical addresses).
 std::vector<std::uint8_t> flash_contents(const std::string& file, Bytes elf, const FlashPart& sector) {
   if (elf.size() < elf_header_size || elf[class_at] != 1 || elf[data_at] != 1 ||
       read_little_endian(elf, machine_at, 2) != arm || read_little_endian(elf, entry_size_at, 2) != entry_size) {
@@ -56,7 +55,7 @@ std::vector<std::uint8_t> flash_contents(const std::string& file, Bytes elf, con
     if (read_little_endian(elf, entry, 4) != loaded || size == 0) {
       continue;
     }
-    // In 64 bits: the sum of two words of a damaged file may be more than 32 bits hold.
+    // The sum needs 64 bits: that of two numbers of a damaged file may be more than 32 bits hold.
     if (address < sector.address || std::uint64_t{address} + size > std::uint64_t{sector.address} + sector.size) {
       reject(file,
              "a program with bytes from " + hexadecimal(address, 8) + " to " +
@@ -99,7 +98,7 @@ std::vector<std::uint8_t> bootloader_of(const std::string& file, Bytes bytes, co
 }
 
 std::vector<std::uint8_t> read_bootloader(const std::string& file, const FlashPart& sector) {
-  // Debug information makes ELF files larger than what is read; what is loaded comes before it.
+  // Debug information can make an ELF file larger than the bytes that are read; the loaded parts come before it.
   return bootloader_of(file, read_bytes(file, a_bootloader), sector);
 }
 

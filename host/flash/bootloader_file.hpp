@@ -14,7 +14,7 @@ namespace proleg::host {
 /// InputError for anything else, and for a bootloader that does not fit into the sector, or does not start there.
 [[nodiscard]] std::vector<std::uint8_t> bootloader_of(const std::string& file, std::span<const std::uint8_t> bytes,
                                                       const FlashPart& sector);
-/// The same of a file that is read.
+/// Reads a file and returns bootloader_of() its bytes.
 [[nodiscard]] std::vector<std::uint8_t> read_bootloader(const std::string& file, const FlashPart& sector);
 
 }  // namespace proleg::host

@@ -25,7 +25,7 @@ std::string board_text(const image::Header& image) {
 
 FlashVerdict refuse(const std::string& why) { return {FlashAction::refuse, why}; }
 
-/// What else is new beside the version.
+/// Text about differences of the images beside the version.
 std::string changes(const image::Header& before, const image::Header& after) {
   std::string text;
   if (before.protocol != after.protocol) {

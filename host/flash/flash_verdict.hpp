@@ -1,6 +1,6 @@
 #pragma once
 
-// What flashing an image would do to a module, before anything is sent.
+// Decides what flashing an image would do to a module, before anything is sent.
 
 #include <cstdint>
 #include <string>
@@ -12,9 +12,9 @@ namespace proleg::host {
 /// A module that may be flashed.
 struct FlashCandidate {
   ModuleProgram program;
-  std::uint8_t node = 0;       ///< 0: none
+  std::uint8_t node = 0;       ///< node id; 0: the module has none
   std::uint16_t board_id = 0;  ///< object 0x1018:2
-  bool serves_objects = true;  ///< over SDO; else only LSS has found it
+  bool serves_objects = true;  ///< the module answers SDO; otherwise only LSS has found it
 };
 
 struct FlashPermissions {
@@ -24,26 +24,26 @@ struct FlashPermissions {
 
 enum class FlashAction : std::uint8_t {
   install,
-  nothing,  ///< it runs this image, confirmed
+  nothing,  ///< the module runs this image, confirmed
   refuse,
 };
 
 struct FlashVerdict {
   FlashAction action = FlashAction::refuse;
-  std::string text;  ///< what changes, or why not; without a full stop
+  std::string text;  ///< what changes, or why nothing changes; without a full stop
 };
 
 [[nodiscard]] FlashVerdict judge(const image::Header& image, const FlashCandidate& module,
                                  const FlashPermissions& permissions);
 
-/// "0.1.0".
+/// The number of a version, such as "0.1.0".
 [[nodiscard]] std::string version_number_text(const image::Version& version);
-/// "0.1.0 (5267b59d)", with a "+" behind the commit of changed sources.
+/// The version of an image, such as "0.1.0 (5267b59d)", with a "+" behind the commit of changed sources.
 [[nodiscard]] std::string version_text(const image::Header& image);
-/// "5267b59d", or "unknown".
+/// The commit of an image, such as "5267b59d", or "unknown".
 [[nodiscard]] std::string commit_text(const image::Header& image);
 
-/// Whether two headers are those of the same image.
+/// Whether two headers belong to the same image.
 [[nodiscard]] bool is_same_image(const image::Header& one, const image::Header& other);
 
 }  // namespace proleg::host

@@ -35,7 +35,7 @@ void ModuleQuery::next_module(Microseconds now) {
   }
 }
 
-/// The state first; then the words of the header that are missing, some at a time.
+/// Requests the state first; then the words of the header that are missing, some at a time.
 void ModuleQuery::ask(Microseconds now) {
   waiting_.clear();
   if (!module().has_answered) {
@@ -91,7 +91,7 @@ void ModuleQuery::receive(Microseconds now, const CanFrame& frame) {
 void ModuleQuery::take_word(Microseconds now, const broadcast::HeaderWord& word) {
   const auto found = std::ranges::find(missing_, word.number);
   if (found == missing_.end()) {
-    return;  // it was asked for twice
+    return;  // the word was requested twice
   }
   write_little_endian(bytes_, 4U * word.number, 4, word.value);
   const bool was_asked = found - missing_.begin() < static_cast<std::ptrdiff_t>(asked_);

@@ -1,7 +1,8 @@
 #pragma once
 
-// What modules say of the program that they run (shared/broadcast/transfer_frame.hpp): their state, and the header of
-// the image in slot A. Bootloaders and programs answer alike, also without a node id, and when two have the same one.
+// Reads what modules report about the program that they run (shared/broadcast/transfer_frame.hpp): their state, and
+// the header of the image in slot A. Bootloaders and programs answer in the same way, also without a node id, and when
+// two have the same node id.
 
 #include <cstdint>
 #include <deque>
@@ -17,16 +18,17 @@ namespace proleg::host {
 struct ModuleProgram {
   std::uint32_t serial = 0;  ///< object 0x1018:4
   bool has_answered = false;
-  broadcast::StatusAnswer status{};    ///< if it has answered
-  std::optional<image::Header> image;  ///< nothing: there is none, or its header is damaged
+  broadcast::StatusAnswer status{};    ///< valid if the module has answered
+  std::optional<image::Header> image;  ///< nothing: there is no image, or its header is damaged
 
   [[nodiscard]] bool is(std::uint8_t flag) const { return (status.condition.flags & flag) != 0; }
 };
 
 struct ModuleQueryOptions {
-  /// Of an answer, at first; then four times the longest one of a module, doubled with each attempt.
+  /// Timeout of the first answer of a module; later it is four times the longest answer of the module, doubled with
+  /// each attempt.
   Microseconds answer_timeout_us = 60'000;
-  unsigned attempts = 8;  ///< of a request until it is answered
+  unsigned attempts = 8;  ///< number of attempts of a request without an answer
 };
 
 class ModuleQuery final : public BusUser {
@@ -36,10 +38,10 @@ class ModuleQuery final : public BusUser {
   ModuleQuery(const ModuleQuery&) = delete;
   ModuleQuery& operator=(const ModuleQuery&) = delete;
 
-  /// Asks one module after the other: two answers would have the same identifier.
+  /// Asks one module after the other, because two answers would have the same identifier.
   void start(Microseconds now, const std::vector<std::uint32_t>& serials);
   [[nodiscard]] bool is_done() const { return next_ == modules_.size(); }
-  /// In the order of the serial numbers given.
+  /// The programs of the modules, in the order of the serial numbers given.
   [[nodiscard]] const std::vector<ModuleProgram>& modules() const { return modules_; }
 
   void receive(Microseconds now, const CanFrame& frame) override;
@@ -48,10 +50,11 @@ class ModuleQuery final : public BusUser {
   [[nodiscard]] Microseconds next_deadline() const override { return is_done() ? never : deadline_; }
 
  private:
-  /// Words of a header that are not always 0: up to the signature, and the CRC at the end.
+  /// Number of the first words of a header, up to the signature. Those behind them, except the CRC at the end, are
+  /// always 0.
   static constexpr unsigned first_words = 40;
   static constexpr unsigned last_word = image::header_size / 4 - 1;
-  /// Requests to a module that wait for their answers: it answers them in order.
+  /// Greatest number of requests to a module that wait for answers; it answers them in order.
   static constexpr std::size_t max_parallel = 4;
 
   void begin_module(Microseconds now);
@@ -64,11 +67,11 @@ class ModuleQuery final : public BusUser {
   CanPort& port_;
   ModuleQueryOptions options_;
   std::vector<ModuleProgram> modules_;
-  std::size_t next_ = 0;          ///< the module that is asked
-  std::deque<CanFrame> waiting_;  ///< the port had no room for them
+  std::size_t next_ = 0;          ///< index of the module that is asked
+  std::deque<CanFrame> waiting_;  ///< frames for which the port had no room
   image::HeaderBytes bytes_{};
-  std::vector<std::uint8_t> missing_;  ///< words, in the order in which they are asked for
-  std::size_t asked_ = 0;              ///< of these
+  std::vector<std::uint8_t> missing_;  ///< missing words, in the order of their requests
+  std::size_t asked_ = 0;              ///< number of missing words that were requested
   unsigned attempt_ = 0;
   Microseconds asked_at_ = 0;
   Microseconds longest_answer_ = 0;

@@ -17,7 +17,7 @@ Microseconds duration_of(const CanFrame& frame) {
   return static_cast<Microseconds>(average_bits(frame) * 1e6 / bus_bit_rate);
 }
 
-/// Errors that the host's image cannot have: something has changed it on the way.
+/// Whether an error shows that the image was changed on the way: the host's image cannot have it.
 bool is_damage(std::uint8_t detail) {
   switch (static_cast<image::Error>(detail)) {
     case image::Error::not_an_image:
@@ -91,7 +91,8 @@ void RobotUpdate::start(Microseconds now) {
   follow_sender(now);
 }
 
-/// In a session of its own: the modules that have installed the image wait for the end of theirs.
+/// Sends the image again in a session of its own, because the modules that have installed it wait for the end of
+/// theirs.
 void RobotUpdate::send_again(Microseconds now, const std::vector<std::uint32_t>& serials) {
   enter(now, Step::transfer);
   for (UpdatedModule& module : modules_) {
@@ -226,7 +227,7 @@ void RobotUpdate::take_results() {
     } else if (status.state == ReceiverState::failed) {
       module.outcome = UpdateOutcome::flash_failed;
     }
-    // What answers no more may be restarting: that is seen below.
+    // A module that does not answer may be restarting; the code below finds out.
   }
 }
 
@@ -245,7 +246,7 @@ void RobotUpdate::enter(Microseconds now, Step step) {
   }
 }
 
-/// It has no answer, so that it may be lost.
+/// Sends the frame that ends the sessions several times, because it has no answer and may be lost.
 void RobotUpdate::send_leave(Microseconds /*now*/) {
   std::uint8_t session = options_.session;
   for (unsigned attempt = 0; attempt < attempts_; ++attempt, session = after(session)) {

@@ -12,7 +12,7 @@ void AnswerTimes::requested(Microseconds now, const CanFrame& frame) {
   }
   std::optional<Request>& waiting = waiting_.at(node);
   if (frame.length > 0 && frame.data[0] == canopen::sdo::abort) {
-    waiting.reset();  // it has no answer
+    waiting.reset();  // the old request has no answer
   } else if (!waiting || waiting->frame != frame) {
     waiting = Request{now, frame};
   }

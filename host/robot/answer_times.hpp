@@ -10,9 +10,10 @@
 
 namespace proleg::host {
 
-/// How long modules take to answer SDO requests of this host: from the moment when the transport took the request until
-/// the answer came. A request that is repeated counts from its first time on; one without an answer does not count.
-/// To be attached to the bus before the users that send requests: it must see an answer before they do.
+/// Measures how long modules take to answer SDO requests of this host: from the moment when the transport took the
+/// request until the answer was received. A request that is repeated counts from its first time on; one without an
+/// answer does not count. It must be attached to the bus before the users that send requests, because it must see an
+/// answer before they do.
 class AnswerTimes final : public BusUser {
  public:
   void requested(Microseconds now, const CanFrame& frame) override;
@@ -25,7 +26,7 @@ class AnswerTimes final : public BusUser {
     Microseconds time;
     CanFrame frame;
   };
-  std::array<std::optional<Request>, canopen::host_node> waiting_;  ///< by node
+  std::array<std::optional<Request>, canopen::host_node> waiting_;  ///< requests without an answer, by node
   Durations microseconds_;
 };
 

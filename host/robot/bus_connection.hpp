@@ -1,6 +1,6 @@
 #pragma once
 
-// A bus that the state machines of a host program share: hands them frames and times, in one thread.
+// A bus that the state machines of a host program share. It passes frames and times to them, in one thread.
 
 #include <array>
 #include <bitset>
@@ -19,20 +19,20 @@ class BusConnection final : public CanPort, private TransportListener {
  public:
   /// Opens a transport that reports to the given listener. Throws TransportError.
   using Open = std::function<std::unique_ptr<Transport>(TransportListener& listener)>;
-  /// Signals of the operating system are noticed after this time.
+  /// Longest time after which signals of the operating system are noticed.
   static constexpr Microseconds longest_wait_us = 20'000;
 
   explicit BusConnection(const Open& open);
   BusConnection(const BusConnection&) = delete;
   BusConnection& operator=(const BusConnection&) = delete;
 
-  /// CanPort: of all users.
+  /// Sends a frame of any user.
   [[nodiscard]] bool send(const CanFrame& frame) override;
 
   [[nodiscard]] Microseconds now() const { return transport_->now(); }
   /// Lets time pass until `done` returns true, at most until the deadline. Returns whether it is done.
   bool run_until(Microseconds deadline, const std::function<bool()>& done);
-  /// The same for a duration, whatever happens.
+  /// Lets time pass for a duration.
   void run_for(Microseconds duration) {
     run_until(now() + duration, [] { return false; });
   }
@@ -43,7 +43,7 @@ class BusConnection final : public CanPort, private TransportListener {
 
   /// Nodes that have sent a frame of their own (heartbeat, EMCY, SDO answer, state frame, monitoring).
   [[nodiscard]] const std::bitset<128>& heard() const { return heard_; }
-  /// After a time-out: what is known about the bus, and what to look at. One line, which begins in lower case.
+  /// One line for a timeout, which begins in lower case: what is known about the bus, and what to check.
   [[nodiscard]] std::string diagnosis() const;
 
  private:
@@ -58,10 +58,10 @@ class BusConnection final : public CanPort, private TransportListener {
   template <typename Call>
   void for_each_user(Call&& call);
 
-  std::vector<BusUser*> users_;  ///< null: detached while they are called
-  unsigned calls_ = 0;           ///< nested for_each_user()
+  std::vector<BusUser*> users_;  ///< null: a user that was detached while users are called
+  unsigned calls_ = 0;           ///< number of nested calls of for_each_user()
   std::bitset<128> heard_;
-  std::uint64_t requested_ = 0;  ///< frames that the transport took
+  std::uint64_t requested_ = 0;  ///< number of frames that the transport took
   std::unique_ptr<Transport> transport_;
 };
 

@@ -14,7 +14,7 @@ namespace object = canopen::object;
 
 constexpr unsigned attempts = 4;
 constexpr Microseconds answer_timeout_us = 60'000;
-constexpr std::uint8_t read_errors = 4;  // the newest of 0x1003
+constexpr std::uint8_t read_errors = 4;  // number of the newest entries of 0x1003 that are read
 constexpr double microseconds_per_second = 1e6;
 
 BusScanOptions scan_options() {
@@ -51,7 +51,7 @@ void BusExamination::start(Microseconds now) {
 
 OwnEnd BusExamination::watch_own_end() {
   OwnEnd own = read_own_end_();
-  // An old state counts only if it stays, or comes again.
+  // An old state counts only if it stays, or returns.
   const CanState state = own.state.controller.state;
   if (state != last_controller_state_ || step_ == Step::done) {
     observations_.worst_controller_state = std::max(observations_.worst_controller_state, state);
@@ -97,7 +97,8 @@ void BusExamination::listen(const CanFrame& frame) {
 void BusExamination::note_sync(std::uint8_t counter) {
   ++observations_.syncs;
   if (sync_counter_) {
-    // An adapter that loses frames lets it step forwards, not backwards or nowhere.
+    // An adapter that loses frames makes the counter skip forwards. It causes no counter that stays or steps
+    // backwards.
     const unsigned step = (unsigned{counter} + canopen::sync_counters - *sync_counter_) % canopen::sync_counters;
     observations_.sync_jumps += step == 0 || step > canopen::sync_counters / 2 ? 1U : 0U;
   }
@@ -111,7 +112,7 @@ void BusExamination::note_node(Microseconds now, const CanFrame& frame) {
     node.state = heartbeat->state;
     if (heartbeat->state == canopen::NmtState::boot_up) {
       ++node.boot_ups;
-      node.state.reset();  // what follows is not known
+      node.state.reset();  // the state after the boot-up is not known
       if (step_ == Step::listening) {
         listening_until_ = std::max(
             listening_until_, std::min(now + options_.after_boot_up_us, started_ + options_.longest_listening_us));
@@ -174,7 +175,7 @@ void BusExamination::end_listening(Microseconds now) {
   observations_.busiest_identifier = static_cast<std::uint16_t>(busiest - bits_.begin());
   observations_.busiest_load = std::min(1.0, *busiest / bits);
   observations_.load = std::min(1.0, std::accumulate(bits_.begin(), bits_.end(), 0.0) / bits);
-  // Requests at another bit rate than that of the others destroy their frames.
+  // Requests at a bit rate that differs from that of the other nodes destroy their frames.
   const bool is_foreign_bit_rate = observations_.frames == 0 && observations_.errors > 0;
   if (is_foreign_bit_rate || !own.state.is_connected) {
     finish(true);
@@ -218,7 +219,7 @@ void BusExamination::read_details(Microseconds now) {
 
 void BusExamination::search(Microseconds now) {
   step_ = Step::searching;
-  // An LSS master of another host would meet the answers, and a robot that moves has priority.
+  // An LSS master of another host would receive the answers, and a robot that moves has priority.
   if (observations_.host_heartbeats > 0 || scan_.has_host() || observations_.syncs > 0 || scan_.syncs() > 0) {
     finish(true);
     return;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Collects what is needed to say what is wrong with a bus and the robot on it. It listens first; then it asks, as
-// BusScan does. It only reads, and disturbs no robot that moves.
+// Collects the facts about a bus and the robot on it from which faults are found. It listens first; then it sends
+// requests, like BusScan. It only reads, and disturbs no robot that moves.
 
 #include <array>
 #include <cstdint>
@@ -19,10 +19,10 @@ namespace proleg::host {
 
 struct BusExaminationOptions {
   Microseconds listening_us = 1'000'000;
-  /// At least so long after the last boot-up: whether a module that boots does so again.
+  /// Shortest time from the last boot-up to the end, in which a module may boot again.
   Microseconds after_boot_up_us = 1'500'000;
   Microseconds longest_listening_us = 4'000'000;
-  /// A request that is not on the bus by then shows that no node acknowledges, or that there is no room on the bus.
+  /// Time after which a request that is not on the bus shows that no node acknowledges, or that the bus has no room.
   Microseconds send_timeout_us = 1'500'000;
   Microseconds longest_asking_us = 30'000'000;
 };
@@ -31,14 +31,15 @@ class BusExamination final : public BusUser {
  public:
   using ReadOwnEnd = std::function<OwnEnd()>;
 
-  /// port: must outlive the examination. read_own_end: the state of the port, and its numbers since it was opened.
+  /// port: must outlive the examination. read_own_end: returns the state of the port, and its numbers since it was
+  /// opened.
   BusExamination(CanPort& port, ReadOwnEnd read_own_end, const BusExaminationOptions& options = {});
   BusExamination(const BusExamination&) = delete;
   BusExamination& operator=(const BusExamination&) = delete;
 
   void start(Microseconds now);
   [[nodiscard]] bool is_done() const { return step_ == Step::done; }
-  /// After it is done.
+  /// The observations, complete after the examination has ended.
   [[nodiscard]] const BusObservations& observations() const { return observations_; }
 
   void receive(Microseconds now, const CanFrame& frame) override;
@@ -67,10 +68,10 @@ class BusExamination final : public BusUser {
   SilentModules silent_;
   Step step_ = Step::idle;
   BusObservations observations_;
-  std::array<ObservedNode, canopen::host_node> nodes_{};  ///< by node id; 0: not heard
+  std::array<ObservedNode, canopen::host_node> nodes_{};  ///< nodes by node id; 0: not heard
   std::optional<std::uint8_t> sync_counter_;
-  std::vector<double> bits_;  ///< by identifier
-  OwnEnd first_;              ///< at the start
+  std::vector<double> bits_;  ///< bits of the frames, by identifier
+  OwnEnd first_;              ///< own end at the start
   CanState last_controller_state_ = CanState::error_active;
   std::uint64_t transmitted_ = 0;
   Microseconds started_ = 0;

@@ -15,9 +15,10 @@ namespace {
 using canopen::EmergencyCode;
 
 constexpr double full_load = canopen::max_bus_load_permille / 1000.0;
-/// No message of a robot takes so much: a state frame in the shortest tick, 1 ms, takes 0.135.
+/// Load of one message above which its node is faulty. No message of a robot reaches it: a state frame in the shortest
+/// tick, 1 ms, takes 0.135.
 constexpr double babbling_load = 0.25;
-/// Fewer errors come from a plug that was just put in.
+/// Smallest number of errors that counts: a plug that was just put in can cause fewer.
 constexpr std::uint64_t few_errors = 3;
 
 constexpr std::string_view wires =
@@ -28,15 +29,15 @@ std::string percent(double share) { return std::to_string(static_cast<int>(share
 
 bool has_error(const BusObservations& seen, CanErrorKind kind) { return seen.own.state.errors.contains(kind); }
 
-/// Errors in the bits themselves.
+/// Whether there were errors in the bits themselves.
 bool has_bit_errors(const BusObservations& seen) {
   return has_error(seen, CanErrorKind::crc) || has_error(seen, CanErrorKind::form) ||
          has_error(seen, CanErrorKind::stuff) || has_error(seen, CanErrorKind::bit_dominant) ||
          has_error(seen, CanErrorKind::bit_recessive);
 }
 
-/// Others send, or the wires are damaged. A node that is only not acknowledged never becomes bus-off, and its receive
-/// error counter stays 0 (ISO 11898-1). Drivers of Linux report kinds of errors only if they are told to.
+/// Whether other nodes send, or the wires are damaged. A node that is only not acknowledged never becomes bus-off, and
+/// its receive error counter stays 0 (ISO 11898-1). Drivers of Linux report kinds of errors only on request.
 bool has_signals(const BusObservations& seen) {
   return has_bit_errors(seen) || seen.own.state.controller.receive_errors > 0 ||
          seen.worst_controller_state == CanState::bus_off;
@@ -131,7 +132,7 @@ constexpr unsigned fault_bits = 0x4F;
 constexpr unsigned fault = 0x08;
 constexpr unsigned fault_reaction = 0x0F;
 
-/// A cause of Fault: its bit in the error register (0x1001, CiA 301), and what a person does.
+/// A cause of Fault: its bit in the error register (0x1001, CiA 301), and its remedy.
 struct Cause {
   EmergencyCode code;
   unsigned register_bit;
@@ -163,7 +164,7 @@ bool contains(const std::vector<EmergencyCode>& codes, EmergencyCode code) {
   return std::ranges::find(codes, code) != codes.end();
 }
 
-/// The cause of the Fault of a node: the one that is present now, else the one that it reported last.
+/// The cause of the Fault of a node: the present cause, or the one that the node reported last.
 const Cause* cause_of(const ObservedNode& node) {
   for (const Cause& cause : causes) {
     if ((node.answers->error_register & cause.register_bit) != 0) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Findings of the wires and of the drives. find_bus_faults() puts them in order with the others.
+// Finds faults of the wires and of the drives. find_bus_faults() puts them in order with the others.
 
 #include <cstdint>
 #include <optional>
@@ -16,22 +16,23 @@ namespace proleg::host {
 struct Finding {
   std::string_view code;  ///< one word for programs, such as "duplicate_node_id"; see docs/robot-on-the-table.md
   std::string what;       ///< one sentence or two: what was found, and what it means
-  std::string to_do;      ///< the same: what the person does
-  std::vector<std::uint8_t> nodes;  ///< that it is about
+  std::string to_do;      ///< one sentence or two: what the person should do
+  std::vector<std::uint8_t> nodes;  ///< nodes that have the fault
 };
 
-/// "node 3", "nodes 1, 2, 5".
+/// The text for some nodes: "node 3", "nodes 1, 2, 5".
 [[nodiscard]] std::string nodes_text(const std::vector<std::uint8_t>& nodes);
 
-/// Why not one frame of another node was received; nothing if some were. It explains all else.
+/// Finds the reason why no frame of another node was received, which explains all other faults; nothing if some were
+/// received.
 [[nodiscard]] std::optional<Finding> find_dead_bus(const BusObservations& observations, const BusAddress& address);
 
-/// Errors on the wires, and a bus that is full.
+/// Finds errors on the wires, and a bus that is full.
 [[nodiscard]] std::vector<Finding> find_wire_faults(const BusObservations& observations, const BusAddress& address);
 
-/// Drives that have switched their servo off (Fault), by cause.
+/// Finds drives that have switched their servo off (Fault), by cause.
 [[nodiscard]] std::vector<Finding> find_drive_faults(const BusObservations& observations);
-/// Drives that hold their safe pose (quick stop).
+/// Finds drives that hold their safe pose (quick stop).
 [[nodiscard]] std::optional<Finding> find_quick_stop(const BusObservations& observations);
 
 }  // namespace proleg::host

@@ -50,7 +50,7 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
     }
   } else if (identifier::base_of(frame.identifier) != identifier::sdo_answer) {
     readings_.receive(now, frame);
-    return;  // a request to the node, not from it
+    return;  // this is a request to the node, not an answer
   }
   node.last_heard = now;
   readings_.receive(now, frame);

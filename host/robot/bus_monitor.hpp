@@ -1,6 +1,6 @@
 #pragma once
 
-// What happens on the bus of a robot, for a person who watches: listens, and reads the set-points of the modules.
+// Shows the events on the bus of a robot to a person: listens, and reads the set-points of the modules.
 
 #include <array>
 #include <bitset>
@@ -14,10 +14,10 @@
 
 namespace proleg::host {
 
-/// A node, as it is known at the moment.
+/// The present knowledge about a node.
 struct MonitoredNode {
   std::uint8_t node = 0;
-  std::optional<canopen::NmtState> state;   ///< by its last heartbeat
+  std::optional<canopen::NmtState> state;   ///< state in the last heartbeat of the node
   std::optional<std::int32_t> setpoint;     ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
   std::optional<std::uint16_t> statusword;  ///< 0x6041
   std::optional<canopen::Monitoring> measured;       ///< angle, current, temperature, error register
@@ -37,16 +37,17 @@ class BusMonitor final : public BusUser {
   BusMonitor(const BusMonitor&) = delete;
   BusMonitor& operator=(const BusMonitor&) = delete;
 
-  /// Whether it reads values from the modules; true at first. Without them it only listens.
+  /// Sets whether the monitor reads values from the modules; true at first. Without them it only listens.
   void set_reads(bool reads) { reads_ = reads; }
-  /// Limits are read once from each module, and again after its restart. After this call, all of them again.
+  /// Reads the limits of all modules again. Otherwise they are read once from each module, and again after its
+  /// restart.
   void read_limits_again() { has_limit_.reset(); }
 
   [[nodiscard]] std::vector<MonitoredNode> nodes() const;
   /// Whether a host has sent a heartbeat in the last half second.
   [[nodiscard]] bool has_host(Microseconds now) const { return host_heard_ != 0 && now < host_heard_ + 500'000; }
-  /// Since the last call: SYNCs, frames of any kind (also of this host), and the share of the bus that they took, 0 to
-  /// 1, with an average number of stuff bits.
+  /// Numbers since the last call: SYNCs, frames of any kind (also of this host), and the share of the bus that they
+  /// took, 0 to 1, with an average number of stuff bits.
   struct Traffic {
     unsigned syncs;
     std::uint64_t frames;
@@ -66,7 +67,7 @@ class BusMonitor final : public BusUser {
 
   SdoQueue readings_;
   std::array<MonitoredNode, canopen::host_node> nodes_{};
-  std::bitset<canopen::host_node> has_limit_;  ///< by node: it has answered, also that it has none
+  std::bitset<canopen::host_node> has_limit_;  ///< by node: the node has answered, also that it has no limit
   bool reads_ = true;
   Microseconds host_heard_ = 0;
   Microseconds next_reading_ = 0;

@@ -147,7 +147,7 @@ void BusScan::receive(Microseconds now, const CanFrame& frame) {
   const std::uint8_t node = identifier::node_of(frame.identifier);
   if (identifier::base_of(frame.identifier) == identifier::sdo_answer && node >= canopen::min_node_id &&
       node <= canopen::max_node_id) {
-    seen_.at(node).is_heard = true;  // also by an answer that comes too late
+    seen_.at(node).is_heard = true;  // a late answer counts, too
   }
   probes_.receive(now, frame);
   inquiries_.receive(now, frame);
@@ -179,7 +179,7 @@ void BusScan::finish(Microseconds now) {
   if (!has_listened_ || !probes_.is_idle() || !inquiries_.is_idle()) {
     return;
   }
-  // A node that is there but has not answered may only be slow, or the computer is.
+  // A present node that has not answered may only be slow, or this computer is.
   if (!has_asked_again_) {
     has_asked_again_ = true;
     for (std::uint8_t node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Who is on a bus: listens, asks every node id for its device type, then asks those that answered who they are. It only
-// reads, and changes nothing.
+// Finds the nodes on a bus: listens, reads the device type of every node id, then the identity of those that have
+// answered. It only reads, and changes nothing.
 
 #include <array>
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace proleg::host {
 /// A node on the bus.
 struct ScannedNode {
   std::uint8_t node = 0;
-  bool has_answered = false;               ///< else it was heard only
-  std::optional<canopen::NmtState> state;  ///< by its heartbeat; nothing: it sends none
+  bool has_answered = false;               ///< whether the node has answered; otherwise it was only heard
+  std::optional<canopen::NmtState> state;  ///< state in its heartbeat; nothing: the node sends no heartbeats
   std::uint32_t device_type = 0;           ///< 0x1000
   std::uint32_t vendor = 0;                ///< 0x1018:1 to 4
   std::uint32_t product = 0;
@@ -28,7 +28,7 @@ struct ScannedNode {
   std::string name;      ///< 0x1008; empty if it was not read
   std::string hardware;  ///< 0x1009
   std::string software;  ///< 0x100A
-  // Of a joint module only:
+  // The members below are for a joint module only.
   bool is_module = false;
   std::uint16_t protocol = 0;          ///< 0x2000:1
   std::uint32_t core_fingerprint = 0;  ///< 0x2000:3
@@ -39,11 +39,11 @@ struct ScannedNode {
 
 struct BusScanOptions {
   Microseconds listening_us = 250'000;      ///< heartbeats have a period of 100 ms; the scan takes at least this long
-  Microseconds answer_timeout_us = 60'000;  ///< of each request
-  unsigned attempts = 2;                    ///< of the first request to each node id
-  unsigned further_attempts = 8;            ///< of requests to a node that has answered, or was heard
-  /// Of the request to modules without a node id, spread over the time that the scan listens: on most buses nobody
-  /// answers it, so its loss shows in nothing else.
+  Microseconds answer_timeout_us = 60'000;  ///< timeout of each request
+  unsigned attempts = 2;                    ///< attempts of the first request to each node id
+  unsigned further_attempts = 8;            ///< attempts of requests to a node that has answered, or was heard
+  /// Attempts of the request to modules without a node id, spread over the time that the scan listens: on most buses
+  /// no module answers it, so nothing else would show its loss.
   unsigned fresh_attempts = 5;
 };
 
@@ -57,13 +57,13 @@ class BusScan final : public BusUser {
   void start(Microseconds now);
   [[nodiscard]] bool is_done() const { return is_done_; }
 
-  /// After it is done: the nodes by node id.
+  /// The nodes in the order of node ids, complete after the scan has ended.
   [[nodiscard]] std::vector<ScannedNode> nodes() const;
-  /// Whether a host, node 127, sends heartbeats: somebody drives the robot.
+  /// Whether a host, node 127, sends heartbeats, and so drives the robot.
   [[nodiscard]] bool has_host() const { return has_host_; }
   /// Whether modules without a node id answer LSS.
   [[nodiscard]] bool has_fresh_modules() const { return has_fresh_; }
-  /// SYNCs heard, and frames of any kind.
+  /// Number of SYNCs that were received, and of frames of any kind.
   [[nodiscard]] unsigned syncs() const { return syncs_; }
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   /// Node ids of modules that have reported, since the start, that another node uses theirs.
@@ -94,7 +94,7 @@ class BusScan final : public BusUser {
   BusScanOptions options_;
   SdoQueue probes_;
   SdoQueue inquiries_;
-  std::array<Seen, canopen::host_node> seen_{};  ///< by node
+  std::array<Seen, canopen::host_node> seen_{};  ///< knowledge about each node, by node id
   bool is_started_ = false;
   bool is_done_ = false;
   bool has_host_ = false;
@@ -105,7 +105,7 @@ class BusScan final : public BusUser {
   std::uint64_t frames_ = 0;
   bool has_listened_ = false;
   Microseconds listening_until_ = never;
-  unsigned fresh_requests_ = 0;  ///< that were sent
+  unsigned fresh_requests_ = 0;  ///< number of these requests that were sent
   Microseconds fresh_at_ = never;
 };
 

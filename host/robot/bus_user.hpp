@@ -4,14 +4,14 @@
 
 namespace proleg::host {
 
-/// A state machine of the host on a bus, without a clock of its own: frames and times come in with the calls, frames go
-/// out through a CanPort. A BusConnection moves it on a real bus, a test on virtual time.
+/// A state machine of the host on a bus, without a clock of its own: it receives frames and times by calls, and sends
+/// frames through a CanPort. A BusConnection drives it on a real bus, a test on virtual time.
 class BusUser {
  public:
   virtual void receive(Microseconds now, const CanFrame& frame) = 0;
-  /// The transport took a frame of this host, of any of its users. Sends nothing itself.
+  /// The transport took a frame of any user of this host. The function sends nothing itself.
   virtual void requested(Microseconds /*now*/, const CanFrame& /*frame*/) {}
-  /// A frame of this host, of any of its users, is on the bus: there may be room for another one.
+  /// A frame of any user of this host is on the bus: the port may have room for another one.
   virtual void transmitted(Microseconds /*now*/, const CanFrame& /*frame*/) {}
   /// To be called at next_deadline() or later.
   virtual void poll(Microseconds /*now*/) {}

@@ -20,7 +20,7 @@ std::optional<std::uint16_t> opened_transaction(const CanFrame& frame) {
 }  // namespace
 
 std::optional<std::size_t> ChangeTimes::change_of(std::uint16_t transaction) const {
-  // Changes that were dropped have no COMMIT; those before are committed again for a module that has restarted.
+  // Changes that were dropped have no COMMIT; earlier ones are committed again for a module that has restarted.
   constexpr std::size_t most_dropped = 1'000;
   for (std::size_t change = next_; change < next_ + most_dropped; ++change) {
     if (canopen::ChangePlan::transaction(change) == transaction) {

@@ -11,32 +11,32 @@
 
 namespace proleg::host {
 
-/// How long the changes of a run take: until all modules have acknowledged their values, which is when the master sends
-/// the first COMMIT; and from then until they take effect. Changes are numbered as the master numbers them.
+/// Measures how long the changes of a run take: until all modules have acknowledged their values, which is when the
+/// master sends the first COMMIT; and from then until they take effect. Changes have the numbers of the master.
 class ChangeTimes final : public BusUser {
  public:
-  /// A change without a tick of its own was accepted; its time begins now. The time of others begins with the first
-  /// request that stages them. tick: the present one.
+  /// Notes that a change without a tick of its own was accepted; its time begins now. The time of other changes begins
+  /// with the first request that stages them. tick: the present tick.
   void accepted(std::size_t change, Microseconds now, std::uint32_t tick);
 
   void requested(Microseconds now, const CanFrame& frame) override;
   void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
 
-  /// Until all modules have acknowledged a change.
+  /// Durations until all modules have acknowledged a change.
   [[nodiscard]] const Durations& acknowledged_us() const { return acknowledged_us_; }
-  /// From the tick when a change without a tick was accepted to the one at which it takes effect.
+  /// Ticks from the acceptance of a change without a tick to the tick at which it takes effect.
   [[nodiscard]] const Durations& ticks_to_effect() const { return ticks_to_effect_; }
 
  private:
   struct Waiting {
     Microseconds begin;
-    std::optional<std::uint32_t> tick;  ///< when it was accepted; nothing: it has a tick of its own
+    std::optional<std::uint32_t> tick;  ///< tick at which the change was accepted; nothing: it has a tick of its own
   };
-  /// Which change is meant, of those that are not committed yet.
+  /// The change of a transaction, among those that are not committed yet.
   [[nodiscard]] std::optional<std::size_t> change_of(std::uint16_t transaction) const;
 
-  std::map<std::size_t, Waiting> waiting_;  ///< by change
-  std::size_t next_ = 0;                    ///< those before are committed or dropped
+  std::map<std::size_t, Waiting> waiting_;  ///< changes that are not committed, by number
+  std::size_t next_ = 0;                    ///< number of the first change that is neither committed nor dropped
   Durations acknowledged_us_;
   Durations ticks_to_effect_;
 };

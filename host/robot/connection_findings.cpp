@@ -1,4 +1,4 @@
-// Findings about this computer's way to a bus.
+// Finds faults of the connection of this computer to a bus.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@ namespace proleg::host {
 namespace {
 
 constexpr std::uint32_t bit_rate = 1'000'000;
-/// A scan has 32 requests under way at the same time.
+/// Shortest useful queue: a scan has 32 requests under way at the same time.
 constexpr std::uint32_t shortest_queue = 32;
 
 std::string set_up_command(const std::string& interface) {
@@ -81,7 +81,7 @@ Finding wrong_kind(const BusAddress& address) {
           {}};
 }
 
-/// The part of an error behind the address.
+/// The part of an error's text behind the address.
 std::string cause_of(const std::string& text, const std::string& address) {
   const std::string head = address + ": ";
   return text.starts_with(head) ? text.substr(head.size()) : text;

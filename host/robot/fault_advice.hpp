@@ -6,7 +6,7 @@
 
 namespace proleg::host {
 
-/// What a person can do about an error that a module reports: one sentence; empty for what is no error.
+/// One sentence that says what a person can do about an error of a module; empty for a code that is not an error.
 [[nodiscard]] std::string_view fault_advice(canopen::EmergencyCode code);
 
 }  // namespace proleg::host

@@ -62,7 +62,7 @@ class Diagnosis {
   [[nodiscard]] bool has(std::string_view code) const {
     return std::ranges::any_of(findings_, [code](const Finding& finding) { return finding.code == code; });
   }
-  /// Nodes that a finding with this code is about.
+  /// Whether a finding with this code is about the node.
   [[nodiscard]] bool has(std::string_view code, std::uint8_t node) const {
     return std::ranges::any_of(findings_, [&](const Finding& finding) {
       return finding.code == code && std::ranges::find(finding.nodes, node) != finding.nodes.end();
@@ -87,7 +87,7 @@ class Diagnosis {
         nodes_with([](const ObservedNode& node) { return has_sent(node, EmergencyCode::identifier_collision); });
     std::map<std::uint8_t, unsigned> holders;
     for (const ObservedNode& node : seen_.nodes) {
-      // A module whose serial number was not read may be the silent one.
+      // A module whose serial number was not read may be the silent module.
       holders[node.node] += node.answers && node.answers->is_module && node.answers->serial != 0 ? 1U : 0U;
     }
     for (const SilentModule& module : seen_.silent_modules) {
@@ -185,8 +185,8 @@ class Diagnosis {
     return {};
   }
 
-  /// A robot with a drive in Fault does not start, so that SYNC is missing, too. A drive that holds its safe pose waits
-  /// for SYNC, for its host, or for a stable bus.
+  /// Finds drives that do not work. A robot with a drive in Fault does not start, so that SYNC is missing, too. A
+  /// drive that holds its safe pose waits for SYNC, for its host, or for a stable bus.
   void find_drives() {
     std::vector<Finding> faults = find_drive_faults(seen_);
     findings_.insert(findings_.end(), faults.begin(), faults.end());
@@ -224,7 +224,7 @@ class Diagnosis {
     std::map<std::uint32_t, Nodes> cores;
     for (const ObservedNode& node : seen_.nodes) {
       if (!node.answers || !node.answers->is_module || node.answers->core_fingerprint == 0) {
-        continue;  // 0: it was not read
+        continue;  // 0: the value was not read
       }
       if (node.answers->protocol >> 8U != canopen::protocol_version >> 8U) {
         versions[node.answers->protocol].push_back(node.node);
@@ -289,7 +289,7 @@ class Diagnosis {
              !has("duplicate_node_id", node.node) && !has("stopped_module", node.node) &&
              !has("restarting_module", node.node);
     });
-    // Requests that do not reach them have no answers.
+    // Modules do not answer requests that do not reach them.
     const bool is_explained = has("bus_overload") || has("damaged_frames") || has("bus_off") || has("error_passive");
     if (!nodes.empty() && !is_explained) {
       add("no_answer", nodes_text(nodes) + " can be received but answers no request.",
@@ -298,7 +298,7 @@ class Diagnosis {
   }
 
   void find_damaged_lines() {
-    constexpr std::uint64_t most_at_opening = 2;  // the rest of what another program sent
+    constexpr std::uint64_t most_at_opening = 2;  // malformed lines that can be the rest of another program's output
     if (seen_.own.statistics.malformed > most_at_opening) {
       add("damaged_lines",
           std::to_string(seen_.own.statistics.malformed) +
@@ -309,7 +309,7 @@ class Diagnosis {
     }
   }
 
-  /// What modules have reported while they were observed, if nothing explains it.
+  /// Finds errors that modules have reported during the observation, if no other finding explains them.
   void find_reports() {
     std::map<EmergencyCode, Nodes> reports;
     for (const ObservedNode& node : seen_.nodes) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What is wrong with a bus and the robot on it, in words for a person who does not know CAN.
+// Finds faults of a bus and the robot on it, and describes them for a person who does not know CAN.
 
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace proleg::host {
 
-/// What is known about this computer's way to the bus.
+/// The known facts about the connection of this computer to the bus.
 struct ConnectionFacts {
   struct Failure {
     TransportProblem problem = TransportProblem::other;
@@ -24,23 +24,24 @@ struct ConnectionFacts {
   };
 
   BusAddress address;
-  std::optional<CanInterface> can;     ///< of a CAN interface that exists
-  std::optional<SerialDevice> serial;  ///< of a serial address
-  std::optional<Failure> failure;      ///< the bus was not opened
+  std::optional<CanInterface> can;     ///< settings of a CAN interface that exists
+  std::optional<SerialDevice> serial;  ///< device of a serial address
+  std::optional<Failure> failure;      ///< why the bus was not opened
 };
 
-/// What the modules are compared with.
+/// The modules that are expected on the bus.
 struct ExpectedModules {
   std::uint32_t core_fingerprint = 0;
 };
 
-/// Faults of the way to the bus, the most fundamental one first. As long as there is one that blocks() it, the bus must
-/// not be opened, or cannot be.
+/// Finds faults of the connection to the bus, the most fundamental one first. As long as there is one that blocks()
+/// the bus, it must not be opened, or cannot be.
 [[nodiscard]] std::vector<Finding> find_connection_faults(const ConnectionFacts& facts);
 /// Whether the bus cannot be examined before the finding has been dealt with.
 [[nodiscard]] bool blocks(const Finding& finding);
 
-/// Faults of the bus and the robot, the most fundamental one first. What a finding explains is no finding of its own.
+/// Finds faults of the bus and the robot, the most fundamental one first. A fault that another finding explains is not
+/// reported.
 [[nodiscard]] std::vector<Finding> find_bus_faults(const BusObservations& observations, const BusAddress& address,
                                                    const ExpectedModules& expected);
 

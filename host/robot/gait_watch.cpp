@@ -8,7 +8,7 @@
 namespace proleg::host {
 namespace {
 
-/// Between two readings, of which a round has so many.
+/// Time between two readings of a round with this number of readings.
 Microseconds period_for(std::size_t readings) {
   constexpr Microseconds round_us = 800'000;
   constexpr Microseconds longest_us = 100'000;
@@ -66,7 +66,7 @@ void GaitWatch::receive(Microseconds now, const CanFrame& frame) {
     Module* module = module_of(identifier::node_of(frame.identifier));
     if (module != nullptr && !module->is_away && state && (state->flags() & StateFrame::fault) != 0 &&
         readings_.is_idle()) {
-      read_statusword(*module);  // which fault it is
+      read_statusword(*module);  // the statusword shows the fault
     }
   }
 }
@@ -116,7 +116,7 @@ void GaitWatch::read_next() {
 
 Microseconds GaitWatch::next_deadline() const { return std::min(next_reading_, readings_.next_deadline()); }
 
-// A module that does not answer is silent: the master reports that.
+// Nothing is done for a module that does not answer, because the master reports it.
 
 void GaitWatch::read_statusword(Module& module) {
   module.is_suspect = false;

@@ -12,49 +12,49 @@
 
 namespace proleg::host {
 
-/// Whether the joints of a robot that moves still follow its gait. A joint does not if its drive has a fault, has no
-/// power or ramps to the safe pose, if its mode is another one, or if its module is not Operational. A fault is in the
-/// state frames of the module, and the network state in its heartbeats. For the rest, statusword and mode are read, one
-/// module after the other, all of them within 0.8 s (60 modules: 2.4 s), with 20 ms between two requests at least: TICK
-/// has its gaps. A module that reports an error comes first.
+/// Watches whether the joints of a moving robot still follow its gait. A joint does not if its drive has a fault, has
+/// no power or ramps to the safe pose, if its mode differs, or if its module is not Operational. A fault is in the
+/// state frames of the module, and the network state in its heartbeats. Statusword and mode are read, one module after
+/// the other, all of them within 0.8 s (60 modules: 2.4 s), with at least 20 ms between two requests, so that TICK
+/// finds its gaps. A module that reports an error is read first.
 class GaitWatch final : public BusUser {
  public:
   enum class Reason : std::uint8_t {
     drive,    ///< the drive is not in Operation enabled
-    mode,     ///< the mode is another one than expected
+    mode,     ///< the mode differs from the expected one
     network,  ///< the module is not Operational
   };
-  /// What was found.
+  /// A joint that does not follow, and the reason.
   struct Loss {
     std::uint8_t node;
     Reason reason;
-    std::uint16_t statusword = 0;                                     ///< 0x6041; of `drive`
-    std::int8_t mode = 0;                                             ///< 0x6061; of `mode`
-    canopen::NmtState state = canopen::NmtState::operational;         ///< of `network`
+    std::uint16_t statusword = 0;                                     ///< 0x6041; valid for `drive`
+    std::int8_t mode = 0;                                             ///< 0x6061; valid for `mode`
+    canopen::NmtState state = canopen::NmtState::operational;         ///< valid for `network`
     canopen::EmergencyCode emergency = canopen::EmergencyCode::none;  ///< the last error that the module has reported
   };
 
-  /// port: must outlive this. nodes: of the robot, kernel order.
+  /// port: must outlive this. nodes: node ids of the robot in kernel order.
   GaitWatch(CanPort& port, std::vector<std::uint8_t> nodes);
   GaitWatch(const GaitWatch&) = delete;
   GaitWatch& operator=(const GaitWatch&) = delete;
 
-  /// From now on the joints should follow. Before, and after stop(), it sends nothing.
+  /// Starts the watch: the joints should follow from now on. Before start() and after stop() nothing is sent.
   void start(Microseconds now);
   void stop() { next_reading_ = never; }
   /// Reads the statuswords of all modules, as fast as they answer.
   void look_at_all();
   /// Whether the readings that look_at_all() has begun have ended.
   [[nodiscard]] bool has_looked() const { return readings_.is_idle(); }
-  /// A module that has restarted is left alone until the master has set it up again, or has failed to do so.
+  /// Resumes the watch of a module that has restarted, after the master has set it up again, or has failed to do so.
   void return_to_gait(std::uint8_t node);
-  /// Which mode (0x6061) the joints have from now on, at first the gait's; nothing: it is being switched, and any mode
-  /// is right.
+  /// Sets the mode (0x6061) that the joints should have from now on; at first it is that of the gait. Nothing: the
+  /// mode is being switched, and any mode is right.
   void expect_mode(std::optional<std::int8_t> mode) { expected_mode_ = mode; }
 
-  /// The first joint that does not follow.
+  /// The first joint that did not follow; nothing if all follow.
   [[nodiscard]] const std::optional<Loss>& loss() const { return loss_; }
-  /// The last statusword that was read; nothing: none yet, or the node is not of the robot.
+  /// The last statusword that was read; nothing if none was read yet, or if the node does not belong to the robot.
   [[nodiscard]] std::optional<std::uint16_t> statusword(std::uint8_t node) const;
 
   void receive(Microseconds now, const CanFrame& frame) override;
@@ -65,8 +65,8 @@ class GaitWatch final : public BusUser {
  private:
   struct Module {
     std::uint8_t node;
-    bool is_away = false;     ///< it has booted
-    bool is_suspect = false;  ///< it has reported an error since its last reading
+    bool is_away = false;     ///< the module has booted and is not set up again yet
+    bool is_suspect = false;  ///< the module has reported an error since its last reading
     canopen::EmergencyCode emergency = canopen::EmergencyCode::none;
     std::optional<std::uint16_t> statusword = {};
   };
@@ -83,7 +83,7 @@ class GaitWatch final : public BusUser {
   Microseconds period_us_;
   Microseconds next_reading_ = never;
   std::optional<std::int8_t> expected_mode_ = canopen::mode_gait;
-  std::size_t next_ = 0;  ///< the statusword of each module, then the mode of each
+  std::size_t next_ = 0;  ///< next reading: the statusword of each module, then the mode of each
   std::optional<Loss> loss_;
 };
 

@@ -7,8 +7,8 @@
 
 namespace proleg::host {
 
-/// Whether another host drives the robot: listens to its heartbeats. A host sends one each 100 ms. On a busy computer
-/// some are late; and of a host that has just ended a last one may still be on its way.
+/// Finds out by heartbeats whether another host drives the robot. A host sends one each 100 ms. On a busy computer
+/// some are late, and a last one of a host that has just ended may still be under way.
 class HostPresence final : public BusUser {
  public:
   explicit HostPresence(Microseconds now) : begin_(now) {}
@@ -21,9 +21,9 @@ class HostPresence final : public BusUser {
     }
   }
 
-  /// Heartbeats came for longer than those of a host that has ended.
+  /// Whether a host is present: heartbeats were received for longer than those of a host that has ended.
   [[nodiscard]] bool is_there() const { return first_ && *last_ - *first_ >= three_heartbeats_us; }
-  /// When it is sure that there is none, unless one is heard before.
+  /// The time at which it is certain that no host is present, unless a heartbeat is received before.
   [[nodiscard]] Microseconds silent_at() const { return last_.value_or(begin_) + longest_silence_us; }
 
  private:

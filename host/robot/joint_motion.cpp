@@ -75,7 +75,7 @@ void JointMotion::read(canopen::Address address, std::uint32_t& value) {
   });
 }
 
-/// The motion that fits into the limits.
+/// Plans a motion that fits into the limits.
 void JointMotion::plan() {
   const std::int32_t lower = std::max(static_cast<std::int32_t>(lowest_), options_.limits.lower);
   const std::int32_t upper = std::max(lower, std::min(static_cast<std::int32_t>(highest_), options_.limits.upper));
@@ -97,7 +97,7 @@ void JointMotion::begin_motion(Microseconds now) {
   setup_.start_values = start_values_;
 
   canopen::MasterOptions options;
-  options.core_fingerprint = core_fingerprint_;  // one joint moves: no other module computes with it
+  options.core_fingerprint = core_fingerprint_;  // always fits: no other module computes this joint
   options.resets_modules = true;
   options.allows_others = true;
   options.ramps_down = true;

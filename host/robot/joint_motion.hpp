@@ -1,7 +1,7 @@
 #pragma once
 
-// Moves the joint of one module to and fro, so that a person sees which one it is. All other modules are reset and have
-// no power.
+// Moves the joint of one module to and fro, so that a person can identify the module. All other modules are reset and
+// have no power.
 
 #include <array>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace proleg::host {
 
 struct JointMotionOptions {
   std::int32_t amplitude = raw(Unit::degree, 5);  ///< 90 degrees = 2^30; above 0
-  /// Angles that are safe whichever joint it is. The joint's own limits (0x607D) count as well.
+  /// Angles that are safe for every joint. The limits of the joint itself (0x607D) apply as well.
   canopen::AngleLimits limits{-(1 << 30), 1 << 30};
 };
 
@@ -27,8 +27,8 @@ class JointMotion final : public BusUser {
     starting,  ///< another host is looked for, modules are reset, this one is set up and gets power
     moving,
     stopping,
-    stopped,  ///< has no power
-    failed,   ///< see problem(); stop() takes the power
+    stopped,  ///< the joint has no power
+    failed,   ///< problem() says why; stop() switches the power off
   };
 
   /// port: must outlive this. node: 1 to 126.
@@ -36,18 +36,18 @@ class JointMotion final : public BusUser {
   JointMotion(const JointMotion&) = delete;
   JointMotion& operator=(const JointMotion&) = delete;
 
-  /// The joint moves about its measured angle; if its module does not measure it, about the angle nearest to 0 that the
-  /// limits allow. Within the limits the whole motion fits, or its amplitude is smaller.
+  /// Starts the motion about the measured angle; if the module does not measure it, about the angle nearest to 0 that
+  /// the limits allow. The amplitude is reduced if the whole motion does not fit within the limits.
   void start(Microseconds now);
   void stop(Microseconds now);
 
   [[nodiscard]] State state() const;
   [[nodiscard]] const canopen::Problem& problem() const { return master_ ? master_->problem() : problem_; }
-  /// Of the master: EMCYs, and a module that did not confirm that its servo has no power.
+  /// Takes an event of the master: an EMCY, or a module that did not confirm that its servo has no power.
   [[nodiscard]] std::optional<canopen::Event> take_event();
-  /// Events that were dropped because the log was full.
+  /// Number of events that were dropped because the log was full.
   [[nodiscard]] std::uint32_t lost_events() const { return master_ ? master_->lost_events() : 0; }
-  /// Known when it moves. 90 degrees = 2^30.
+  /// The amplitude, 90 degrees = 2^30; valid when the joint moves.
   [[nodiscard]] std::int32_t amplitude() const { return amplitude_; }
 
   void receive(Microseconds now, const CanFrame& frame) override;
@@ -64,9 +64,9 @@ class JointMotion final : public BusUser {
   std::array<std::uint8_t, 1> nodes_;
   JointMotionOptions options_;
   SdoQueue readings_;
-  State state_ = State::idle;  ///< until there is a master
+  State state_ = State::idle;  ///< state before the master exists
   canopen::Problem problem_;
-  // As read:
+  // Values that were read from the module.
   std::uint32_t lowest_ = 0;
   std::uint32_t highest_ = 0;
   std::uint32_t measured_ = 0;

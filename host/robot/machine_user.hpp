@@ -4,7 +4,7 @@
 
 namespace proleg::host {
 
-/// A state machine of shared/computer/master as the user of a bus.
+/// Makes a state machine of shared/computer/master a user of a bus.
 template <typename Machine>
 class MachineUser final : public BusUser {
  public:

@@ -29,7 +29,7 @@ std::optional<std::uint8_t> lowest_free(const NodeSet& taken) {
 /// A module whose node id must change.
 struct Move {
   const PlacedModule* module;
-  std::uint8_t from;  ///< in its flash
+  std::uint8_t from;  ///< node id in the flash of the module
   std::uint8_t to;
 };
 
@@ -103,7 +103,7 @@ std::optional<std::vector<canopen::RenumberedModule>> plan_node_ids(std::span<co
       moves.erase(next);
       continue;
     }
-    // All that are left wait for each other.
+    // All remaining moves wait for each other.
     const auto aside = lowest_free(taken);
     if (!aside) {
       return std::nullopt;

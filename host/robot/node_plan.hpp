@@ -1,6 +1,6 @@
 #pragma once
 
-// Which node ids the modules of a robot must get, so that each joint has the module that its robot's file names.
+// Plans the node ids of the modules of a robot, so that each joint has the module that its robot's file names.
 
 #include <cstdint>
 #include <optional>
@@ -16,22 +16,22 @@ namespace proleg::host {
 struct PlacedModule {
   std::uint8_t node = 0;
   canopen::LssAddress address{};
-  std::optional<unsigned> joint;  ///< nothing: it is no part of the robot, or its joint is not known
+  std::optional<unsigned> joint;  ///< nothing: the module does not belong to the robot, or its joint is not known
 };
 
-/// Entries for the LSS master: the free node ids that modules without one may get. Those of the robot come first, in
-/// the order of its joints, with the serial numbers that its file names (0: any); then all others.
-/// nodes, serials: by joint. taken: node ids of other modules.
+/// Entries for the LSS master: the free node ids for modules without one. Those of the robot come first, in the order
+/// of its joints, with the serial numbers that its file names (0: any); then all others. nodes, serials: by joint.
+/// taken: node ids of other modules.
 [[nodiscard]] std::vector<canopen::LssModule> free_node_ids(std::span<const std::uint8_t> nodes,
                                                             std::span<const std::uint32_t> serials,
                                                             std::span<const std::uint8_t> taken);
 
 /// The node ids that modules must store, in this order, so that the module of joint j has nodes[j]. A module without a
-/// joint that is in the way gets a free node id. After each step no two modules have the same node id in their flash:
-/// it may end anywhere, and every module still boots. So modules that exchange their node ids need a third one for a
-/// while: one of them is listed twice.
-/// others: node ids of nodes that are no modules; none of them is in `nodes`. Nothing: no node id is free for that, or
-/// two modules have one joint.
+/// joint whose node id is needed gets a free one. After each step no two modules have the same node id in their flash:
+/// the sequence may be interrupted anywhere, and every module still boots. Two modules that exchange their node ids
+/// therefore need a third one temporarily: one of them is listed twice. others: node ids of nodes that are not
+/// modules; none of them is in `nodes`. Returns nothing if no node id is free for that, or if two modules have the
+/// same joint.
 [[nodiscard]] std::optional<std::vector<canopen::RenumberedModule>> plan_node_ids(std::span<const PlacedModule> modules,
                                                                                   std::span<const std::uint8_t> nodes,
                                                                                   std::span<const std::uint8_t> others);

@@ -31,7 +31,7 @@ bool is_parameter_name(std::string_view name) {
   return false;
 }
 
-/// Nothing if the word does not have the form INDEX[:SUB].
+/// The address in an argument; nothing if it does not have the form INDEX[:SUB].
 std::optional<canopen::Address> parse_address(std::string_view word) {
   const std::size_t colon = word.find(':');
   std::string_view index = word.substr(0, colon);
@@ -46,7 +46,7 @@ std::optional<canopen::Address> parse_address(std::string_view word) {
   return number && sub ? std::optional(canopen::Address{*number, *sub}) : std::nullopt;
 }
 
-/// The unit of the core that the object has.
+/// The unit of the object, if the core has it.
 std::optional<Unit> unit_of(const canopen::Object& object) {
   for (const Unit unit : {Unit::degree, Unit::hertz, Unit::per_second, Unit::ratio}) {
     const UnitScale known = scale_of(unit);
@@ -90,14 +90,14 @@ std::string physical_text(const canopen::Object& object, std::uint32_t number) {
   return exact_text(value * object.scale.denominator / object.scale.numerator);
 }
 
-/// The number that travels, without a look at its range.
+/// The number that is sent for a text, without a check of its range.
 std::optional<std::int64_t> parse_raw(const canopen::Object& object, std::string_view word) {
   if (word.starts_with("0x") || word.starts_with("0X")) {
     const auto number = parse_whole<std::uint32_t>(word.substr(2), 16);
     if (!number) {
       return std::nullopt;
     }
-    // 0xFF is -1 of a type with 8 bits, as it travels.
+    // 0xFF is sent for -1 of a type with 8 bits.
     const std::uint32_t bits = canopen::size_of(object.type) * 8U;
     const bool fits = bits >= 32 || *number >> bits == 0;
     const std::uint32_t value = fits ? canopen::extend(object.type, *number) : *number;
@@ -116,7 +116,7 @@ std::optional<std::int64_t> parse_raw(const canopen::Object& object, std::string
   return number && raw >= -largest && raw <= largest ? std::optional(std::int64_t{std::llround(raw)}) : std::nullopt;
 }
 
-/// Throws InputError if no object or several have the name.
+/// The object with a name. Throws InputError if no object or several have the name.
 canopen::Object object_of_name(const std::string& word) {
   constexpr std::size_t max_listed = 5;
   const std::string wanted = lower_case(word);
@@ -125,7 +125,7 @@ canopen::Object object_of_name(const std::string& word) {
   std::vector<std::string> known;
   canopen::for_each_object([&](const canopen::Object& object) {
     if (canopen::value_address(object.address)) {
-      return;  // those are named by their parameters
+      return;  // these objects are named by their parameters
     }
     known.emplace_back(canopen::full_name(object.address).view());
     known.emplace_back(canopen::entry_name(object.address).view());

@@ -122,7 +122,7 @@ class Reader {
   std::vector<ModuleParameters> modules_;
 };
 
-/// The value alone, as `proleg set` takes it.
+/// The text of the value without its name, as `proleg set` accepts it.
 std::string plain_value(const ParameterValue& value) {
   const std::string text = value_text(value.object, value.bytes);
   return text.substr(0, text.find(' '));

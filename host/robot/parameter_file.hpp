@@ -20,7 +20,7 @@ namespace proleg::host {
 
 struct ParameterValue {
   canopen::Object object;
-  std::vector<std::uint8_t> bytes;  ///< as they travel
+  std::vector<std::uint8_t> bytes;  ///< bytes of the value in SDO transfers
 
   friend bool operator==(const ParameterValue& left, const ParameterValue& right) {
     return left.object.address == right.object.address && left.bytes == right.bytes;
@@ -31,23 +31,23 @@ struct ModuleParameters {
   std::uint8_t node = 0;
   std::uint32_t serial = 0;
   std::uint32_t core_fingerprint = 0;
-  std::vector<ParameterValue> values;  ///< no object twice
+  std::vector<ParameterValue> values;  ///< values, each of another object
 
   friend bool operator==(const ModuleParameters&, const ModuleParameters&) = default;
 };
 
-/// file: its name, for messages. Throws InputError, with the line, for a text that is no such file; at most 126
-/// modules.
+/// Reads the text of a file. file: its name, for messages. Throws InputError with the line if the text is not such a
+/// file; it may have at most 126 modules.
 [[nodiscard]] std::vector<ModuleParameters> read_parameters(const std::string& file, std::string_view text);
 
-/// read_parameters() gives the same modules.
+/// The text of a file, from which read_parameters() makes the same modules.
 [[nodiscard]] std::string parameters_text(const std::vector<ModuleParameters>& modules);
 
-/// The objects that make up the settings of a module: what it keeps in flash except its node id, the greatest speed,
+/// The objects that are the settings of a module: those that it keeps in flash except its node id, the greatest speed,
 /// and the parameters of its algorithms. algorithms: ids by slot, 0: none.
 [[nodiscard]] std::vector<canopen::Object> setting_objects(const std::vector<std::uint8_t>& algorithms);
 
-/// Those of them that the module keeps in flash.
+/// The setting objects that the module keeps in flash.
 [[nodiscard]] std::vector<canopen::Object> kept_objects();
 
 }  // namespace proleg::host

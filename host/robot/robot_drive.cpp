@@ -93,9 +93,9 @@ void RobotDrive::note_state(const CanFrame& frame, unsigned channel) {
   const auto joint = joint_of(canopen::identifier::node_of(frame.identifier));
   const auto state = canopen::decode_state(frame);
   if (!joint || !state || !present_) {
-    return;  // before SYNC 0: the frames of state 0
+    return;  // frames of state 0 are sent before SYNC 0
   }
-  // The tick whose frames have this label, near to the present one. This host may have missed some SYNCs.
+  // The tick nearest to the present one whose frames have this label. This host may have missed some SYNCs.
   const auto behind = static_cast<std::int8_t>(static_cast<std::uint8_t>(*present_ + 1U) - state->label());
   const std::uint32_t tick = *present_ - static_cast<std::uint32_t>(std::int32_t{behind});
   constexpr int most = 16;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A host that drives a robot of modules: the master, and what the modules send while the robot moves.
+// Drives a robot of modules with the master, and collects the frames that the modules send while the robot moves.
 
 #include <array>
 #include <cstdint>
@@ -16,12 +16,12 @@ namespace proleg::host {
 
 /// The state frames with state k + 1, which the modules send after SYNC k.
 struct TickFrames {
-  std::uint32_t tick = 0;  ///< k
-  /// By joint, then by channel (0, 1); nothing: this host did not receive it.
+  std::uint32_t tick = 0;  ///< number k of the tick
+  /// Frames by joint, then by channel (0, 1); nothing: this host did not receive the frame.
   std::vector<std::array<std::optional<StateFrame>, 2>> frames;
 };
 
-/// What the module of a joint has measured at SYNC `tick`.
+/// The measurement of the module of a joint at SYNC `tick`.
 struct Measurement {
   std::uint32_t tick;
   unsigned joint;
@@ -30,10 +30,10 @@ struct Measurement {
 
 class RobotDrive final : public BusUser {
  public:
-  /// The frames of a tick are handed out this many SYNCs later at the latest: then none of them comes any more.
+  /// Number of SYNCs after which the frames of a tick are returned at the latest; no more of them are received then.
   static constexpr std::uint32_t wait_ticks = 2;
 
-  /// port: must outlive this, as all that the master refers to.
+  /// port: must outlive this, like all objects that the master refers to.
   RobotDrive(CanPort& port, const canopen::RobotSetup& setup, const canopen::MasterOptions& options,
              std::span<canopen::Change> changes);
   RobotDrive(const RobotDrive&) = delete;
@@ -42,8 +42,9 @@ class RobotDrive final : public BusUser {
   [[nodiscard]] canopen::Master& master() { return master_; }
   [[nodiscard]] const canopen::Master& master() const { return master_; }
 
-  /// The oldest tick whose frames have not been taken: complete, or wait_ticks old. Ticks follow each other without a
-  /// gap. at_end: no more frames come. To be called at least every 40 ticks: frames of later ticks are lost until then.
+  /// Takes the frames of the oldest tick that is complete, or wait_ticks old. Ticks follow each other without a gap.
+  /// at_end: no more frames are received. To be called at least every 40 ticks: frames of later ticks are lost until
+  /// then.
   [[nodiscard]] std::optional<TickFrames> take_tick(bool at_end = false);
 
   /// The last monitoring message of a joint.
@@ -51,7 +52,7 @@ class RobotDrive final : public BusUser {
     return monitoring_[joint];
   }
 
-  /// The oldest measurement that has not been taken. The newest ones are kept, max_measurements of them.
+  /// Takes the oldest measurement. Only the newest max_measurements are kept.
   [[nodiscard]] std::optional<Measurement> take_measurement();
   static constexpr std::size_t max_measurements = 1'024;
 
@@ -61,7 +62,8 @@ class RobotDrive final : public BusUser {
   [[nodiscard]] Microseconds next_deadline() const override { return master_.next_deadline(); }
 
  private:
-  /// Ticks between the oldest that is kept and the present one, at most. A power of 2, below half of the labels.
+  /// Greatest distance in ticks between the oldest kept tick and the present one. A power of 2, below half of the
+  /// labels.
   static constexpr std::uint32_t kept = 64;
 
   void note_measurement(unsigned joint, const canopen::Monitoring& values);
@@ -73,10 +75,10 @@ class RobotDrive final : public BusUser {
 
   canopen::Master master_;
   std::vector<std::uint8_t> nodes_;
-  std::vector<std::uint8_t> channels_;    ///< by joint: number of state frames in a tick
-  std::vector<TickFrames> ring_;          ///< by tick modulo `kept`
-  std::uint32_t next_ = 0;                ///< the tick that is taken next
-  std::optional<std::uint32_t> present_;  ///< of the last SYNC
+  std::vector<std::uint8_t> channels_;    ///< number of state frames in a tick, by joint
+  std::vector<TickFrames> ring_;          ///< frames by tick modulo `kept`
+  std::uint32_t next_ = 0;                ///< next tick that is taken
+  std::optional<std::uint32_t> present_;  ///< tick of the last SYNC
   std::vector<std::optional<canopen::Monitoring>> monitoring_;
   std::deque<Measurement> measurements_;
 };

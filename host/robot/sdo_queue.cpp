@@ -67,7 +67,7 @@ Microseconds SdoQueue::next_deadline() const {
 }
 
 void SdoQueue::advance(Microseconds now) {
-  // What ends makes room for the next transfer.
+  // A transfer that ends makes room for the next one.
   for (bool changes = true; changes;) {
     is_new_ = false;
     begin_jobs();
@@ -102,7 +102,8 @@ void SdoQueue::begin_jobs() {
 void SdoQueue::send(Microseconds now) {
   bool has_room = true;
   for (const auto& channel : channels_) {
-    // A transfer that is done may have a last frame: it is taken from all of them, also if the port has no room.
+    // A transfer that has ended may have a last frame, so frames are taken from all transfers, also if the port has no
+    // room.
     for (;;) {
       if (!channel->waiting) {
         channel->waiting = channel->transfer.next_frame(now);

@@ -13,10 +13,10 @@ using lss::Service;
 
 constexpr std::uint32_t highest = std::numeric_limits<std::uint32_t>::max();
 constexpr unsigned first_attempts = 2;  // a frame may be lost; in a half of a range that has answered, one is enough
-constexpr unsigned further_attempts =
-    16;  // of both halves together, if neither answers, and of the module that is found
+/// Attempts for both halves together, if neither answers, and for the module that is found.
+constexpr unsigned further_attempts = 16;
 
-/// Of the services that follow each other: the first, the second, ...
+/// The service at a position, from 0, in a sequence of services that begins with the first one.
 constexpr Service numbered(Service first, unsigned position) {
   return static_cast<Service>(static_cast<unsigned>(first) + position);
 }
@@ -58,7 +58,7 @@ void SilentModules::proceed(Microseconds now) {
     return;
   }
   const Range& range = ranges_.front();
-  // The revision may be any.
+  // The request finds modules of any revision.
   ask(now, Step::identify,
       {request(Service::identify_vendor, 0, vendor_), request(Service::identify_vendor, 1, range.product),
        request(Service::identify_vendor, 2, 0), request(Service::identify_vendor, 3, highest),
@@ -114,7 +114,7 @@ void SilentModules::poll(Microseconds now) {
     return;
   }
   if (unsent_ != 0) {
-    step_ = Step::done;  // the bus takes no frames
+    step_ = Step::done;  // the bus accepts no frames
     return;
   }
   conclude(now);
@@ -144,7 +144,7 @@ void SilentModules::conclude(Microseconds now) {
       }
       if (selections_ != 0) {
         selections_ = 0;
-        found_.pop_back();  // switched off meanwhile
+        found_.pop_back();  // the module was switched off meanwhile
       }
       proceed(now);
       return;
@@ -167,7 +167,7 @@ void SilentModules::conclude_range(Microseconds now) {
     return;
   }
   if (const auto parent = std::ranges::find(ranges_, true, &Range::is_split); parent != ranges_.end()) {
-    parent->attempts = 0;  // its halves need not be asked again
+    parent->attempts = 0;  // the halves of the parent need no further requests
   }
   if (asked.low < asked.high) {
     split({asked.product, asked.low, asked.high, further_attempts, true});
@@ -178,7 +178,7 @@ void SilentModules::conclude_range(Microseconds now) {
   select(now);
 }
 
-/// The range itself stays behind its halves, until one of them has answered.
+/// Splits a range into halves. The range itself stays behind its halves, until one of them has answered.
 void SilentModules::split(Range range) {
   const std::uint32_t middle = range.low + (range.high - range.low) / 2;
   ranges_.push_front(range);
@@ -186,7 +186,7 @@ void SilentModules::split(Range range) {
   ranges_.push_front({range.product, range.low, middle, 1, false});
 }
 
-/// Both halves were asked.
+/// Ends a split after requests for both halves.
 void SilentModules::end_split() {
   Range range = ranges_.front();
   ranges_.pop_front();
@@ -198,7 +198,7 @@ void SilentModules::end_split() {
 
 void SilentModules::select(Microseconds now) {
   ++selections_;
-  // The revision of all modules of this vendor is that of the dictionary.
+  // All modules of this vendor have the revision of the dictionary.
   ask(now, Step::select,
       {request(Service::select_vendor, 0, vendor_), request(Service::select_vendor, 1, found_.back().product),
        request(Service::select_vendor, 2, canopen::object::revision.default_value),

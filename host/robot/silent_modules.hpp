@@ -1,9 +1,9 @@
 #pragma once
 
-// Modules that are on the bus but answer no SDO: Stopped ones, as after a collision of node ids. All modules serve LSS
-// (CiA 305) in every state: 'identify remote slave' finds those whose serial number is not among the known ones, by
-// halving the range of serial numbers. The node id is read from each. Nothing is changed. A bus that loses one frame in
-// ten makes the search longer.
+// Finds modules that are on the bus but answer no SDO: Stopped ones, as after a collision of node ids. All modules
+// serve LSS (CiA 305) in every state: 'identify remote slave' finds those whose serial number is not among the known
+// ones, by halving the range of serial numbers. The node id is read from each. Nothing is changed. A bus that loses
+// one frame in ten makes the search longer.
 
 #include <cstdint>
 #include <deque>
@@ -17,13 +17,13 @@ namespace proleg::host {
 
 struct SilentModulesOptions {
   Microseconds answer_timeout_us = 30'000;
-  Microseconds settle_us = 3'000;  ///< after an answer: several modules answer one request
+  Microseconds settle_us = 3'000;  ///< pause after an answer, because several modules answer one request
   Microseconds send_timeout_us = 500'000;
-  Microseconds longest_us = 15'000'000;  ///< of all
-  std::size_t max_modules = 8;           ///< that are searched for
+  Microseconds longest_us = 15'000'000;  ///< duration of the whole search
+  std::size_t max_modules = 8;           ///< number of modules that are searched for
 };
 
-/// For a bus without another host: an LSS master of its own would meet the answers.
+/// Searches a bus without another host, whose LSS master would receive the answers.
 class SilentModules final : public BusUser {
  public:
   /// port: must outlive this.
@@ -31,7 +31,8 @@ class SilentModules final : public BusUser {
   SilentModules(const SilentModules&) = delete;
   SilentModules& operator=(const SilentModules&) = delete;
 
-  /// vendor, products: of the modules that are searched for. known: serial numbers of the modules that need not be.
+  /// Starts the search. vendor, products: identity of the modules that are searched for. known: serial numbers of
+  /// modules that are left out.
   void start(Microseconds now, std::uint32_t vendor, std::vector<std::uint32_t> products,
              std::vector<std::uint32_t> known);
   [[nodiscard]] bool is_done() const { return step_ == Step::done; }
@@ -49,7 +50,7 @@ class SilentModules final : public BusUser {
     std::uint32_t low;
     std::uint32_t high;
     unsigned attempts;
-    bool is_split;  ///< it has answered, and its halves are asked before it
+    bool is_split;  ///< the range has answered, and its halves are examined before it
   };
 
   void proceed(Microseconds now);
@@ -64,16 +65,16 @@ class SilentModules final : public BusUser {
   CanPort& port_;
   SilentModulesOptions options_;
   std::uint32_t vendor_ = 0;
-  std::deque<Range> ranges_;  ///< to be asked for; the first one is under way
+  std::deque<Range> ranges_;  ///< ranges to be examined; the request for the first one is under way
   Step step_ = Step::idle;
   std::deque<CanFrame> outgoing_;
-  unsigned unsent_ = 0;  ///< frames of the request that were not on the bus yet
+  unsigned unsent_ = 0;  ///< number of frames of the request that were not on the bus yet
   bool is_answered_ = false;
-  std::uint8_t answer_ = 0;  ///< its first byte of data
+  std::uint8_t answer_ = 0;  ///< first byte of data of the answer
   Microseconds end_ = never;
   Microseconds deadline_ = never;
   std::vector<SilentModule> found_;
-  unsigned selections_ = 0;  ///< of the last one, until it has answered with its node id
+  unsigned selections_ = 0;  ///< number of selections of the last module, until it has answered with its node id
 };
 
 }  // namespace proleg::host

@@ -7,7 +7,7 @@
 
 namespace proleg::host {
 
-/// "operational", "pre-operational", "stopped", "booting"; for another byte "unknown state".
+/// The text of an NMT state: "operational", "pre-operational", "stopped", "booting"; for another byte "unknown state".
 [[nodiscard]] std::string_view state_text(canopen::NmtState state);
 
 /// The state of a drive by its statusword (0x6041; CiA 402, table 30): "operation enabled", "fault", ...

@@ -9,11 +9,11 @@ namespace proleg::host {
 /// The secret that a program must know to use a server: 256 random bits in base64url (43 characters).
 class AccessToken {
  public:
-  /// A new one, from the system's random numbers.
+  /// Makes a new token from the system's random numbers.
   [[nodiscard]] static AccessToken make();
 
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// The time it takes depends only on the length of `candidate`.
+  /// Whether the candidate is the token. The duration depends only on the length of `candidate`.
   [[nodiscard]] bool matches(std::string_view candidate) const;
 
  private:
@@ -22,8 +22,8 @@ class AccessToken {
   std::string text_;
 };
 
-/// Writes a file that only its owner may read (mode 0600), in place of a file of this name. The file never exists with
-/// another mode or with a part of the text. Throws FileError.
+/// Writes a file that only its owner may read (mode 0600), and replaces a file of this name. The file never exists
+/// with another mode or with a part of the text. Throws FileError.
 void write_private_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace proleg::host

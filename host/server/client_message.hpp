@@ -19,11 +19,11 @@ struct Hello {
   std::uint64_t protocol = 0;
   std::string token;
   std::string name;           ///< 1 to 60 characters, none of them a control character
-  bool is_only_stop = false;  ///< gets the welcome and the answers to its own messages, and nothing else
+  bool is_only_stop = false;  ///< the viewer receives only the welcome and the answers to its own messages
 };
 
 struct Operation {
-  std::uint64_t id = 0;  ///< at most 2^53 - 1, as all numbers of messages
+  std::uint64_t id = 0;  ///< at most 2^53 - 1, like all numbers of messages
   std::uint64_t epoch = 0;
   std::string name;
   nlohmann::json arguments;  ///< an object
@@ -37,14 +37,14 @@ struct Beat {
 
 struct Subscribe {
   std::vector<std::string> signals;   ///< at most 64, all different
-  std::optional<std::uint64_t> hash;  ///< of the document `telemetry` that the viewer knows
-  bool newest = false;                ///< the newest row that is there comes, too
+  std::optional<std::uint64_t> hash;  ///< hash of the document `telemetry` that the viewer knows
+  bool newest = false;                ///< the newest present row is sent, too
 };
 
 using ClientMessage = std::variant<Hello, Operation, Stop, Beat, Subscribe>;
 
-/// Throws InputError: text that is not JSON, that is nested deeper than 16 levels, or that is no such message. Fields
-/// that it does not know are ignored.
+/// Reads a message. Throws InputError for text that is not JSON, that is nested deeper than 16 levels, or that is not
+/// such a message. Unknown fields are ignored.
 [[nodiscard]] ClientMessage parse_client_message(std::string_view text);
 
 }  // namespace proleg::host

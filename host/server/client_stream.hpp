@@ -15,24 +15,24 @@
 
 namespace proleg::host {
 
-/// The bytes of a client's connection: TCP, or TLS above it. Handlers and buffers have one type each below, because
+/// The stream of a client's connection: TCP, or TLS above it. Handlers and buffers have one type each below, because
 /// Boost takes long to compile for each combination.
 class ClientStream {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
-  /// What went wrong, and the number of bytes.
+  /// Receives the error and the number of bytes.
   using Transferred = std::function<void(const boost::system::error_code&, std::size_t)>;
 
-  /// `tls` is null for plain TCP; else it must live as long as the stream.
+  /// `tls` is null for plain TCP; otherwise it must live as long as the stream.
   ClientStream(boost::asio::ip::tcp::socket socket, boost::asio::ssl::context* tls);
   ClientStream(ClientStream&&) noexcept;
   ~ClientStream();
 
-  /// The deadlines of a Beast stream are here.
+  /// The TCP stream, which has the deadlines of a Beast stream.
   [[nodiscard]] boost::beast::tcp_stream& tcp();
   [[nodiscard]] executor_type get_executor() { return tcp().get_executor(); }
 
-  /// Calls the handler at once if there is nothing to agree on.
+  /// Performs the handshake of TLS. Calls the handler at once for plain TCP.
   void async_handshake(std::function<void(const boost::system::error_code&)> handler);
 
   template <typename Buffers, typename Handler>
@@ -45,12 +45,12 @@ class ClientStream {
     write_some(list<boost::asio::const_buffer>(buffers), copyable(std::forward<Handler>(handler)));
   }
 
-  /// Writes bytes that nothing follows, then ends the direction to the client. Unlike other writing it may begin while
-  /// Beast writes a frame of its own: plain TCP takes what the system has room for, and TLS puts its records in a row.
-  /// The handler is called in any case.
+  /// Writes the last bytes, then ends the direction to the client. Unlike other writing it may begin while Beast
+  /// writes a frame of its own: plain TCP takes the bytes for which the system has room, and TLS puts its records in a
+  /// row. The handler is called in any case.
   void async_write_last(boost::asio::const_buffer bytes, std::function<void()> handler);
 
-  /// Tells the client that no more bytes come. The handler is called in any case, at the latest at the deadline.
+  /// Informs the client that no more bytes come. The handler is called in any case, at the latest at the deadline.
   void async_shutdown(std::function<void()> handler);
 
   void end_sending();
@@ -65,7 +65,7 @@ class ClientStream {
   static std::vector<Buffer> list(const Buffers& buffers) {
     return {boost::asio::buffer_sequence_begin(buffers), boost::asio::buffer_sequence_end(buffers)};
   }
-  /// Beast's handlers can only be moved.
+  /// Makes a handler that can be copied from one of Beast, which can only be moved.
   template <typename Handler>
   static Transferred copyable(Handler&& handler) {
     return [kept = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler))](
@@ -78,7 +78,8 @@ class ClientStream {
 /// Beast closes a WebSocket with these two functions.
 inline void beast_close_socket(ClientStream& stream) { stream.tcp().close(); }
 
-/// After the exchange of close frames. It does not wait for the end of the client, which might never come.
+/// Shuts the stream down after the exchange of close frames. It does not wait for the client to end the connection,
+/// which might never happen.
 template <typename Handler>
 void async_teardown(boost::beast::role_type /*role*/, ClientStream& stream, Handler&& handler) {
   stream.end_sending();

@@ -10,27 +10,27 @@
 
 namespace proleg::host {
 
-/// A connection of a browser or program, for as long as one of its handlers exists.
+/// A connection of a browser or program. It exists as long as one of its handlers.
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// Sends what there is to send, if nothing is on its way.
+  /// Sends the pending output, if nothing is being sent.
   virtual void pump() {}
-  /// Ends in an orderly way, if the other end lets it.
+  /// Ends the connection in an orderly way, if the other end permits it.
   virtual void end() = 0;
   virtual void end_by_force() = 0;
 };
 
-/// What connections use of the server that took them. They share it.
+/// The functions of the server that its connections use. All connections share it.
 class ConnectionServer {
  public:
   virtual ~ConnectionServer() = default;
   [[nodiscard]] virtual const ServerAddress& address() const = 0;
   [[nodiscard]] virtual boost::asio::io_context& context() = 0;
   [[nodiscard]] virtual SessionLink& link() = 0;
-  /// The connection ends with this service.
+  /// Adds a connection, which ends with this server.
   virtual void add(const std::shared_ptr<Connection>& connection) = 0;
-  /// After each event: sends what can be sent, and waits for the next deadline.
+  /// Sends the pending output and waits for the next deadline. To be called after each event.
   virtual void serve() = 0;
 };
 

@@ -11,43 +11,43 @@
 
 namespace proleg::host {
 
-/// The right of one viewer to drive (docs/page-interface.md, "The lease"). A state machine: what time does, advance()
-/// does, and every other call does it first.
+/// The right of one viewer to drive (docs/page-interface.md, "The lease"). A state machine: advance() performs the
+/// changes that are due at a time, and every other call does so first.
 class ControlLease {
  public:
-  /// A holder that does not answer a request for so long has granted it.
+  /// Duration after which a holder that does not answer a request has granted it.
   static constexpr ServerTime answer_timeout{10'000};
-  /// A holder is away if it gave no sign of life for so long.
+  /// Duration without a sign of life after which a holder is away.
   static constexpr ServerTime away_timeout{1'000};
 
   /// The result of an operation, decided now or some calls later.
   struct Result {
     ClientId client = 0;
     std::uint64_t operation = 0;
-    std::string error;  ///< empty: done
+    std::string error;  ///< empty: the operation was done
   };
 
   void take(ServerTime now, ClientId client, const std::string& name, std::uint64_t operation);
   void answer(ServerTime now, ClientId client, std::uint64_t epoch, std::uint64_t operation, bool is_granted);
   void release(ServerTime now, ClientId client, std::uint64_t epoch, std::uint64_t operation);
-  /// A sign of life. `age`: time since the viewer's main thread was last seen.
+  /// Receives a sign of life. age_ms: time since the viewer's main thread was last active.
   void beat(ServerTime now, ClientId client, double age_ms);
-  /// The viewer has gone. Its own request has no result.
+  /// Notes that the viewer has gone. Its own request gets no result.
   void leave(ServerTime now, ClientId client);
   void advance(ServerTime now);
-  /// When advance() has something to do, if nothing happens before.
+  /// The time at which advance() must be called, if no other function is called before.
   [[nodiscard]] ServerTime deadline() const;
 
-  /// Why an operation of a viewer that names this epoch is refused; empty if it is allowed.
+  /// The reason why an operation of a viewer that names this epoch is refused; empty if it is allowed.
   [[nodiscard]] std::string refusal(ClientId client, std::uint64_t epoch) const;
   [[nodiscard]] bool has_holder() const { return holder_.has_value(); }
   [[nodiscard]] bool is_away() const { return is_away_; }
   [[nodiscard]] std::uint64_t epoch() const { return epoch_; }
 
-  /// The document `control`. It changes with revision(), except for the time that a request has left.
+  /// The document `control`. It changes only with revision(), except for the time that a request has left.
   [[nodiscard]] nlohmann::json document(ServerTime now) const;
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
-  /// The results since the last call.
+  /// Takes the results since the last call.
   [[nodiscard]] std::vector<Result> take_results() { return std::exchange(results_, {}); }
 
  private:
@@ -63,7 +63,7 @@ class ControlLease {
 
   [[nodiscard]] bool is_held_by(ClientId client) const { return holder_ && holder_->client == client; }
   void finish(ClientId client, std::uint64_t operation, std::string error = {});
-  /// Nobody holds it any more, or whoever asked for it.
+  /// Ends the holder's lease; the viewer that has requested it, if any, gets it.
   void vacate(ServerTime now);
   void begin_epoch(ServerTime now, Party holder);
 

@@ -8,19 +8,19 @@
 
 namespace proleg::host {
 
-/// Bytes of a message that several viewers get.
+/// The bytes of a message to several viewers.
 using SharedText = std::shared_ptr<const std::string>;
 
-/// The revisions of documents that a viewer has got.
+/// The revision of each document that a viewer has received.
 using KnownRevisions = std::map<std::string, std::uint64_t>;
 
 /// The newest revision of each document, as the message that viewers get. Revisions count the changes of all documents.
 class DocumentStore {
  public:
-  /// `value` is JSON.
+  /// Stores a new revision of a document. `value` is JSON.
   void publish(const std::string& name, std::string_view value);
-  /// Of the documents whose newest revision is not known, the one that has been so for longest: a document that changes
-  /// all the time delays no other. It is known from then on. Null: all are known.
+  /// The document whose newest revision has been unknown for the longest time, so that a document that changes all the
+  /// time delays no other. It is marked as known. Null: all documents are known.
   [[nodiscard]] SharedText next(KnownRevisions& known) const;
 
  private:

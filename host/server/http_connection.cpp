@@ -43,7 +43,7 @@ std::vector<std::string_view> fields(const Request& request, http::field name) {
   return values;
 }
 
-/// Requests, one after the other.
+/// A connection that handles HTTP requests, one after the other.
 class HttpConnection final : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(std::shared_ptr<ConnectionServer> server, ClientStream stream, ConnectionUse use)
@@ -56,11 +56,12 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
  private:
   void read();
   void handle_request(const error_code& error);
-  /// `body` must live as long as the server.
+  /// Sends a response. `body` must live as long as the server.
   void respond(unsigned status, std::string_view content_type, std::string_view body, bool is_kept_alive);
-  /// An error: its words are the body.
+  /// Sends an error, whose body is the text of its status.
   void respond_error(unsigned status, bool is_kept_alive);
-  /// Lets the other end read the response: an early end of a connection with unread bytes would discard it.
+  /// Reads and ignores bytes while the other end reads the response: closing a connection with unread bytes would
+  /// discard the response.
   void drain();
   void upgrade(Request request);
 
@@ -69,7 +70,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   const ConnectionUse use_;
   beast::flat_buffer buffer_{max_header_bytes + max_body_bytes};
   std::optional<http::request_parser<http::string_body>> parser_;
-  std::string socket_origin_;  ///< for the present request, once its Host was accepted
+  std::string socket_origin_;  ///< origin of the WebSocket for the present request, after its Host was accepted
   bool is_head_ = false;
   std::string header_;
 };
@@ -132,7 +133,7 @@ void HttpConnection::handle_request(const error_code& error) {
       respond(200, "application/json", R"({"stopped": true})", is_kept_alive);
       return;
     case RequestAction::open_socket:
-      // Before the answer a client sends nothing that it could not send after it.
+      // A client has no reason to send bytes of the WebSocket before the answer, so they are refused.
       if (buffer_.size() > 0) {
         respond_error(400, false);
       } else {

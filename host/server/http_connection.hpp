@@ -10,8 +10,9 @@ namespace proleg::host {
 
 enum class ConnectionUse { any, only_stop };
 
-/// Takes requests, one after the other, after the handshake of TLS if there is `tls`. A WebSocket becomes a
-/// ViewerConnection. With only_stop: one request, which other than POST /stop is refused with 503.
+/// Opens a connection that handles requests one after the other, after the handshake of TLS if `tls` is not null. A
+/// request for a WebSocket makes it a ViewerConnection. only_stop: it handles one request, and refuses any request
+/// other than POST /stop with 503.
 [[nodiscard]] std::shared_ptr<Connection> open_http_connection(std::shared_ptr<ConnectionServer> server,
                                                                boost::asio::ip::tcp::socket socket,
                                                                boost::asio::ssl::context* tls, ConnectionUse use);

@@ -10,16 +10,17 @@
 
 namespace proleg::host {
 
-/// The message for a viewer.
+/// The message to a viewer about a notice.
 [[nodiscard]] std::string notice_message(NoticeLevel level, const std::string& text);
 
-/// The last notices, for viewers that are there and those that come later.
+/// The last notices, for present and later viewers.
 class NoticeLog {
  public:
   static constexpr std::size_t max_notices = 200;
 
   void add(NoticeLevel level, const std::string& text);
-  /// The first notice from this number on, which becomes that of the one behind it. Null: there is none yet.
+  /// The first notice from this number on; `number` becomes that of the next notice. Null: there is no such notice
+  /// yet.
   [[nodiscard]] SharedText next(std::uint64_t& number) const;
 
  private:

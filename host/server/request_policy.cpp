@@ -23,7 +23,7 @@ constexpr std::array<std::pair<unsigned, std::string_view>, 11> statuses{{{200, 
                                                                           {431, "Request Header Fields Too Large"},
                                                                           {503, "Service Unavailable"}}};
 
-/// Browsers leave out the port that they take anyway.
+/// The Host of a name. Browsers omit the default port.
 std::string host_of(const ServerAddress& address, std::string_view name) {
   return std::string(name) + (address.has_tls && address.port == https_port ? "" : ":" + std::to_string(address.port));
 }
@@ -32,7 +32,7 @@ std::string origin_of(const ServerAddress& address, std::string_view host) {
   return (address.has_tls ? "https://" : "http://") + std::string(host);
 }
 
-/// A foreign name that resolves to this computer (DNS rebinding) is another Host.
+/// Whether a Host belongs to this server. A foreign name that resolves to this computer (DNS rebinding) does not.
 bool is_own_host(std::string_view host, const ServerAddress& address) {
   const auto is_host = [&](std::string_view name) { return host == host_of(address, name); };
   return std::any_of(local_names.begin(), local_names.end(), is_host) ||

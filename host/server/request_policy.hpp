@@ -10,30 +10,30 @@
 
 namespace proleg::host {
 
-/// Where clients reach a server.
+/// The address at which clients reach a server.
 struct ServerAddress {
   std::uint16_t port = 0;
   bool has_tls = false;
-  std::vector<std::string> names;  ///< beside those of this computer; as in a URL
+  std::vector<std::string> names;  ///< names beside those of this computer; written as in a URL
 };
 
-/// "https://robot.local:8123": of the first name, or of 127.0.0.1 if there is none.
+/// The origin of the first name, or of 127.0.0.1 if there is none: "https://robot.local:8123".
 [[nodiscard]] std::string first_origin(const ServerAddress& address);
 
-/// "wss://robot.local:8123", where `host` is an accepted Host.
+/// The origin of the WebSocket, such as "wss://robot.local:8123"; `host` is an accepted Host.
 [[nodiscard]] std::string socket_origin(const ServerAddress& address, std::string_view host);
 
-/// What decides about an HTTP request.
+/// The fields of an HTTP request that decide about it.
 struct RequestFields {
   std::string_view method;
   std::string_view target;
   std::vector<std::string_view> hosts;           ///< every field Host
   std::vector<std::string_view> origins;         ///< every field Origin
   std::vector<std::string_view> authorizations;  ///< every field Authorization
-  bool is_upgrade = false;                       ///< asks for a WebSocket
+  bool is_upgrade = false;                       ///< the request is for a WebSocket
 };
 
-/// The path of a request's target: without what follows a question mark.
+/// The path of a request's target, without the question mark and the text that follows it.
 [[nodiscard]] std::string_view path_of(std::string_view target);
 
 enum class RequestAction { refuse, serve_file, open_socket, stop };
@@ -49,12 +49,11 @@ struct RequestDecision {
                                              const AccessToken& token);
 
 /// The start of a response, with the empty line. The page may connect to `socket_origin`, which is empty if the server
-/// did not accept the request's Host.
-/// An error has no body but the words of its status.
+/// did not accept the request's Host. The body of an error is only the text of its status.
 [[nodiscard]] std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
                                           std::string_view socket_origin, bool is_kept_alive);
 
-/// "Not Found"; empty for a status that the server does not send.
+/// The text of a status, such as "Not Found"; empty for a status that the server does not send.
 [[nodiscard]] std::string_view status_words(unsigned status);
 
 }  // namespace proleg::host

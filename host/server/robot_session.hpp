@@ -8,7 +8,7 @@
 
 namespace proleg::host {
 
-/// Number of a request to the session, from 1; not used twice by a server.
+/// Number of a request to the session, from 1; a server uses no number twice.
 using RequestId = std::uint64_t;
 
 struct OperationRequest {
@@ -24,18 +24,19 @@ struct StopRequest {
   std::string by;  ///< name of the viewer, or "POST /stop"
 };
 
-/// What a server serves: something that runs in another thread. The server calls these functions in its own thread, so
-/// they pass the request on and return at once.
+/// The robot that a server serves, in another thread. The server calls these functions in its own thread, so they pass
+/// the request on and return at once.
 class RobotSession {
  public:
   virtual ~RobotSession() = default;
 
-  /// An operation of a viewer that may use it. Its name may be unknown. The session answers it once, with
+  /// Receives an operation of a viewer that may use it. Its name may be unknown. The session answers it once, with
   /// WebServer::answer().
   virtual void operate(const OperationRequest& request) = 0;
-  /// Stops the robot, whatever else is pending. Answered with WebServer::stopped(). A viewer may send many of these.
+  /// Stops the robot, whatever else is pending. The answer is WebServer::stopped(). A viewer may send many of these
+  /// requests.
   virtual void stop(const StopRequest& request) = 0;
-  /// Somebody drives now, nobody does, or the holder of control is away or back.
+  /// Reports that a viewer drives now, that none does, or that the holder of control is away or back.
   virtual void holder_changed(bool has_holder, bool is_away) = 0;
 };
 

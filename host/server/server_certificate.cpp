@@ -30,7 +30,7 @@ std::string_view bytes_of(const ASN1_STRING* text) {
           static_cast<std::size_t>(ASN1_STRING_length(text))};
 }
 
-/// As a browser writes it into Host; nothing if it cannot be there.
+/// The name as a browser writes it into Host; nothing if it cannot be there.
 std::optional<std::string> host_name(std::string_view name) {
   std::string small;
   for (const char letter : name) {
@@ -100,7 +100,7 @@ ServerCertificate::ServerCertificate(const std::filesystem::path& certificate, c
   if (error) {
     throw InputError(certificate.string(), 0, error.message(), expected_certificate);
   }
-  // Without this OpenSSL asks for the password on the terminal.
+  // Without this function OpenSSL asks for the password on the terminal.
   tls_->set_password_callback([](std::size_t, asio::ssl::context::password_purpose) { return std::string(); }, error);
   tls_->use_private_key_file(key.string(), asio::ssl::context::pem, error);
   if (error) {

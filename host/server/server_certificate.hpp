@@ -11,7 +11,7 @@ class context;
 
 namespace proleg::host {
 
-/// The certificate with which a server proves its names, and the key of it.
+/// The certificate that proves the names of a server, and its key.
 class ServerCertificate {
  public:
   /// Reads PEM files; both may be the same. Throws InputError.
@@ -23,9 +23,9 @@ class ServerCertificate {
   /// The alternative names of the certificate, or else its common name, as URLs have them: in small letters, IPv6 in
   /// brackets. At least one. Names with a wildcard are left out.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// One line each, about what works and is not good.
+  /// Warnings, one line each, about properties that work but are not recommended.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Server's side of TLS 1.2 and newer. Streams refer to it.
+  /// The server's side of TLS 1.2 and newer. Streams refer to it.
   [[nodiscard]] boost::asio::ssl::context& tls() const { return *tls_; }
 
  private:

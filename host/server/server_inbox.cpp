@@ -6,7 +6,7 @@ namespace proleg::host {
 
 void ServerInbox::put_document(const std::string& name, std::string value) {
   const std::lock_guard lock(mutex_);
-  // A newer text stands behind the other documents: revisions are in the order of the last changes.
+  // A newer text is put behind the other documents: revisions are in the order of the last changes.
   std::erase_if(contents_.documents, [&name](const auto& document) { return document.first == name; });
   contents_.documents.emplace_back(name, std::move(value));
 }
@@ -35,7 +35,7 @@ void ServerInbox::put_notice(NoticeLevel level, const std::string& text) {
 }
 
 ServerInbox::Contents ServerInbox::take_contents() {
-  is_woken_ = false;  // first: what is put from here on wakes the server again
+  is_woken_ = false;  // cleared before the contents are taken: later contents wake the server again
   const std::lock_guard lock(mutex_);
   return std::exchange(contents_, {});
 }

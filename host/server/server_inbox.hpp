@@ -16,8 +16,8 @@
 
 namespace proleg::host {
 
-/// What the session has said since the server looked. The session may be faster than the server: of each document there
-/// is only the newest text, and of the notices the last ones. All functions may be called from any thread.
+/// The output of the session since the server has last read it. The session may be faster than the server: only the
+/// newest text of each document and the last notices are kept. All functions may be called from any thread.
 class ServerInbox {
  public:
   struct Layout {
@@ -30,7 +30,7 @@ class ServerInbox {
     std::string text;
   };
   struct Contents {
-    std::vector<std::pair<std::string, std::string>> documents;  ///< name and JSON
+    std::vector<std::pair<std::string, std::string>> documents;  ///< name and JSON of each document
     std::optional<Layout> layout;
     std::vector<OperationAnswer> answers;
     std::vector<StopAnswer> stops;
@@ -43,7 +43,7 @@ class ServerInbox {
   void put_stopped(const StopAnswer& answer);
   void put_notice(NoticeLevel level, const std::string& text);
 
-  /// True for the first call since take_contents(): the server must be woken.
+  /// Returns true for the first call since take_contents(): the server must be woken.
   [[nodiscard]] bool claim_wake() { return !is_woken_.exchange(true); }
   [[nodiscard]] Contents take_contents();
 

@@ -5,7 +5,7 @@
 
 namespace proleg::host {
 
-/// Number of a viewer, from 1; not used twice by a server.
+/// Number of a viewer, from 1; a server uses no number twice.
 using ClientId = std::uint32_t;
 
 /// Time since any fixed moment, on a steady clock. The state machines of the server receive it as an argument.

@@ -10,13 +10,13 @@
 
 namespace proleg::host {
 
-/// What the sockets serve, and how the session's thread reaches it: `history` and `inbox` are for any thread, `hub` and
-/// deliver() for that of the sockets.
+/// Connects the sockets with the session's thread: `history` and `inbox` are for any thread, `hub` and deliver() for
+/// that of the sockets.
 struct SessionLink {
   SessionLink(AccessToken access_token, PageFiles page_files, std::size_t history_bytes, ViewerHub::Options options,
               RobotSession& session);
 
-  /// Gives the hub what the session has put into the inbox.
+  /// Moves the contents of the inbox to the hub.
   void deliver();
 
   const AccessToken token;

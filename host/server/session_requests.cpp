@@ -82,7 +82,7 @@ void SessionRequests::notify() {
   wake_.notify_one();
 }
 
-/// Whether anything is left.
+/// Updates are_there_: whether any request is left.
 void SessionRequests::look() { are_there_ = ends_ || is_holder_new_ || !stops_.empty() || !operations_.empty(); }
 
 }  // namespace proleg::host

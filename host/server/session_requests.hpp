@@ -1,6 +1,6 @@
 #pragma once
 
-// What viewers ask of a session, on its way from the server's thread to that of the session.
+// Requests of viewers to a session, on their way from the server's thread to that of the session.
 
 #include <atomic>
 #include <chrono>
@@ -25,32 +25,32 @@ class SessionRequests final : public RobotSession {
     Clock::time_point since;
   };
   struct Holder {
-    bool is_there = false;  ///< somebody drives
-    bool is_away = false;   ///< but their page does not answer
+    bool is_there = false;  ///< a viewer drives
+    bool is_away = false;   ///< the page of the viewer that drives does not answer
   };
 
   // For any thread.
   void operate(const OperationRequest& request) override;
   void stop(const StopRequest& request) override;
   void holder_changed(bool has_holder, bool is_away) override;
-  /// The session is to end.
+  /// Requests the end of the session.
   void end();
 
   // For the session's thread.
 
-  /// All STOPs that wait. If there are any, the operations that wait as well go into `outdated`: what was asked for
-  /// before a STOP has no effect after it.
+  /// Takes all STOPs that wait. If there are any, the waiting operations are moved to `outdated`: an operation that
+  /// was requested before a STOP has no effect after it.
   [[nodiscard]] std::vector<Stop> take_stops(std::deque<OperationRequest>& outdated);
-  /// The oldest operation; nothing as long as a STOP waits.
+  /// Takes the oldest operation; nothing as long as a STOP waits.
   [[nodiscard]] std::optional<OperationRequest> take_operation();
-  /// Who drives now.
+  /// Takes the present state of the holder of control.
   [[nodiscard]] Holder take_holder();
-  /// Whether the session must interrupt what it does: a STOP waits, or it is to end.
+  /// Whether the session must interrupt its work: a STOP waits, or the session is to end.
   [[nodiscard]] bool interrupts() const;
   [[nodiscard]] bool ends() const;
-  /// Whether something has come that was not taken. Costs nothing.
+  /// Whether a request has not been taken. The call is cheap.
   [[nodiscard]] bool are_there() const { return are_there_; }
-  /// Returns when something has come that was not taken, or at this time.
+  /// Waits until a request has not been taken, or until this time.
   void wait_until(Clock::time_point time);
   void wait();
 

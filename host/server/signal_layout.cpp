@@ -20,7 +20,7 @@ const char* text_of(SignalOf of) {
   return "";
 }
 
-/// FNV-1a, 32 bits.
+/// The 32-bit FNV-1a hash of a text.
 std::uint32_t hash_of(std::string_view text) {
   std::uint32_t hash = 2166136261U;
   for (const char character : text) {

@@ -9,10 +9,10 @@
 
 namespace proleg::host {
 
-/// What one value of a signal belongs to.
+/// The part of the robot to which one value of a signal belongs.
 enum class SignalOf { joint, link, robot };
 
-/// Values of one kind: a row has `count` of them, one behind the other. value = raw * scale, in `unit`.
+/// Values of one kind, of which a row has `count`, one behind the other. value = raw * scale, in `unit`.
 struct Signal {
   std::string name;
   std::string unit;
@@ -21,7 +21,7 @@ struct Signal {
   SignalOf of = SignalOf::joint;
 };
 
-/// The raw value that stands for none.
+/// The raw value that means "no value".
 inline constexpr std::int32_t no_value = INT32_MIN;
 
 /// Position of a signal's values in a row.
@@ -33,16 +33,16 @@ struct SignalColumns {
 /// The signals of a row, in their order.
 class SignalLayout {
  public:
-  /// No signals.
+  /// Has no signals.
   SignalLayout() = default;
-  /// Throws std::invalid_argument if two signals have one name.
+  /// Makes the layout of these signals. Throws std::invalid_argument if two signals have the same name.
   explicit SignalLayout(std::vector<Signal> signals);
 
   /// Number of int32 values in a row.
   [[nodiscard]] std::size_t row_size() const { return row_size_; }
-  /// 32 bits that differ, but for a chance of 2^-32, if two layouts differ.
+  /// The hash of the layout: two different layouts have the same one with a probability of 2^-32.
   [[nodiscard]] std::uint32_t hash() const { return hash_; }
-  /// Null: there is no such signal.
+  /// The columns of a signal; null if there is no such signal.
   [[nodiscard]] const SignalColumns* find(std::string_view name) const;
   /// The document `telemetry`. tick_us: duration of a tick in microseconds.
   [[nodiscard]] nlohmann::json document(std::uint32_t tick_us) const;

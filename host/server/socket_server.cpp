@@ -41,7 +41,7 @@ SocketServer::SocketServer(asio::io_context& context, std::uint16_t port,
 void SocketServer::listen(std::uint16_t port) {
   tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
   if (certificate_) {
-    // All interfaces; IPv6 takes IPv4, too, if the system has IPv6.
+    // The server listens on all interfaces; the IPv6 socket also takes IPv4, if the system has IPv6.
     error_code error;
     acceptor_.open(tcp::v6(), error);
     if (!error) {
@@ -80,7 +80,7 @@ void SocketServer::accept() {
       self->accept();
       return;
     }
-    // Perhaps the process has no file descriptors left; another attempt at once would fail, too.
+    // The process may have no file descriptors left; another attempt at once would fail, too.
     self->accept_timer_.expires_after(accept_pause);
     self->accept_timer_.async_wait([self](const error_code&) {
       if (!self->has_ended_) {

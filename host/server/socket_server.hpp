@@ -15,14 +15,14 @@
 
 namespace proleg::host {
 
-/// Takes connections, and wakes them when there is something to send.
+/// Accepts connections, and wakes them when there is output. Connections share this object.
 class SocketServer final : public ConnectionServer, public std::enable_shared_from_this<SocketServer> {
  public:
   SocketServer(boost::asio::io_context& context, std::uint16_t port,
                std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link);
 
   void accept();
-  /// From any thread.
+  /// Schedules the delivery of the session's output. May be called from any thread.
   void post_delivery();
   void post_stop();
 
@@ -38,7 +38,7 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
   void listen(std::uint16_t port);
   void accepted(boost::asio::ip::tcp::socket socket);
   void stop();
-  /// Those that have not ended; forgets the others.
+  /// The connections that have not ended; the others are removed from the list.
   [[nodiscard]] static std::vector<std::shared_ptr<Connection>> living(Connections& connections);
 
   boost::asio::io_context& context_;
@@ -51,7 +51,7 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
   ServerAddress address_;
   bool has_ended_ = false;
   Connections connections_;
-  Connections stop_connections_;  ///< reserved for POST /stop, the oldest first
+  Connections stop_connections_;  ///< connections reserved for POST /stop, the oldest first
 };
 
 }  // namespace proleg::host

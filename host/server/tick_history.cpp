@@ -77,7 +77,7 @@ std::optional<std::string> TickHistory::encode_rows(const Subscription& subscrip
     const bool follows = !read.last || read.last->run != row.run || read.last->tick + 1 == row.tick;
     const bool is_other_run = count > 0 && row.run != first.run;
     if (count > 0 && (is_other_run || !follows)) {
-      break;  // the next message begins with it
+      break;  // the next message begins with this row
     }
     read.has_gap = read.has_gap || !follows;
     read.last = row;
@@ -97,7 +97,7 @@ std::optional<std::string> TickHistory::encode_rows(const Subscription& subscrip
       bytes.append(values + columns.offset * sizeof(std::int32_t), columns.count * sizeof(std::int32_t));
     }
     ++count;
-    // Rows behind it that the stride leaves out stay unread: one of them may be the last for a long time.
+    // The rows behind it that the stride leaves out stay unread: one of them may be the last row for a long time.
     cursor = read;
     ++cursor.next;
   }

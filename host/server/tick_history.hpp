@@ -12,16 +12,16 @@
 
 namespace proleg::host {
 
-/// Which values of a row a viewer gets.
+/// The values of a row that a viewer receives.
 struct Subscription {
   std::uint32_t number = 0;
-  std::uint64_t generation = 0;  ///< of the history whose rows `columns` describes
+  std::uint64_t generation = 0;  ///< generation of the history whose rows `columns` describes
   std::vector<SignalColumns> columns;
 };
 
-/// How far a viewer has read.
+/// The position up to which a viewer has read.
 struct HistoryCursor {
-  std::uint64_t next = 0;  ///< rows before this one, counted from the first, are read
+  std::uint64_t next = 0;  ///< number of the next row to read, counted from the first row
   struct Row {
     std::uint16_t run = 0;
     std::uint32_t tick = 0;
@@ -40,19 +40,19 @@ class TickHistory {
 
   /// Forgets all rows; from now on a row has this many values. Returns the new generation.
   std::uint64_t reset(std::size_t row_size);
-  /// Throws std::invalid_argument if the row has another number of values.
+  /// Adds a row. Throws std::invalid_argument if it has another number of values.
   void add(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row);
 
   /// Number of rows that were ever added.
   [[nodiscard]] std::uint64_t end() const;
-  /// Number of the newest row that is there; end() if there is none.
+  /// Number of the newest present row; end() if there is none.
   [[nodiscard]] std::uint64_t newest() const;
-  /// Rows that the memory holds at most.
+  /// Greatest number of rows that the memory holds.
   [[nodiscard]] std::size_t capacity() const;
 
-  /// A binary message (docs/page-interface.md, "Telemetry") with rows of one run from the cursor on, which it moves
-  /// behind the last of them. Only ticks that are multiples of `stride` (at least 1) are in it. Nothing if there is no
-  /// such row, or if the subscription is for another generation.
+  /// Makes a binary message (docs/page-interface.md, "Telemetry") with rows of one run from the cursor on, and moves
+  /// the cursor behind the last of them. It contains only ticks that are multiples of `stride` (at least 1). Returns
+  /// nothing if there is no such row, or if the subscription is for another generation.
   [[nodiscard]] std::optional<std::string> encode_rows(const Subscription& subscription, std::uint32_t stride,
                                                        HistoryCursor& cursor) const;
 
@@ -70,7 +70,7 @@ class TickHistory {
   std::uint64_t end_ = 0;
   std::uint64_t begin_ = 0;
   std::vector<Row> rows_;             ///< a ring: row number n is at n modulo its size
-  std::vector<std::int32_t> values_;  ///< row_size_ for each row of the ring
+  std::vector<std::int32_t> values_;  ///< row_size_ values for each row of the ring
 };
 
 }  // namespace proleg::host

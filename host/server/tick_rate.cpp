@@ -25,7 +25,7 @@ void TickRate::update(ServerTime now, std::uint64_t rows) {
 }
 
 std::uint32_t TickRate::stride(std::uint64_t unread_rows) const {
-  // A clock of the computer may be a little faster than the ticks of 1 ms that it should show in full.
+  // The computer's clock may be slightly faster than the ticks; all ticks of 1 ms must be shown nevertheless.
   const double tolerated = 1.05 * max_ticks_per_second;
   std::uint32_t stride = 1;
   while (stride < max_stride && (ticks_per_second_ / stride > tolerated || unread_rows / stride > max_unread_rows)) {

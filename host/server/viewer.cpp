@@ -15,7 +15,7 @@ constexpr std::size_t bytes_result_header = 16;
 
 std::string dumped(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-/// Cut before a character that does not fit.
+/// The text of a close frame, cut before a character that does not fit.
 std::string cut_reason(const std::string& text) {
   std::size_t size = 0;
   while (size < text.size()) {
@@ -138,7 +138,7 @@ std::optional<OutgoingMessage> Viewer::next_message(ServerTime now, const Shared
   if (is_only_stop_) {
     return std::nullopt;
   }
-  // Documents and telemetry take turns, so neither delays the other.
+  // Documents and telemetry take turns, so that neither delays the other.
   if (!was_telemetry_) {
     if (auto message = next_telemetry(now, state)) {
       was_telemetry_ = true;
@@ -162,7 +162,7 @@ std::optional<OutgoingMessage> Viewer::next_telemetry(ServerTime now, const Shar
   const std::uint32_t stride = state.rate.stride(state.history.end() - cursor_.next);
   std::optional<std::string> bytes = state.history.encode_rows(*subscription_, stride, cursor_);
   if (bytes || stride > 1) {
-    next_telemetry_ = now + telemetry_interval;  // without a row, too: the stride may be smaller then
+    next_telemetry_ = now + telemetry_interval;  // also without a row: the stride may be smaller then
   }
   if (!bytes) {
     return std::nullopt;
@@ -185,7 +185,7 @@ ServerTime Viewer::deadline(ServerTime now, const SharedState& state) const {
   if (!is_welcome_) {
     return hello_deadline_;
   }
-  // Without telemetry before it, a row is sent when it comes.
+  // If no telemetry message was sent recently, a row is sent as soon as it is there.
   return subscription_ && next_telemetry_ > now && has_unread_rows(state) ? next_telemetry_ : no_deadline;
 }
 

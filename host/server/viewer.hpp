@@ -16,7 +16,7 @@
 
 namespace proleg::host {
 
-/// What all viewers get.
+/// The data that all viewers receive.
 struct SharedState {
   DocumentStore documents;
   NoticeLog notices;
@@ -35,47 +35,47 @@ struct CloseReason {
   std::string text;  ///< at most 123 bytes
 };
 
-/// What the server has to send to one viewer. The memory that it uses is bounded: of what a viewer does not read, it
-/// keeps only the newest, and it ends the connection of one that asks without reading the answers.
+/// The output of the server to one viewer. Its memory is bounded: of output that a viewer does not read it keeps only
+/// the newest, and it ends the connection of a viewer that sends requests without reading the answers.
 class Viewer {
  public:
   static constexpr ServerTime hello_timeout{2'000};
-  /// Time from one telemetry message to the next, so that fast ticks come together.
+  /// Time from one telemetry message to the next, so that a message contains several fast ticks.
   static constexpr ServerTime telemetry_interval{8};
   static constexpr std::size_t max_pending_operations = 64;
   static constexpr std::size_t max_replies = 256;
-  /// Of answers in bytes that wait to be sent; one may be larger.
+  /// Limit of the bytes of binary answers that wait to be sent; a single answer may be larger.
   static constexpr std::size_t max_waiting_bytes = std::size_t{8} << 20U;
 
   Viewer(ClientId client, ServerTime opened) : client_(client), hello_deadline_(opened + hello_timeout) {}
 
   [[nodiscard]] ClientId client() const { return client_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Has said hello with the right token, and is not being closed.
+  /// Whether the viewer has sent hello with the right token, and is not being closed.
   [[nodiscard]] bool is_welcome() const { return is_welcome_ && !closing_; }
-  /// The connection has to end, with this reason. Messages are not sent any more, and those received are ignored.
+  /// The reason with which the connection has to end. Messages are not sent any more, and received ones are ignored.
   [[nodiscard]] const std::optional<CloseReason>& closing() const { return closing_; }
-  /// The first reason counts.
+  /// Ends the connection. The first reason counts.
   void close(std::uint16_t code, const std::string& reason);
 
   void welcome(const std::string& name, bool is_only_stop, const std::string& program);
-  /// Counts an operation as pending until finish(). False: it was refused, or the connection ends.
+  /// Counts an operation as pending until finish_operation(). Returns false if it was refused, or the connection ends.
   [[nodiscard]] bool begin_operation(std::uint64_t id);
-  /// A value that is bytes becomes a binary message, any other one a message `result`.
+  /// Sends the result of an operation: bytes as a binary message, any other value as a message `result`.
   void finish_operation(std::uint64_t id, bool is_ok, const nlohmann::json& value, const std::string& error);
-  /// A message `stopped`. One that was not sent yet is replaced.
+  /// Queues a message `stopped`. It replaces one that was not sent yet.
   void queue_stopped(std::string message);
   void queue_notice(NoticeLevel level, const std::string& text);
-  /// Nothing: no telemetry until the next subscription.
+  /// Sets the subscription. Nothing: the viewer receives no telemetry until the next subscription.
   void set_subscription(std::optional<Subscription> subscription, const TickHistory& history, bool with_newest = false);
   [[nodiscard]] std::uint32_t next_subscription_number() { return ++subscriptions_; }
 
-  /// The next message, if there is one now. Call it when the message before is on its way.
+  /// The next message, if there is one now. To be called when the previous message is being sent.
   [[nodiscard]] std::optional<OutgoingMessage> next_message(ServerTime now, const SharedState& state);
 
-  /// Ends the connection of a viewer that said nothing.
+  /// Ends the connection of a viewer that has not sent hello in time.
   void advance(ServerTime now);
-  /// When advance() or next_message() has something to do, if nothing happens before.
+  /// The time at which advance() or next_message() must be called, if nothing happens before.
   [[nodiscard]] ServerTime deadline(ServerTime now, const SharedState& state) const;
 
  private:
@@ -83,7 +83,7 @@ class Viewer {
     SharedText message;
     std::optional<std::uint64_t> finished =
         std::nullopt;       ///< the operation that is not pending any more when this is sent
-    std::size_t bytes = 0;  ///< of an answer in bytes
+    std::size_t bytes = 0;  ///< size of a binary answer
     bool is_binary = false;
   };
 

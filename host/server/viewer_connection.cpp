@@ -20,7 +20,8 @@ using Request = beast::http::request<beast::http::string_body>;
 constexpr std::chrono::seconds upgrade_timeout{5};
 constexpr std::chrono::seconds close_handshake_timeout{1};
 constexpr std::chrono::seconds silence_timeout{30};
-/// The system keeps as much for a viewer that does not read: the less, the fresher is what it reads at last.
+/// Size of the system's buffer for a viewer that does not read: the smaller it is, the newer are the data that it
+/// reads.
 constexpr int send_buffer_bytes = 128 << 10;
 
 /// The WebSocket of a viewer.
@@ -36,9 +37,10 @@ class ViewerConnection final : public Connection, public std::enable_shared_from
 
  private:
   void read();
-  /// Reading goes on until the viewer ends the connection, or for a second.
+  /// Closes the connection. Reading goes on until the viewer ends the connection, or for a second.
   void close(const CloseReason& reason);
-  /// By hand: async_close beside an async_read that fails may leave a handler behind that never runs (Beast 1.74).
+  /// Sends the close frame without async_close, because async_close beside an async_read that fails may leave a
+  /// handler that never runs (Beast 1.74).
   void send_close_frame();
   void leave();
 
@@ -48,7 +50,7 @@ class ViewerConnection final : public Connection, public std::enable_shared_from
   beast::flat_buffer buffer_;
   Request request_;
   std::optional<ClientId> client_;
-  SharedText outgoing_;  ///< what is on its way; null: nothing
+  SharedText outgoing_;  ///< message that is being sent; null: none
   bool is_closing_ = false;
   CloseReason close_reason_;
   std::string close_frame_;
@@ -66,7 +68,7 @@ void ViewerConnection::open(Request request) {
   timeouts.keep_alive_pings = true;
   socket_.set_option(timeouts);
   socket_.read_message_max(max_message_bytes);
-  socket_.auto_fragment(false);  // a message is in memory anyway: one frame
+  socket_.auto_fragment(false);  // a message is one frame, because it is in memory anyway
   socket_.async_accept(request_, [self = shared_from_this()](const error_code& error) {
     if (error) {
       return;
@@ -132,7 +134,7 @@ void ViewerConnection::close(const CloseReason& reason) {
     return;
   }
   close_reason_ = reason;
-  // A viewer that does not read keeps the close frame from being sent.
+  // The timer ends the wait for a viewer that does not read, since the close frame cannot be sent.
   close_timer_.expires_after(close_handshake_timeout);
   close_timer_.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error) {

@@ -9,7 +9,7 @@
 
 namespace proleg::host {
 
-/// The WebSocket of a viewer, which `request` asks for. The stream has no bytes behind it.
+/// Opens the WebSocket of a viewer, for which `request` asks. The stream has no unread bytes behind the request.
 [[nodiscard]] std::shared_ptr<Connection> open_viewer_connection(
     std::shared_ptr<ConnectionServer> server, ClientStream stream,
     boost::beast::http::request<boost::beast::http::string_body> request);

@@ -122,7 +122,7 @@ void ViewerHub::control(ServerTime now, Viewer& viewer, const Operation& operati
 
 void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Stop& /*stop*/) {
   const RequestId request = ++last_request_;
-  // Every STOP reaches the session, also if it has not answered those before. Only its answer may be forgotten.
+  // Every STOP reaches the session, also if it has not answered earlier ones. Only its answer may be forgotten.
   if (stops_.size() >= max_pending_stops) {
     stops_.erase(stops_.begin());
   }
@@ -141,7 +141,7 @@ void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Subscribe& subs
   Subscription subscription{viewer.next_subscription_number(), generation_, {}};
   viewer.set_subscription(std::nullopt, state_.history);
   if (generation_ == 0 || (subscribe.hash && *subscribe.hash != layout_.hash())) {
-    return;  // the document with the layout is on its way
+    return;  // the viewer does not have the document with the layout yet
   }
   for (const std::string& name : subscribe.signals) {
     const SignalColumns* const columns = layout_.find(name);

@@ -18,7 +18,7 @@
 
 namespace proleg::host {
 
-/// What a session answers to an operation.
+/// The answer of a session to an operation.
 struct OperationAnswer {
   RequestId request = 0;
   bool is_ok = false;
@@ -26,16 +26,16 @@ struct OperationAnswer {
   std::string error;
 };
 
-/// What a session answers to STOP.
+/// The answer of a session to STOP.
 struct StopAnswer {
   RequestId request = 0;
-  unsigned confirmed = 0;  ///< modules that confirmed
-  unsigned of = 0;         ///< all modules
-  double ms = 0;           ///< from the request to the last confirmation
+  unsigned confirmed = 0;  ///< number of modules that confirmed
+  unsigned of = 0;         ///< number of all modules
+  double ms = 0;           ///< duration from the request to the last confirmation
 };
 
-/// The viewers of a session, and which of them drives: all that the server does above its sockets. It belongs to one
-/// thread, and gets the time as an argument.
+/// The viewers of a session, and their lease: the part of the server above its sockets. It is used by one thread, and
+/// the time is an argument.
 class ViewerHub {
  public:
   struct Options {
@@ -45,27 +45,27 @@ class ViewerHub {
 
   ViewerHub(Options options, const AccessToken& token, RobotSession& session, TickHistory& history);
 
-  // The sockets.
+  // The functions below are for the sockets.
   [[nodiscard]] ClientId add_viewer(ServerTime now);
   void receive(ServerTime now, ClientId client, std::string_view text);
   void close(ClientId client, std::uint16_t code, const std::string& reason);
   void remove_viewer(ServerTime now, ClientId client);
   [[nodiscard]] std::optional<OutgoingMessage> next_message(ServerTime now, ClientId client);
-  /// See Viewer::closing().
+  /// The reason with which a viewer's connection has to end (Viewer::closing()).
   [[nodiscard]] std::optional<CloseReason> closing(ClientId client) const;
-  /// STOP that did not come from a viewer. The caller has checked the token.
+  /// Stops the robot on a request that did not come from a viewer. The caller has checked the token.
   void stop(const std::string& by);
 
-  // The session.
+  // The functions below are for the session.
   void publish(const std::string& name, std::string_view value) { state_.documents.publish(name, value); }
-  /// The rows of this generation of the history have this layout.
+  /// Sets the layout of the rows of this generation of the history.
   void set_layout(SignalLayout layout, std::uint32_t tick_us, std::uint64_t generation);
   void answer(const OperationAnswer& answer);
   void stopped(const StopAnswer& answer);
   void notice(NoticeLevel level, const std::string& text) { state_.notices.add(level, text); }
 
   void advance(ServerTime now);
-  /// When advance() or next_message() has something to do, if nothing happens before.
+  /// The time at which advance() or next_message() must be called, if nothing happens before.
   [[nodiscard]] ServerTime deadline(ServerTime now) const;
 
  private:
@@ -80,7 +80,7 @@ class ViewerHub {
   void handle(ServerTime now, Viewer& viewer, const Beat& beat);
   void handle(ServerTime now, Viewer& viewer, const Subscribe& subscribe);
   void control(ServerTime now, Viewer& viewer, const Operation& operation);
-  /// After each call of the lease: results, the document, what the session must know.
+  /// Reports changes after each call of the lease: results to viewers, the document, and the holder to the session.
   void report_lease(ServerTime now);
   [[nodiscard]] Viewer* find(ClientId client);
 

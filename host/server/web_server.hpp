@@ -23,26 +23,26 @@ struct SessionLink;
 struct ServerOptions {
   AccessToken token;
   PageFiles page;
-  std::string program;                                     ///< name and version, for the welcome
-  std::set<std::string> free_operations;                   ///< operations that anybody may use; all others need control
-  std::uint16_t port = 0;                                  ///< 0: any free one
-  std::shared_ptr<const ServerCertificate> certificate{};  ///< all interfaces, TLS only; null: 127.0.0.1, plain
+  std::string program;                    ///< name and version, for the welcome
+  std::set<std::string> free_operations;  ///< operations that every viewer may use; all others need control
+  std::uint16_t port = 0;                 ///< 0: any free port
+  std::shared_ptr<const ServerCertificate> certificate{};  ///< all interfaces, TLS only; null: 127.0.0.1, no TLS
   std::size_t history_bytes = 4U << 20U;                   ///< memory for rows that a viewer has not read
 };
 
-/// Serves the page of one session (docs/page-interface.md), in the thread that runs the io_context. The
-/// session is in another one.
+/// Serves the page of one session (docs/page-interface.md), in the thread that runs the io_context. The session is in
+/// another thread.
 class WebServer final : public SessionOutput {
  public:
-  /// Listens at once. Throws std::runtime_error with one line, e.g. if the port is in use.
+  /// Listens at once. Throws std::runtime_error with one line, for example if the port is in use.
   WebServer(boost::asio::io_context& context, ServerOptions options, RobotSession& session);
-  /// As stop(). The session is not called any more once the io_context has no handlers left.
+  /// Calls stop(). The session is not called any more once the io_context has no handlers left.
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Where the page is: "http://127.0.0.1:8123", or with the first name of the certificate and https.
+  /// The address of the page: "http://127.0.0.1:8123", or with the first name of the certificate and https.
   [[nodiscard]] std::string origin() const;
 
   void publish(const std::string& document, const nlohmann::json& value) override;
@@ -53,12 +53,12 @@ class WebServer final : public SessionOutput {
   void stopped(RequestId request, unsigned confirmed, unsigned of, double ms) override;
   void notice(NoticeLevel level, const std::string& text) override;
 
-  /// Ends all connections (close code 1001, then after 1 s by force) and takes no more. Then the server leaves no work
-  /// in the io_context.
+  /// Ends all connections (close code 1001, then after 1 s by force) and accepts no more. Then the server leaves no
+  /// work in the io_context.
   void stop();
 
  private:
-  /// The server's thread looks into the inbox and the history.
+  /// Makes the server's thread read the inbox and the history.
   void wake();
 
   std::shared_ptr<SessionLink> link_;

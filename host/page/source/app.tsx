@@ -1,4 +1,4 @@
-// Start of the page: what must be there at once. The rest comes as a chunk of its own (panels/live_page.tsx).
+// Start of the page: the parts that are needed at once. The others come as chunks of their own (panels/live_page.tsx).
 import '@preact/signals';
 import { render } from 'preact';
 import { listenToKeys } from './keyboard.js';
@@ -6,10 +6,13 @@ import { addActions } from './page_actions.js';
 import { addRobotActions } from './robot_actions.js';
 import { PageApp } from './page_app.js';
 import { Frame } from './panels/frame.js';
+import { loadLater } from './panels/later_view.js';
+import type { PageStores } from './robot_view.js';
 import { viewerName } from './state/viewer_name.js';
 import { takeToken } from './wire/access_token.js';
 import './theme.js';
 
+const recordingsPage = loadLater<PageStores>(() => import('./recordings/recordings_page.js').then((module) => module.RecordingsPage));
 const root = document.getElementById('app') as HTMLElement;
 const token = takeToken(location, history, sessionStorage);
 
@@ -28,5 +31,5 @@ if (token === null) {
   addActions(app);
   addRobotActions(app);
   listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, () => app.stop.press());
-  render(<Frame app={app} />, root);
+  render(<Frame app={app} recordingsPage={recordingsPage} />, root);
 }

@@ -1,4 +1,4 @@
-// Which dialog is open.
+// The dialog that is open.
 import { signal } from '@preact/signals-core';
 
 export type Dialog = 'none' | 'keys' | 'palette' | 'command_line' | 'file_diff' | 'value_table';

@@ -7,7 +7,7 @@ const limitedPeriod = 1000 / 30; // milliseconds
 const tolerance = 8; // half a frame of most displays
 let isLimited = false;
 let due = 0;
-let isAsked = false; // a frame, of the browser
+let isAsked = false; // whether a frame of the browser was requested
 let timer: ReturnType<typeof setTimeout> | undefined;
 
 function ask(): void {
@@ -26,7 +26,7 @@ function frame(time: number): void {
   due = Math.max(due, time - limitedPeriod) + limitedPeriod;
   drawers.forEach((draw) => draw(time));
   if (isLimited) {
-    // A frame that is asked for costs the browser a look at the whole page, also if nothing draws in it.
+    // A requested frame makes the browser examine the whole page, also if nothing is drawn in it.
     clearTimeout(timer);
     timer = setTimeout(ask, limitedPeriod / 2);
   } else {
@@ -34,12 +34,12 @@ function frame(time: number): void {
   }
 }
 
-// At most 30 frames a second: for a computer that draws slowly, so that it has time for the controls.
+// Limits drawing to 30 frames a second, so that a computer that draws slowly has time for the controls.
 export function limitFrameRate(isOn: boolean): void {
   isLimited = isOn;
 }
 
-// Draws at the next frame, whatever the limit: the user waits for something that has come.
+// Draws at the next frame regardless of the limit, because the user waits for data that have arrived.
 export function drawSoon(): void {
   due = 0;
   ask();

@@ -1,4 +1,4 @@
-// Keys of the whole page. STOP comes first, whatever has the focus; a page without a robot to stop has none.
+// Keys of the whole page. STOP has priority, whichever element has the focus; a page without a robot has no STOP.
 import type { ActionList } from './state/actions.js';
 
 const textInputs = new Set(['text', 'number', 'search']);
@@ -27,7 +27,7 @@ export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: (() => v
     (event) => {
       const isText = isTextField(event.target);
       if (stop !== null && (event.key === 'Escape' || (event.key === ' ' && !isText))) {
-        // A key that is held down is one press.
+        // A key that is held down counts as one press.
         if (!event.repeat) stop();
         event.preventDefault();
         event.stopPropagation();

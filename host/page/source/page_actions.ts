@@ -2,21 +2,21 @@
 import { recordingName } from './state/recording_name.js';
 import { toggleDialog } from './dialogs.js';
 import type { PageState } from './state/page_state.js';
-import type { PageApp } from './page_app.js';
+import type { PageStores, Stores } from './robot_view.js';
 import { sharedActions } from './shared_actions.js';
 
-export function recordOrEnd({ state, operations }: PageApp): void {
+export function recordOrEnd({ state, operations }: Stores<'operations' | 'state'>): void {
   const isRecording = (state.session.value?.recording ?? null) !== null;
   const file = isRecording ? null : recordingName(state.robot.value?.file ?? 'run', new Date());
   void operations.tell('record', { file });
 }
 
-// Of a robot on a bus.
+// The reason why a robot on a bus can neither start nor hold its gait now; null: it can.
 function runObstacle(state: PageState): string | null {
   return state.obstacleTo(state.busSession.value?.state === 'running' ? 'hold' : 'run');
 }
 
-export function addActions(app: PageApp): void {
+export function addActions(app: PageStores): void {
   const { state, time, marks, operations } = app;
   const isHolder = () => state.isHolder.value;
   const isSimulation = () => state.robot.value?.kind !== 'bus';

@@ -1,7 +1,7 @@
-// The parts of the page, put together: state, connection, STOP, data.
+// Creates the stores of the page and connects them: state, connection, STOP, data.
 import { computed, effect, signal } from '@preact/signals-core';
 import { TelemetryHistory } from './data/telemetry_history.js';
-import type { RobotView } from './robot_view.js';
+import type { PageName, PageStores } from './robot_view.js';
 import { ActionList } from './state/actions.js';
 import { MoveTool } from './state/move_tool.js';
 import { OperationQueue } from './state/operations.js';
@@ -17,11 +17,9 @@ import { decodeTelemetry } from './wire/telemetry_message.js';
 import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
-export type PageName = 'live' | 'recordings';
-
 const freshnessPeriod = 500; // milliseconds
 
-export class PageApp implements RobotView {
+export class PageApp implements PageStores {
   readonly state = new PageState();
   readonly history = new TelemetryHistory();
   readonly time = new TimeView();
@@ -39,8 +37,8 @@ export class PageApp implements RobotView {
   readonly stop: StopControl;
   private readonly worker = new Worker('connection_worker.js');
   private subscriptions = new Subscriptions();
-  private sessionRun: number | null = null; // as the document said last
-  // Gestures of two viewers must not have one number, or undo would take them as one.
+  private sessionRun: number | null = null; // run in the last document
+  // Gestures of two viewers must not have the same number, or undo would treat them as one.
   private lastGesture = Math.floor(Math.random() * 2 ** 20) * 1024;
 
   constructor(token: string, name: string) {
@@ -82,7 +80,7 @@ export class PageApp implements RobotView {
     return new Worker('scene_worker.js');
   }
 
-  // Those that keys and the palette find: of the page that is shown.
+  // The actions of the page that is shown, which keys and the palette find.
   get shownActions(): ActionList {
     return this.shownPage.value === 'recordings' ? (this.recordingActions.value ?? this.actions) : this.actions;
   }
@@ -92,7 +90,7 @@ export class PageApp implements RobotView {
     return this.lastGesture;
   }
 
-  // A live robot has every row in one history.
+  // For a live robot, one history has every row.
   get sampledRows(): TelemetryHistory {
     return this.history;
   }
@@ -101,7 +99,7 @@ export class PageApp implements RobotView {
     return this.history;
   }
 
-  // Ticks in a second.
+  // The number of ticks in a second.
   get tickRate(): number {
     return 1e6 / (this.state.telemetry.value?.tick_us ?? 10000);
   }
@@ -130,7 +128,7 @@ export class PageApp implements RobotView {
     }
   }
 
-  // A restart while the robot is paused: its first tick may be long in coming.
+  // Clears the history after a restart while the robot is paused, because the first tick may come much later.
   private noteRun(run: number | undefined): void {
     if (run !== undefined && this.sessionRun !== null && run !== this.sessionRun && run !== this.history.run) {
       this.history.clear();
@@ -169,7 +167,7 @@ export class PageApp implements RobotView {
       this.marks.clear();
     }
     this.history.append(telemetry, layout);
-    // Without the bus the rows go on, and say nothing of the robot.
+    // Without the bus the rows continue, but contain nothing about the robot.
     if (this.state.bus.peek()?.connected !== false) {
       this.state.freshness.note(performance.now());
     }

@@ -1,6 +1,6 @@
 // Actions that only a robot on a bus has.
 import { signal } from '@preact/signals-core';
-import type { PageApp } from './page_app.js';
+import type { Stores } from './robot_view.js';
 import type { Action } from './state/actions.js';
 import type { RobotCommand } from './state/robot_commands.js';
 
@@ -11,14 +11,14 @@ export function toggleGhost(): void {
   ghostIsOn.value = !ghostIsOn.value;
 }
 
-// All joints to 0 degrees, or to the limit that is nearest to it.
-export function poseZero({ state, poses }: PageApp): void {
+// Moves all joints to 0 degrees, or to the limit nearest to it.
+export function poseZero({ state, poses }: Stores<'poses' | 'state'>): void {
   const joints = state.robot.value?.joints ?? [];
   const nearest = joints.map(({ lower, upper }, i) => [i, Math.min(upper, Math.max(lower, 0))] as const);
   poses.move(new Map(nearest), joints.length);
 }
 
-export function addRobotActions(app: PageApp): void {
+export function addRobotActions(app: Stores<'actions' | 'operations' | 'poses' | 'state'>): void {
   const { state, operations } = app;
   const isBus = () => state.robot.value?.kind === 'bus';
   const command = (name: RobotCommand, title: string, keys: string[], run: () => void): Action => ({

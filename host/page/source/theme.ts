@@ -1,4 +1,4 @@
-// Light or dark: as the system says, or as chosen here.
+// The theme, light or dark: that of the system, or the one that was chosen here.
 import { computed, effect, signal } from '@preact/signals-core';
 
 export type ThemeChoice = 'system' | 'light' | 'dark';

@@ -1,6 +1,6 @@
 // The formats of programs for chips are known by their first bytes.
 
-#include "host/flash/program_format.hpp"
+#include "host/flash/image_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <regex>
 
 #include "decoded_rows.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::host {
 namespace {
@@ -93,6 +95,22 @@ TEST_F(Hub, GreetsAViewerAndSendsEveryDocument) {
   EXPECT_EQ(messages[1]["name"], "control");
   EXPECT_EQ(messages[2]["name"], "robot");
   EXPECT_EQ(messages[3]["text"], "ready");
+}
+
+/// The first number that the expression finds in a file of the source tree; 0 if it finds none.
+int number_in_source(const std::string& below, const std::string& expression) {
+  const std::string text = file_contents(source_path(below));
+  std::smatch found;
+  return std::regex_search(text, found, std::regex(expression)) ? std::stoi(found[1]) : 0;
+}
+
+TEST_F(Hub, HasTheProtocolOfThePageAndOfItsDocumentation) {
+  const int of_page = number_in_source("/host/page/source/wire/messages.ts", R"(export const protocol = (\d+);)");
+  EXPECT_EQ(number_in_source("/docs/page-interface.md", R"("type": "hello", "protocol": (\d+))"), of_page);
+  EXPECT_EQ(number_in_source("/docs/page-interface.md", R"("type": "welcome", "protocol": (\d+))"), of_page);
+  const ClientId client = join("desk", {{"protocol", of_page}});
+  EXPECT_EQ(close_reason(client), "");
+  EXPECT_EQ(last(client, "welcome")["protocol"], of_page);
 }
 
 TEST_F(Hub, ToAViewerWithoutHelloSendsNothing) {

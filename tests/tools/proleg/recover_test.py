@@ -32,8 +32,8 @@ def recover(bus, *words):
 
 
 def codes(report, member):
-    """Of the ailments of each module, in the order of node ids."""
-    return [[ailment["code"] for ailment in module[member]] for module in report["modules"]]
+    """The codes of the faults of each module, in the order of node ids."""
+    return [[fault["code"] for fault in module[member]] for module in report["modules"]]
 
 
 class Recover(RealTimeTest):

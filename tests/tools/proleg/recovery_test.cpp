@@ -15,7 +15,7 @@
 namespace proleg::test {
 namespace {
 
-using host::AilmentKind;
+using host::ModuleFaultKind;
 using host::Remedy;
 using tools::RecoveredModule;
 using tools::Recovery;
@@ -142,21 +142,21 @@ class Recovered {
     EXPECT_NE(found, recovery.modules().end()) << "joint " << joint;
     return *found;
   }
-  /// Only these ailments, of only this module.
-  void expect_found(unsigned joint, const std::vector<AilmentKind>& kinds) const {
+  /// Only these faults, of only this module.
+  void expect_found(unsigned joint, const std::vector<ModuleFaultKind>& kinds) const {
     for (unsigned other = 0; other < joints; ++other) {
       SCOPED_TRACE("joint " + std::to_string(other));
-      std::vector<AilmentKind> found;
-      for (const host::Ailment& ailment : of(other).first_ailments) {
-        found.push_back(ailment.kind);
+      std::vector<ModuleFaultKind> found;
+      for (const host::ModuleFault& fault : of(other).first_faults) {
+        found.push_back(fault.kind);
       }
-      EXPECT_EQ(found, other == joint ? kinds : std::vector<AilmentKind>());
+      EXPECT_EQ(found, other == joint ? kinds : std::vector<ModuleFaultKind>());
     }
   }
   void expect_well() const {
     for (const RecoveredModule& module : recovery.modules()) {
       EXPECT_TRUE(module.is_well()) << int{module.now.node} << ": "
-                                    << (module.ailments.empty() ? "" : module.ailments.front().text) << "; "
+                                    << (module.faults.empty() ? "" : module.faults.front().text) << "; "
                                     << module.problem;
     }
     EXPECT_EQ(recovery.modules().size(), joints);
@@ -189,7 +189,7 @@ TEST(RecoveryTest, AModuleWithoutAProgramGetsTheImageAndNoOtherDoes) {
   robot.take_program(2);
   Traffic traffic(robot.bus);
   const Recovered recovered(robot, with_image());
-  recovered.expect_found(2, {AilmentKind::no_program});
+  recovered.expect_found(2, {ModuleFaultKind::no_program});
   recovered.expect_well();
   for (unsigned joint = 0; joint < joints; ++joint) {
     EXPECT_EQ(robot.minor_version(joint), joint == 2 ? 2U : 1U);
@@ -203,9 +203,9 @@ TEST(RecoveryTest, WithoutAnImageAPersonReadsWhichCommandIsMissing) {
   Traffic traffic(robot.bus);
   const Recovered recovered(robot);
   EXPECT_FALSE(recovered.recovery.are_all_well());
-  ASSERT_EQ(recovered.of(2).ailments.size(), 1U);
-  EXPECT_EQ(recovered.of(2).ailments[0].remedy, Remedy::by_hand);
-  EXPECT_NE(recovered.of(2).ailments[0].to_do.find("proleg recover IMAGE.pimg"), std::string::npos);
+  ASSERT_EQ(recovered.of(2).faults.size(), 1U);
+  EXPECT_EQ(recovered.of(2).faults[0].remedy, Remedy::by_hand);
+  EXPECT_NE(recovered.of(2).faults[0].to_do.find("proleg recover IMAGE.pimg"), std::string::npos);
   EXPECT_EQ(traffic.changes, 0U);
 }
 
@@ -218,7 +218,7 @@ TEST(RecoveryTest, AProgramThatHangsOrFaultsIsCaughtInItsBootloaderAtAnyMoment) 
       robot.spoil(1, health);
       robot.bus.run_for(moment);
       const Recovered recovered(robot, with_image());
-      recovered.expect_found(1, {AilmentKind::starts_badly});
+      recovered.expect_found(1, {ModuleFaultKind::starts_badly});
       recovered.expect_well();
       EXPECT_EQ(robot.minor_version(1), 2U);
       EXPECT_TRUE(robot.runs(1));
@@ -248,8 +248,8 @@ TEST(RecoveryTest, AModuleThatNothingHelpsIsKnownInTheEndToo) {
   const Recovered recovered(robot, with_image(sim::make_native_image(1, {0, 1, 0}, body_size)));
   EXPECT_TRUE(recovered.of(2).is_well());
   EXPECT_TRUE(recovered.of(1).is_present);
-  ASSERT_EQ(recovered.of(1).ailments.size(), 1U);
-  EXPECT_EQ(recovered.of(1).ailments[0].kind, AilmentKind::starts_badly);
+  ASSERT_EQ(recovered.of(1).faults.size(), 1U);
+  EXPECT_EQ(recovered.of(1).faults[0].kind, ModuleFaultKind::starts_badly);
 }
 
 TEST(RecoveryTest, TheProgramThatDoesNotStartIsNotSentAgain) {
@@ -257,8 +257,8 @@ TEST(RecoveryTest, TheProgramThatDoesNotStartIsNotSentAgain) {
   robot.spoil(1, sim::ProgramHealth::faults);
   Traffic traffic(robot.bus);
   const Recovered recovered(robot, with_image(sim::make_native_image(1, {0, 1, 0}, body_size)));
-  ASSERT_EQ(recovered.of(1).ailments.size(), 1U);
-  EXPECT_EQ(recovered.of(1).ailments[0].remedy, Remedy::by_hand);
+  ASSERT_EQ(recovered.of(1).faults.size(), 1U);
+  EXPECT_EQ(recovered.of(1).faults[0].remedy, Remedy::by_hand);
   EXPECT_EQ(traffic.changes, 0U);
 }
 
@@ -278,7 +278,7 @@ TEST(RecoveryTest, AProgramThatWaitsInTheBootloaderIsStartedWithoutAnImage) {
   robot.bus.run_for(second);
   ASSERT_TRUE(robot.program(3).bootloader() != nullptr);
   const Recovered recovered(robot);
-  recovered.expect_found(3, {AilmentKind::in_bootloader});
+  recovered.expect_found(3, {ModuleFaultKind::in_bootloader});
   recovered.expect_well();
   EXPECT_TRUE(robot.runs(3));
 }
@@ -290,7 +290,7 @@ TEST(RecoveryTest, AGoodProgramOnTrialIsStartedAndConfirmsItself) {
   robot.bus.run_for(second);
   ASSERT_TRUE(robot.program(3).bootloader() != nullptr);
   const Recovered recovered(robot, with_image(sim::make_native_image(1, {0, 3, 0}, body_size)));
-  recovered.expect_found(3, {AilmentKind::never_confirmed});
+  recovered.expect_found(3, {ModuleFaultKind::never_confirmed});
   recovered.expect_well();
   EXPECT_EQ(robot.minor_version(3), 2U) << "it needs no other one";
 }
@@ -300,9 +300,9 @@ TEST(RecoveryTest, AProgramThatHasUsedUpItsTrialsIsReplaced) {
   robot.program(3).write_image(sim::make_native_image(1, {0, 1, 0}, body_size), false);
   robot.spoil(3, sim::ProgramHealth::hangs);
   const Recovered without(robot);
-  without.expect_found(3, {AilmentKind::never_confirmed});
-  ASSERT_EQ(without.of(3).ailments.size(), 1U);
-  EXPECT_EQ(without.of(3).ailments[0].remedy, Remedy::by_hand);
+  without.expect_found(3, {ModuleFaultKind::never_confirmed});
+  ASSERT_EQ(without.of(3).faults.size(), 1U);
+  EXPECT_EQ(without.of(3).faults[0].remedy, Remedy::by_hand);
   const Recovered recovered(robot, with_image());
   recovered.expect_well();
   EXPECT_EQ(robot.minor_version(3), 2U);
@@ -311,7 +311,7 @@ TEST(RecoveryTest, AProgramThatHasUsedUpItsTrialsIsReplaced) {
 TEST(RecoveryTest, AModuleWithoutANodeIdGetsAFreeOneAndKeepsIt) {
   SickRobot robot({1, 0, 3, 4, 5});
   const Recovered recovered(robot);
-  recovered.expect_found(1, {AilmentKind::no_node_id});
+  recovered.expect_found(1, {ModuleFaultKind::no_node_id});
   recovered.expect_well();
   EXPECT_EQ(robot.node(1), 2);
   robot.power_cycle(1);
@@ -323,7 +323,7 @@ TEST(RecoveryTest, AModuleWithoutProgramAndNodeIdGetsBoth) {
   SickRobot robot({1, 2, 3, 0, 5});
   robot.take_program(3);
   const Recovered recovered(robot, with_image());
-  recovered.expect_found(3, {AilmentKind::no_program, AilmentKind::no_node_id});
+  recovered.expect_found(3, {ModuleFaultKind::no_program, ModuleFaultKind::no_node_id});
   recovered.expect_well();
   EXPECT_EQ(robot.minor_version(3), 2U);
   EXPECT_EQ(robot.node(3), 4);
@@ -369,7 +369,7 @@ TEST(RecoveryTest, AStoppedModuleIsRestarted) {
   ASSERT_TRUE(robot.bus.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::stop, 4})));
   robot.bus.run_for(second / 2);
   const Recovered recovered(robot);
-  recovered.expect_found(3, {AilmentKind::stopped});
+  recovered.expect_found(3, {ModuleFaultKind::stopped});
   recovered.expect_well();
 }
 
@@ -379,7 +379,7 @@ TEST(RecoveryTest, SettingsThatTheProgramDoesNotKnowAreResetOnlyOnRequest) {
   robot.bus.run_for(second);
   {
     const Recovered without(robot);
-    without.expect_found(2, {AilmentKind::newer_settings});
+    without.expect_found(2, {ModuleFaultKind::newer_settings});
     EXPECT_FALSE(without.of(2).is_well());
     EXPECT_TRUE(robot.ask(2).is(flag::has_newer_settings));
   }
@@ -432,10 +432,10 @@ TEST(RecoveryTest, AnExaminationChangesNothing) {
   const Recovered examined(robot, with_image(), true);
   EXPECT_EQ(traffic.changes, 0U);
   EXPECT_FALSE(examined.recovery.are_all_well());
-  EXPECT_EQ(examined.of(0).ailments.front().kind, AilmentKind::starts_badly);
-  EXPECT_EQ(examined.of(2).ailments.front().kind, AilmentKind::no_program);
-  EXPECT_EQ(examined.of(3).ailments.front().kind, AilmentKind::no_node_id);
-  EXPECT_EQ(examined.of(4).ailments.front().kind, AilmentKind::duplicate_node_id);
+  EXPECT_EQ(examined.of(0).faults.front().kind, ModuleFaultKind::starts_badly);
+  EXPECT_EQ(examined.of(2).faults.front().kind, ModuleFaultKind::no_program);
+  EXPECT_EQ(examined.of(3).faults.front().kind, ModuleFaultKind::no_node_id);
+  EXPECT_EQ(examined.of(4).faults.front().kind, ModuleFaultKind::duplicate_node_id);
 }
 
 TEST(RecoveryTest, TheWaitEndsWhenTheNamedModulesWereSeen) {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "host/flash/image_file.hpp"
-#include "host/flash/program_format.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/output/output_check.hpp"

@@ -18,7 +18,7 @@ namespace {
 
 using namespace proleg;
 using namespace proleg::tools;
-using host::Ailment;
+using host::ModuleFault;
 using host::Remedy;
 namespace flag = broadcast::module_flag;
 
@@ -70,9 +70,9 @@ std::string program_text(const RecoveredModule& module) {
 /// What was found, and what follows.
 void print_plan(const Recovery& recovery) {
   for (const RecoveredModule& module : recovery.modules()) {
-    for (const Ailment& ailment : module.first_ailments) {
+    for (const ModuleFault& fault : module.first_faults) {
       std::printf("%-9s %-11s %s: %s\n", node_text(module.before).c_str(),
-                  hexadecimal(module.before.program.serial, 8).c_str(), ailment.text.c_str(), ailment.to_do.c_str());
+                  hexadecimal(module.before.program.serial, 8).c_str(), fault.text.c_str(), fault.to_do.c_str());
     }
   }
   std::fflush(stdout);
@@ -84,8 +84,8 @@ std::vector<std::string> state_lines(const RecoveredModule& module) {
   if (!module.is_present) {
     lines.emplace_back("has answered, and answers no more: run 'proleg recover' again");
   }
-  for (const Ailment& ailment : module.ailments) {
-    lines.push_back(ailment.text + (module.tries.contains(ailment.remedy) ? "" : ": " + ailment.to_do));
+  for (const ModuleFault& fault : module.faults) {
+    lines.push_back(fault.text + (module.tries.contains(fault.remedy) ? "" : ": " + fault.to_do));
   }
   if (!module.problem.empty()) {
     lines.push_back(module.problem);
@@ -123,13 +123,13 @@ void print_result(const Recovery& recovery) {
   }
 }
 
-Json ailments_json(const std::vector<Ailment>& ailments) {
+Json faults_json(const std::vector<ModuleFault>& faults) {
   Json list = Json::empty_array();
-  for (const Ailment& ailment : ailments) {
-    list.append(Json{{"code", code_of(ailment.kind)},
-                     {"what", ailment.text},
-                     {"to_do", ailment.to_do},
-                     {"by_hand", ailment.remedy == Remedy::by_hand}});
+  for (const ModuleFault& fault : faults) {
+    list.append(Json{{"code", code_of(fault.kind)},
+                     {"what", fault.text},
+                     {"to_do", fault.to_do},
+                     {"by_hand", fault.remedy == Remedy::by_hand}});
   }
   return list;
 }
@@ -148,9 +148,9 @@ Json module_json(const RecoveredModule& module) {
           {"running", module.now.program.is(flag::runs_program)},
           {"present", module.is_present},
           {"well", module.is_well()},
-          {"found", ailments_json(module.first_ailments)},
+          {"found", faults_json(module.first_faults)},
           {"done", done},
-          {"remains", ailments_json(module.ailments)},
+          {"remains", faults_json(module.faults)},
           {"problem", module.problem.empty() ? Json() : Json(module.problem)}};
 }
 

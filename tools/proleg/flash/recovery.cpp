@@ -80,7 +80,7 @@ void Recovery::examine() {
   require_no_power();
   for (RecoveredModule& module : modules_) {
     module.before = module.now;
-    module.first_ailments = module.ailments;
+    module.first_faults = module.faults;
   }
 }
 
@@ -214,7 +214,7 @@ void Recovery::diagnose(RecoveredModule& module) {
   }
   const host::RecoveryMeans means{settings_.image ? &settings_.image->header : nullptr, settings_.resets_settings,
                                   module.tries.contains(Remedy::start)};
-  module.ailments = module.is_present ? find_ailments(module.now, present, means) : std::vector<host::Ailment>();
+  module.faults = module.is_present ? find_module_faults(module.now, present, means) : std::vector<host::ModuleFault>();
 }
 
 void Recovery::require_no_power() const {
@@ -239,7 +239,7 @@ std::vector<RecoveredModule*> Recovery::take(Remedy remedy) {
   const unsigned max_tries = remedy == Remedy::start || remedy == Remedy::flash ? 1 : 4;
   std::vector<RecoveredModule*> modules;
   for (RecoveredModule& module : modules_) {
-    const bool is_due = std::ranges::find(module.ailments, remedy, &host::Ailment::remedy) != module.ailments.end();
+    const bool is_due = std::ranges::find(module.faults, remedy, &host::ModuleFault::remedy) != module.faults.end();
     if (is_due && module.tries[remedy] < max_tries) {
       ++module.tries[remedy];
       modules.push_back(&module);
@@ -390,7 +390,7 @@ void Recovery::renumber_duplicates(std::uint8_t node) {
       continue;
     }
     const bool keeps =
-        std::ranges::find(module.ailments, Remedy::keep_number, &host::Ailment::remedy) != module.ailments.end();
+        std::ranges::find(module.faults, Remedy::keep_number, &host::ModuleFault::remedy) != module.faults.end();
     if (!keeps && used == free.size()) {
       throw std::runtime_error("no node id is free");
     }

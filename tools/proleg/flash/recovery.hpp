@@ -1,6 +1,6 @@
 #pragma once
 
-// Finds modules that are of no use as they are, and brings them back (host/flash/ailment.hpp).
+// Finds modules that are of no use as they are, and brings them back (host/flash/module_fault.hpp).
 
 #include <cstdint>
 #include <map>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "host/flash/ailment.hpp"
 #include "host/flash/image_file.hpp"
+#include "host/flash/module_fault.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/robot/host_presence.hpp"
 
@@ -28,13 +28,13 @@ struct RecoveredModule {
   host::FlashCandidate before;
   host::FlashCandidate now;
   bool is_present = true;  ///< else it has answered before
-  std::vector<host::Ailment> first_ailments;
-  std::vector<host::Ailment> ailments;  ///< now
+  std::vector<host::ModuleFault> first_faults;
+  std::vector<host::ModuleFault> faults;  ///< now
   std::map<host::Remedy, unsigned> tries;
   std::vector<std::string> done;  ///< "was flashed"
   std::string problem;            ///< of the last remedy that has failed; empty: none
 
-  [[nodiscard]] bool is_well() const { return is_present && ailments.empty(); }
+  [[nodiscard]] bool is_well() const { return is_present && faults.empty(); }
 };
 
 class Recovery {

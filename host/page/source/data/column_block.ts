@@ -1,6 +1,6 @@
 // A block of ticks as `proleg export --html` writes it (docs/page-interface.md): columns of differences, little-endian.
 
-// The rows, one behind the other. Throws an Error if the bytes are no whole rows.
+// Decodes the rows, one behind the other. Throws an Error if the bytes are not whole rows.
 export function rowsOfColumns(bytes: Uint8Array, width: number): Int32Array {
   if (width === 0 || bytes.length === 0 || bytes.length % (4 * width) !== 0) {
     throw new Error(`block: found ${bytes.length} bytes, expected a multiple of ${4 * width}`);
@@ -18,7 +18,7 @@ export function rowsOfColumns(bytes: Uint8Array, width: number): Int32Array {
   return values;
 }
 
-// The bytes of base64 text in zlib format. Throws an Error if the text is damaged.
+// Decodes base64 text in zlib format. Throws an Error if the text is damaged.
 export async function inflate(text: string): Promise<Uint8Array> {
   const compressed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
   const stream = new Blob([compressed]).stream().pipeThrough(new DecompressionStream('deflate'));

@@ -6,7 +6,7 @@ import type { TelemetryHistory } from './telemetry_history.js';
 
 export interface LineData {
   times: number[]; // ticks, ascending
-  values: (number | null)[][]; // of each line, in its unit; null: no value
+  values: (number | null)[][]; // values of each line, in its unit; null: no value
 }
 
 // Rows of each block. Blocks begin at multiples, so that a running window does not flicker.
@@ -19,7 +19,7 @@ function blockSize(rows: number, mostBlocks: number): number {
 }
 
 export function lineData(history: TelemetryHistory, lines: readonly Line[], from: number, to: number, columns: number): LineData {
-  // One row more at each end, so that lines reach the edges.
+  // The range has one more row at each end, so that lines reach the edges.
   const first = Math.max(history.first, history.rowAtTick(from) - 1);
   const end = Math.min(history.end, history.rowAtTick(to) + 1);
   const size = blockSize(end - first, Math.max(1, columns));
@@ -46,7 +46,7 @@ function blocks(history: TelemetryHistory, lines: readonly Line[], first: number
   for (let row = Math.ceil(first / size) * size; row + size <= end; row += size) {
     starts.push(row);
   }
-  // Two points a block: the smallest value, then the largest half a block later.
+  // Each block has two points: the smallest value, and the largest value half a block later.
   const times = starts.flatMap((row) => [history.tickOf(row), history.tickOf(row + size / 2)]);
   const values = lines.map(({ signal, index }) => {
     const ring = history.rings.get(signal);

@@ -16,7 +16,7 @@ interface Level {
   maxima: Int32Array;
 }
 
-// `maximum` is noValue if the range has no values.
+// The smallest and the largest value of a range; `maximum` is noValue if the range has no values.
 export interface Range {
   minimum: number;
   maximum: number;
@@ -26,7 +26,7 @@ export class MinMaxPyramid {
   private readonly levels: Level[];
 
   constructor(
-    private readonly values: Int32Array, // of the ring: capacity * count
+    private readonly values: Int32Array, // values of the ring: capacity * count
     private readonly capacity: number,
     private readonly count: number,
   ) {
@@ -44,7 +44,7 @@ export class MinMaxPyramid {
     });
   }
 
-  // Takes in the row that has just been written. Rows are numbered from 0 and come one after another.
+  // Adds the row that has just been written. Rows are numbered from 0 and come one after another.
   append(row: number): void {
     const source = (row % this.capacity) * this.count;
     for (const { rows, blocks, minima, maxima } of this.levels) {
@@ -64,7 +64,7 @@ export class MinMaxPyramid {
     }
   }
 
-  // Of value `index` in the rows from `from` up to, not including, `to`; all of them must still be in the ring.
+  // The range of value `index` in the rows from `from` up to, not including, `to`; all of them must still be in the ring.
   rangeOf(index: number, from: number, to: number): Range {
     let minimum = emptyMinimum;
     let maximum = noValue;

@@ -1,4 +1,4 @@
-// A recording, wherever it is: in the page itself (player/embedded_recording.ts), or behind a server.
+// A recording, either in the page itself (player/embedded_recording.ts) or behind a server.
 import type { RecordingDocument, Documents } from '../wire/messages.js';
 import { rowLayout } from '../wire/subscription.js';
 import type { TelemetryMessage } from '../wire/telemetry_message.js';
@@ -14,12 +14,12 @@ export type RecordedRows = Pick<TelemetryMessage, 'tick' | 'rows' | 'width' | 'v
 
 export interface RecordingSource {
   readonly documents: RecordingDocuments;
-  // The ticks from `from` up to, including, `to`, in pieces that ascend without a gap. Throws an Error that says what is
-  // wrong with the recording.
+  // Reads the ticks from `from` up to, including, `to`, in pieces that ascend without a gap. Throws an Error that says what
+  // is wrong with the recording.
   rows(from: number, to: number): AsyncIterable<RecordedRows>;
 }
 
-// A history that has room for these ticks.
+// Makes a history that has room for these ticks.
 export function historyFor(ticks: number): TelemetryHistory {
   return new TelemetryHistory(Math.max(1, Math.ceil(ticks / pyramidBlock)) * pyramidBlock);
 }

@@ -5,7 +5,7 @@ import type { TelemetryHistory } from './telemetry_history.js';
 // Colours of a scale from the smallest to the largest value, as RGBA words of an ImageData.
 export type ColourScale = Uint32Array;
 
-// Between three colours 0xRRGGBB: below, zero, above. Blue to orange is told apart by colour-blind people too.
+// A scale between three colours 0xRRGGBB: below, zero, above. Colour-blind people can distinguish blue and orange, too.
 export function divergingScale(low: number, middle: number, high: number, steps = 256): ColourScale {
   const channel = (colour: number, shift: number) => (colour >> shift) & 255;
   return Uint32Array.from({ length: steps }, (_, i) => {
@@ -76,7 +76,7 @@ export function fillStrip(
         const step = Math.max(0, Math.min(scale.length - 1, Math.round(half + raw * factor)));
         const colour = scale[step] as number;
         const last = joint * columns + Math.min(columns, begin + width);
-        // Not fill(): most are one pixel, and a call costs more than that.
+        // fill() is not used: most runs are one pixel, and a call is more expensive than that.
         for (let at = joint * columns + Math.max(0, begin); at < last; at += 1) {
           pixels[at] = colour;
         }

@@ -4,7 +4,7 @@ import type { TelemetryMessage } from '../wire/telemetry_message.js';
 import { noValue } from '../wire/messages.js';
 import { MinMaxPyramid, pyramidBlock } from './min_max_pyramid.js';
 
-// Two minutes at 100 ticks a second.
+// The default capacity is two minutes at 100 ticks a second.
 export const defaultCapacity = 3 * pyramidBlock;
 
 export interface SignalRing {
@@ -18,7 +18,7 @@ export class TelemetryHistory {
   // Rows are numbered from 0 since the run began; those from `first` up to, not including, `end` are there.
   end = 0;
   run = -1;
-  stride = 1; // of the last message, in ticks
+  stride = 1; // ticks between two rows of the last message
   readonly rings = new Map<string, SignalRing>();
   private readonly ticks: Float64Array;
 
@@ -30,13 +30,13 @@ export class TelemetryHistory {
     return Math.max(0, this.end - this.capacity);
   }
 
-  // Forgets everything: another robot, or another run.
+  // Forgets all rows, for another robot or another run.
   clear(): void {
     this.end = 0;
     this.rings.clear();
   }
 
-  // Throws an Error if the message does not fit the layout.
+  // Adds the rows of a message. Throws an Error if it does not fit the layout.
   append(message: TelemetryMessage, layout: RowLayout): void {
     if (message.rows > 0 && message.width !== layout.width) {
       throw new Error(`telemetry: found ${message.width} values in a row, expected ${layout.width}`);
@@ -50,7 +50,7 @@ export class TelemetryHistory {
       this.prepareRing(signal.name, signal.count, signal.scale);
     }
     if (message.hasGap && this.end > 0 && message.tick - 1 > this.lastTick()) {
-      // A row without values: lines have a gap there.
+      // A row without values makes a gap in lines.
       this.appendRow(message.tick - 1, null, 0, layout);
     }
     for (let row = 0; row < message.rows; row += 1) {
@@ -70,7 +70,7 @@ export class TelemetryHistory {
     return this.end > 0 && tick >= this.tickOf(this.first) && tick <= this.lastTick();
   }
 
-  // Raw; noValue if the row or the signal is not there.
+  // The raw value; noValue if the row or the signal does not exist.
   valueAt(signal: string, index: number, row: number): number {
     const ring = this.rings.get(signal);
     if (ring === undefined || row < this.first || row >= this.end || index >= ring.count) {

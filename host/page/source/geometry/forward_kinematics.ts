@@ -8,7 +8,7 @@ import { compose, invert, poseFromArray, rotationAbout, type Pose } from './quat
 
 export class ForwardKinematics {
   private readonly joints: readonly Joint[];
-  private readonly poses: Pose[]; // of the links at angles 0
+  private readonly poses: Pose[]; // poses of the links at angles 0
   private readonly inverseHead: Pose;
 
   constructor(robot: Pick<RobotDocument, 'joints' | 'links'>) {
@@ -22,7 +22,7 @@ export class ForwardKinematics {
     this.inverseHead = invert(this.poses[0] as Pose);
   }
 
-  // D(i) of each link. `head` is the pose of the head link's frame in the world, the angles are in radians.
+  // Computes D(i) of each link. `head` is the pose of the head link's frame in the world, the angles are in radians.
   displacements(head: Pose, angles: ArrayLike<number>): Pose[] {
     let displacement = compose(head, this.inverseHead);
     const result = [displacement];

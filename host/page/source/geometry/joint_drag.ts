@@ -3,11 +3,11 @@ import { cross, dot, subtract, type Vector } from './quaternion.js';
 
 export interface Ray {
   origin: Vector;
-  direction: Vector; // of length 1
+  direction: Vector; // direction with length 1
 }
 
 const flattestView = 0.12; // cosine: about 7 degrees between ray and plane; below that a pixel is a wide angle
-const shortestArm = 0.002; // metres, from the axis to the point
+const shortestArm = 0.002; // shortest distance in metres from the axis to the point
 
 export class JointDrag {
   private turns = 0;
@@ -27,7 +27,7 @@ export class JointDrag {
     return isFlat || Math.hypot(...subtract(point, centre)) < shortestArm ? null : new JointDrag(point, centre, axis);
   }
 
-  // Radians about the axis since the grab; more than a turn counts on.
+  // The angle in radians about the axis since the grab; it may be more than a turn.
   angleOf(ray: Ray): number {
     const slope = dot(ray.direction, this.axis);
     const distance = dot(subtract(this.point, ray.origin), this.axis) / slope;
@@ -40,7 +40,7 @@ export class JointDrag {
       const from = subtract(this.point, this.centre);
       const to = subtract(hit, this.centre);
       const angle = Math.atan2(dot(this.axis, cross(from, to)), dot(from, to));
-      // Over half a turn from one to the next: it went the other way round.
+      // A step of more than half a turn means that the point went the other way round.
       this.turns += Math.round((this.last - angle) / (2 * Math.PI));
       this.last = angle;
     }

@@ -1,7 +1,7 @@
 // A camera that looks at a target and turns about the vertical through it. z points up.
 import type { Vector } from './quaternion.js';
 
-// In radians and metres.
+// The limits below are in radians and metres.
 const lowestElevation = -0.1;
 const highestElevation = 1.55;
 const nearest = 0.05;
@@ -39,7 +39,7 @@ export class OrbitCamera {
     this.target = [x + along(0), y + along(1), z + along(2)];
   }
 
-  // More than 1 goes away.
+  // Changes the distance; a factor above 1 increases it.
   zoom(factor: number): void {
     this.distance = clamp(this.distance * factor, nearest, farthest);
   }

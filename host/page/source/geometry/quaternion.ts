@@ -47,7 +47,7 @@ export function conjugate(q: Quaternion): Quaternion {
   return [q[0], -q[1], -q[2], -q[3]];
 }
 
-// v + 2w(u x v) + 2u x (u x v), where u is the vector part.
+// Computes v + 2w(u x v) + 2u x (u x v), where u is the vector part.
 export function rotate(q: Quaternion, v: Vector): Vector {
   const [w, x, y, z] = q;
   const tx = 2 * (y * v[2] - z * v[1]);
@@ -60,7 +60,7 @@ export function rotate(q: Quaternion, v: Vector): Vector {
   ];
 }
 
-// Of `angle` radians about `axis`, which need not have length 1.
+// The rotation of `angle` radians about `axis`, which need not have length 1.
 export function fromAxisAngle(axis: Vector, angle: number): Quaternion {
   const length = Math.hypot(axis[0], axis[1], axis[2]);
   const s = length === 0 ? 0 : Math.sin(angle / 2) / length;
@@ -82,7 +82,7 @@ export function invert(a: Pose): Pose {
   return { position: [-x, -y, -z], orientation };
 }
 
-// About the line through `anchor` along `axis`.
+// The rotation about the line through `anchor` along `axis`.
 export function rotationAbout(anchor: Vector, axis: Vector, angle: number): Pose {
   const orientation = fromAxisAngle(axis, angle);
   const moved = rotate(orientation, anchor);

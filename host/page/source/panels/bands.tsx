@@ -1,6 +1,6 @@
-// Bands below the top bar: what the user must know or decide now.
+// Bands below the top bar: facts that the user must know, and questions that need an answer now.
 import { useEffect, useState } from 'preact/hooks';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import type { ConnectionStatus } from '../wire/connection.js';
 import { BusBands } from './bus_bands.js';
 
@@ -19,7 +19,7 @@ function describeConnection(status: ConnectionStatus): string | null {
   }
 }
 
-// Seconds that are left, counted down here: the document has them only once.
+// The remaining seconds. They are counted down here, because the document has them only once.
 function Countdown({ ms }: { ms: number }) {
   const [end] = useState(() => performance.now() + ms);
   const [left, setLeft] = useState(ms);
@@ -30,7 +30,7 @@ function Countdown({ ms }: { ms: number }) {
   return <>{Math.ceil(left / 1000)} s</>;
 }
 
-function RequestBand({ app }: { app: PageApp }) {
+function RequestBand({ app }: { app: Stores<'operations' | 'state'> }) {
   const request = app.state.control.value?.request ?? null;
   if (request === null) {
     return null;
@@ -61,7 +61,7 @@ function RequestBand({ app }: { app: PageApp }) {
   );
 }
 
-export function Bands({ app }: { app: PageApp }) {
+export function Bands({ app }: { app: Stores<'operations' | 'state'> }) {
   const connection = describeConnection(app.state.connection.value);
   const isConnecting = app.state.connection.value.state === 'connecting';
   const session = app.state.session.value;

@@ -1,8 +1,8 @@
-// Bands of a robot on a bus: what must be read before anything else is done.
-import type { PageApp } from '../page_app.js';
+// Bands of a robot on a bus: facts that the user must read before any other step.
+import type { Stores } from '../robot_view.js';
 import { moduleName } from '../state/module_text.js';
 
-export function BusBands({ app }: { app: PageApp }) {
+export function BusBands({ app }: { app: Stores<'state'> }) {
   const { state } = app;
   const bus = state.bus.value;
   const session = state.busSession.value;

@@ -39,8 +39,8 @@ export function chartTheme(isDark: boolean): ChartTheme {
   return isDark ? dark : light;
 }
 
-// Of the axis at the left of strip and plots, in CSS pixels: one width, so that their times are one above the other.
+// Width of the axis at the left of strip and plots, in CSS pixels. It is the same for all, so that their times are aligned.
 export const axisWidth = 64;
 
-// At the right of the plots, for half of the last time; the style gives the strip the same.
+// Width of the margin at the right of the plots, for half of the last time; the style gives the strip the same margin.
 export const axisOverhang = 12;

@@ -1,14 +1,14 @@
 // The dialogs: keys, palette, command line, and those that are loaded when they are opened.
 import { useEffect, useState } from 'preact/hooks';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import type { Action, ActionList } from '../state/actions.js';
 import { openDialog } from '../dialogs.js';
 import { Dialog } from './dialog.js';
 import { copyIcon } from './icons.js';
 import { LaterView, loadLater } from './later_view.js';
 
-const fileDiff = loadLater(() => import('./file_diff_dialog.js').then((module) => module.FileDiffDialog));
-const valueTable = loadLater(() => import('./value_table_dialog.js').then((module) => module.ValueTableDialog));
+const fileDiff = loadLater<Stores<'operations' | 'state'>>(() => import('./file_diff_dialog.js').then((module) => module.FileDiffDialog));
+const valueTable = loadLater<Stores<'newGesture' | 'sets' | 'state'>>(() => import('./value_table_dialog.js').then((module) => module.ValueTableDialog));
 
 const keyNames: Record<string, string> = {
   Escape: 'Esc',
@@ -118,7 +118,7 @@ function textOf(value: unknown): string {
   return typeof text === 'string' ? text : 'The program gave no command.';
 }
 
-function CommandLine({ app }: { app: PageApp }) {
+function CommandLine({ app }: { app: Stores<'operations'> }) {
   const [command, setCommand] = useState<string | null>(null);
   const [isCopied, setCopied] = useState(false);
   useEffect(() => {
@@ -142,7 +142,7 @@ function CommandLine({ app }: { app: PageApp }) {
 
 const stopHint = 'Buttons: Enter. Esc and Space stop the robot, in this window too. STOP does not replace a power switch.';
 
-export function DialogView({ app }: { app: PageApp }) {
+export function DialogView({ app }: { app: Stores<'newGesture' | 'operations' | 'sets' | 'shownActions' | 'state'> }) {
   switch (openDialog.value) {
     case 'keys':
       return <Keys actions={app.shownActions} hint={stopHint} />;

@@ -1,10 +1,10 @@
 // Distortion: overwrites an internal value of an algorithm once, to see how the gait recovers.
 import { useSignal } from '@preact/signals';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { parseNumber, setWord } from '../state/parameter_values.js';
 import type { InternalValue } from '../wire/messages.js';
 
-export function DistortionForm({ app, values }: { app: PageApp; values: readonly InternalValue[] }) {
+export function DistortionForm({ app, values }: { app: Stores<'newGesture' | 'sets' | 'state'>; values: readonly InternalValue[] }) {
   const chosen = useSignal(0);
   const joint = useSignal('');
   const text = useSignal('0');

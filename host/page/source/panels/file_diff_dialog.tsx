@@ -1,12 +1,12 @@
-// What of the wanted parameters the file lacks, line by line, and which of it is to be written.
+// The dialog with the differences between the wanted parameters and the file, line by line, from which the user chooses.
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { chosenNumbers, groupByFile, jointsText, keyOf } from '../state/file_diff.js';
 import type { FileDiff, FileDiffEntry } from '../wire/messages.js';
 import { close, Dialog } from './dialog.js';
 
-function Entry({ app, entry, isChosen, toggle }: { app: PageApp; entry: FileDiffEntry; isChosen: boolean; toggle: () => void }) {
+function Entry({ app, entry, isChosen, toggle }: { app: Stores<'state'>; entry: FileDiffEntry; isChosen: boolean; toggle: () => void }) {
   const robot = app.state.robot.value;
   const names = robot?.joints.map((joint) => joint.name) ?? [];
   const group = robot?.slots.find((slot) => slot.number === entry.slot)?.joints ?? [];
@@ -32,7 +32,7 @@ function Entry({ app, entry, isChosen, toggle }: { app: PageApp; entry: FileDiff
   );
 }
 
-export function FileDiffDialog({ app }: { app: PageApp }) {
+export function FileDiffDialog({ app }: { app: Stores<'operations' | 'state'> }) {
   const diff = useSignal<FileDiff | null>(null);
   const problem = useSignal<string | null>(null);
   const leftOut = useSignal<ReadonlySet<string>>(new Set());

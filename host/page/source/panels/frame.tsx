@@ -1,22 +1,21 @@
 // The frame of the page: top bar, bands, notices, dialogs; the page below it comes later.
-import type { PageApp } from '../page_app.js';
+import type { PageStores } from '../robot_view.js';
 import { openDialog } from '../dialogs.js';
 import { Bands } from './bands.js';
-import { LaterView, loadLater } from './later_view.js';
+import { LaterView, loadLater, type Later } from './later_view.js';
 import { NoticeList } from './notice_list.js';
 import { TopBar } from './top_bar.js';
 
-const livePage = loadLater(() => import('./live_page.js').then((module) => module.LivePage));
+const livePage = loadLater<PageStores>(() => import('./live_page.js').then((module) => module.LivePage));
 // A robot on a bus has panels of its own.
-const robotPage = loadLater(() => import('./bus/robot_page.js').then((module) => module.RobotPage));
-const dialogs = loadLater(() => import('./dialog_views.js').then((module) => module.DialogView));
-const recordingsPage = loadLater(() => import('../recordings/recordings_page.js').then((module) => module.RecordingsPage));
+const robotPage = loadLater<PageStores>(() => import('./bus/robot_page.js').then((module) => module.RobotPage));
+const dialogs = loadLater<PageStores>(() => import('./dialog_views.js').then((module) => module.DialogView));
 livePage();
 dialogs();
-let wereRecordingsShown = false; // their page is loaded when it is first shown
+let wereRecordingsShown = false; // the page Recordings is loaded when it is first shown
 
-// A page stays when another one is shown.
-export function Frame({ app }: { app: PageApp }) {
+// A page stays when another one is shown. `recordingsPage`: loads the page Recordings.
+export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage: () => Later<PageStores> }) {
   const page = app.shownPage.value;
   const isAlone = app.state.isAlone.value;
   if (page === 'recordings') wereRecordingsShown = true;

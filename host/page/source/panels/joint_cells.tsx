@@ -2,7 +2,7 @@
 //   drag up and down: the bar's value     Shift and drag across: all bars get the value under the pointer
 //   arrows: left and right choose, up and down change     digits, Enter: type a value     double click: back to the file
 import { useSignal } from '@preact/signals';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { formatRaw, parseValue, placeName, setWord, sliderStep } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 
@@ -12,7 +12,7 @@ function share(raw: number, parameter: Parameter): number {
   return Math.max(0, Math.min(1, (raw - parameter.minimum) / span));
 }
 
-export function JointCells({ app, parameter }: { app: PageApp; parameter: Parameter }) {
+export function JointCells({ app, parameter }: { app: Stores<'newGesture' | 'selection' | 'sets' | 'state'>; parameter: Parameter }) {
   const isHolder = app.state.isHolder.value;
   const robot = app.state.robot.value;
   const gesture = useSignal(0);

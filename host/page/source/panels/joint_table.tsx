@@ -1,4 +1,4 @@
-// A row for each joint with what it does at the time cursor.
+// The table of joints: a row for each joint with its values at the time cursor.
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
@@ -7,10 +7,10 @@ import type { Joint } from '../wire/messages.js';
 import { areComing, comparedValueOf, contactText, numberText, valueOf } from './joint_values.js';
 import { ModuleCell } from './module_state.js';
 
-const period = 150; // milliseconds: faster cannot be read
-const rowsOfAFrame = 30; // more at once would hold up the controls
+const period = 150; // milliseconds: faster changes cannot be read
+const rowsOfAFrame = 30; // more rows in one frame would delay the controls
 
-// What a cell shows at a row of the history. `tone`: a class for its colour.
+// The contents of a cell for a row of the history. `tone`: a class for its colour.
 interface CellText {
   text: string;
   tone?: string;
@@ -55,7 +55,7 @@ const simulated = [
   contacts,
 ];
 
-// What a second recording has more.
+// Additional columns for a second recording.
 const difference = (title: string, unit: string, signal: string, decimals: number): JointColumn => ({
   title: `Δ ${title}`,
   heading: 'Δ',
@@ -97,7 +97,7 @@ const currentOnBus: JointColumn = {
 
 const onBus = [setpoint, angleOnBus, lag, currentOnBus, contacts];
 
-// Past Preact: 60 rows of text ten times a second.
+// The cells are written without Preact, because there are 60 rows of text ten times a second.
 function write(element: HTMLTableRowElement, values: readonly CellText[]): void {
   values.forEach(({ text, tone = '' }, i) => {
     const cell = element.cells[i + 1];
@@ -133,8 +133,8 @@ export function JointTable({ app }: { app: RobotView }) {
   useEffect(() => {
     let last = 0;
     let lastKey = '';
-    let row = 0; // of the history, which the table is being filled with
-    let next = Infinity; // joint
+    let row = 0; // row of the history with which the table is being filled
+    let next = Infinity; // next joint to be written
     return onFrame((now) => {
       const { rowsAtCursor: history, time } = app;
       const tick = time.shownTick(app.newestTick);

@@ -1,18 +1,17 @@
 // Parts of the page that are loaded after the first paint, or when they are shown first.
 import { signal, type Signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
-import type { PageApp } from '../page_app.js';
 
-type Part = ComponentType<{ app: PageApp }>;
+type Part<App> = ComponentType<{ app: App }>;
 
 // A component; null until it is loaded, a text if it cannot be loaded.
-type Later = Signal<Part | string | null>;
+export type Later<App> = Signal<Part<App> | string | null>;
 
 // Loads the component at the first call of the result, once.
-export function loadLater(load: () => Promise<Part>): () => Later {
-  let part: Later | null = null;
+export function loadLater<App>(load: () => Promise<Part<App>>): () => Later<App> {
+  let part: Later<App> | null = null;
   const begin = () => {
-    const loading: Later = signal(null);
+    const loading: Later<App> = signal(null);
     load().then(
       (loaded) => (loading.value = loaded),
       (error: Error) => (loading.value = `This part of the page could not be loaded: ${error.message}. Reload the page.`),
@@ -22,7 +21,7 @@ export function loadLater(load: () => Promise<Part>): () => Later {
   return () => (part ??= begin());
 }
 
-export function LaterView({ app, part, wait }: { app: PageApp; part: Later; wait: string }) {
+export function LaterView<App>({ app, part, wait }: { app: App; part: Later<App>; wait: string }) {
   const Content = part.value;
   return Content === null || typeof Content === 'string' ? <p class="wait">{Content ?? wait}</p> : <Content app={app} />;
 }

@@ -14,7 +14,7 @@ import { signalTitle, valueName } from './value_names.js';
 
 const readoutPeriod = 100; // milliseconds
 
-// With a second recording: both values.
+// With a second recording the text has both values.
 function valueText(app: RobotView, { signal, index }: Line): string {
   const { rowsAtCursor, time } = app;
   const tick = time.shownTick(app.newestTick);

@@ -12,7 +12,7 @@ const height = 170; // CSS pixels
 const framePeriod = 30; // milliseconds
 const mostClickPixels = 3; // a drag goes farther
 
-// Some room above and below; a constant value is in the middle. Null without values.
+// The range of the axis, with some room above and below; a constant value is in the middle. `low`, `high`: null without values.
 function padded(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null) {
     return [-1, 1];
@@ -98,7 +98,7 @@ export class LinePlot {
     const { time } = this.app;
     let pressedAt = 0;
     const press = (event: MouseEvent) => (pressedAt = event.clientX);
-    // Not at the end of a drag, which zooms.
+    // A click sets the cursor, except at the end of a drag, which zooms.
     const click = (event: MouseEvent) => {
       if (Math.abs(event.clientX - pressedAt) <= mostClickPixels) time.pick(tickAt(event));
     };

@@ -1,5 +1,5 @@
-// The page Live: the robot as it moves now.
-import type { PageApp } from '../page_app.js';
+// The page Live: the present motion of the robot.
+import type { PageStores } from '../robot_view.js';
 import { JointTable } from './joint_table.js';
 import { ParameterPanel } from './parameter_panel.js';
 import { PlotPanel } from './plot_panel.js';
@@ -9,7 +9,7 @@ import { ScenePanel } from './scene_panel.js';
 import { StripPanel } from './strip_panel.js';
 import { TimeControls } from './time_controls.js';
 
-export function LivePage({ app }: { app: PageApp }) {
+export function LivePage({ app }: { app: PageStores }) {
   return (
     <div class="live">
       <RunControls app={app} />

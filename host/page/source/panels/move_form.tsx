@@ -3,13 +3,13 @@ import { useSignal } from '@preact/signals';
 import type { MoveTool } from '../state/move_tool.js';
 import { formatNumber, parseNumber } from '../state/parameter_values.js';
 
-const decimals = 4; // of metres
+const decimals = 4; // decimals of a length in metres
 
 type Field = 'x' | 'y' | 'z' | 'turn';
 
 export function MoveForm({ mover }: { mover: MoveTool }) {
   const problem = useSignal<string | null>(null);
-  // What is typed stays until the robot is there: the program says several times a second where the head is.
+  // The typed numbers stay until the robot has arrived: the program sends the head's place several times a second.
   const typed = useSignal<Partial<Record<Field, string>>>({});
   const head = mover.head ?? [0, 0, 0];
   const shown: Record<Field, string> = {

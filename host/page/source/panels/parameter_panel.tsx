@@ -1,14 +1,14 @@
 // The parameters of all slots, and the internal values that a change may overwrite.
 import { useSignal } from '@preact/signals';
 import { openDialog } from '../dialogs.js';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { DistortionForm } from './distortion_form.js';
 import { redoIcon, swapIcon, undoIcon } from './icons.js';
 import { ParameterRow } from './parameter_row.js';
 
-function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filter: { value: boolean } }) {
+function Toolbar({ app, changed, filter }: { app: Stores<'operations' | 'state'>; changed: number; filter: { value: boolean } }) {
   const session = app.state.session.value;
   const simulation = app.state.simulation.value;
   const isHolder = app.state.isHolder.value;
@@ -83,7 +83,7 @@ function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filt
   );
 }
 
-export function ParameterPanel({ app }: { app: PageApp }) {
+export function ParameterPanel({ app }: { app: Stores<'newGesture' | 'operations' | 'selection' | 'sets' | 'state'> }) {
   const onlyChanged = useSignal(false);
   const robot = app.state.robot.value;
   const all = app.state.parameters.value;

@@ -1,11 +1,11 @@
 // One parameter: a slider and a number for all joints, and a cell for each joint.
 import { useSignal } from '@preact/signals';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { formatRaw, parseValue, placeName, setWord, sliderStep, summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { JointCells } from './joint_cells.js';
 
-// Whether the modules run with what was asked for.
+// Whether the modules run with the requested values.
 function Confirmation({ parameter }: { parameter: Parameter }) {
   const { confirmed, tick } = summarise(parameter);
   const count = parameter.wanted.length;
@@ -25,11 +25,11 @@ function Confirmation({ parameter }: { parameter: Parameter }) {
   );
 }
 
-export function ParameterRow({ app, parameter }: { app: PageApp; parameter: Parameter }) {
+export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 'selection' | 'sets' | 'state'>; parameter: Parameter }) {
   const isHolder = app.state.isHolder.value;
   const { isUniform, isChanged } = summarise(parameter);
   const gesture = useSignal(0);
-  // What the slider shows while it is dragged, in the unit.
+  // The value of the slider in the unit while it is dragged.
   const dragged = useSignal<number | null>(null);
   const problem = useSignal<string | null>(null);
   const helpIsOpen = useSignal(false);

@@ -1,6 +1,6 @@
 // The table of bindings. A change takes effect when its field is left, or with Enter.
 import { useSignal } from '@preact/signals';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { formatNumber } from '../state/parameter_values.js';
 import {
   actionBinding,
@@ -48,7 +48,7 @@ function Field(props: { label: string; value: string; class?: string; isEnabled:
   );
 }
 
-function Target({ app, binding, change, isEnabled }: { app: PageApp; binding: RemoteBinding; change: Change; isEnabled: boolean }) {
+function Target({ app, binding, change, isEnabled }: { app: Stores<'state'>; binding: RemoteBinding; change: Change; isEnabled: boolean }) {
   const choose = (choice: string) => {
     const parameter = app.state.parameters.value[0];
     if (choice !== '') {
@@ -74,7 +74,7 @@ function Target({ app, binding, change, isEnabled }: { app: PageApp; binding: Re
   );
 }
 
-function ParameterFields({ app, binding, place, change, isEnabled }: { app: PageApp; binding: RemoteBinding; place: number; change: Change; isEnabled: boolean }) {
+function ParameterFields({ app, binding, place, change, isEnabled }: { app: Stores<'state'>; binding: RemoteBinding; place: number; change: Change; isEnabled: boolean }) {
   const value = app.state.remoteValues.value?.bindings[place] ?? null;
   const isTaken = value?.taken.every(Boolean) === true;
   const setNumber = (field: NumberField, text: string) => {
@@ -131,7 +131,7 @@ function ParameterFields({ app, binding, place, change, isEnabled }: { app: Page
   );
 }
 
-export function RemoteBindingTable({ app, remote }: { app: PageApp; remote: RemoteDocument }) {
+export function RemoteBindingTable({ app, remote }: { app: Stores<'operations' | 'state'>; remote: RemoteDocument }) {
   const isHolder = app.state.isHolder.value;
   const { operations } = app;
   return (

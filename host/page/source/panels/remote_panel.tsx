@@ -1,7 +1,7 @@
-// Gamepads and the Wiimote: what they do now, and what their elements are bound to.
+// Gamepads and the Wiimote: their present positions, and the bindings of their elements.
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { firstBinding, positionOf, readLearned } from '../state/remote_bindings.js';
 import type { RemoteDocument } from '../wire/messages.js';
 import { RemoteBindingTable } from './remote_binding_table.js';
@@ -29,7 +29,7 @@ function Bar({ name, kind, position }: { name: string; kind: 'axis' | 'button'; 
   );
 }
 
-function Devices({ app, remote }: { app: PageApp; remote: RemoteDocument }) {
+function Devices({ app, remote }: { app: Stores<'state'>; remote: RemoteDocument }) {
   const values = app.state.remoteValues.value;
   if (remote.devices.length === 0) {
     return <p class="hint">Plug a gamepad in, or connect a Wiimote by Bluetooth. It appears here.</p>;
@@ -50,7 +50,7 @@ function Devices({ app, remote }: { app: PageApp; remote: RemoteDocument }) {
   );
 }
 
-function Tools({ app, remote }: { app: PageApp; remote: RemoteDocument }) {
+function Tools({ app, remote }: { app: Stores<'operations' | 'state'>; remote: RemoteDocument }) {
   const { state, operations } = app;
   const isHolder = state.isHolder.value;
   const isAsked = useSignal(false);
@@ -67,7 +67,7 @@ function Tools({ app, remote }: { app: PageApp; remote: RemoteDocument }) {
     isAsked.value = false;
   };
   const cancel = () => {
-    isAsked.value = false; // it is no news that nothing was moved
+    isAsked.value = false; // the user needs no notice that nothing was moved
     void operations.tell('remote.learn', { end: true });
   };
   return (
@@ -101,7 +101,7 @@ function Tools({ app, remote }: { app: PageApp; remote: RemoteDocument }) {
   );
 }
 
-export function RemotePanel({ app }: { app: PageApp }) {
+export function RemotePanel({ app }: { app: Stores<'operations' | 'state'> }) {
   const { state, operations } = app;
   const isConnected = state.isConnected.value;
   useEffect(() => {

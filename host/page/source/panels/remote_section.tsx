@@ -1,13 +1,13 @@
 // Remote control: closed, one line; its panel is loaded when it is opened.
 import { signal } from '@preact/signals';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { describeRemote } from '../state/remote_bindings.js';
 import { LaterView, loadLater } from './later_view.js';
 
-const panel = loadLater(() => import('./remote_panel.js').then((module) => module.RemotePanel));
+const panel = loadLater<Stores<'operations' | 'state'>>(() => import('./remote_panel.js').then((module) => module.RemotePanel));
 const isOpen = signal(false);
 
-export function RemoteSection({ app }: { app: PageApp }) {
+export function RemoteSection({ app }: { app: Stores<'operations' | 'state'> }) {
   const remote = app.state.remote.value;
   const problems = remote?.problems.length ?? 0;
   return (

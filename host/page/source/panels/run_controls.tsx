@@ -1,6 +1,6 @@
-// Run, pause, step, restart, how fast; the present tick and time.
+// Controls to run, pause, step and restart, and for the speed; the present tick and time.
 import { useSignal } from '@preact/signals';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { recordOrEnd } from '../page_actions.js';
 import { pauseIcon, recordIcon, restartIcon, runIcon, stepIcon } from './icons.js';
 import { TickCounter } from './tick_counter.js';
@@ -10,10 +10,10 @@ function factorOf(position: number): number {
   return Number((10 ** position).toPrecision(2));
 }
 
-function Factor({ app }: { app: PageApp }) {
+function Factor({ app }: { app: Stores<'operations' | 'state'> }) {
   const factor = app.state.simulation.value?.factor ?? 1;
   const isHolder = app.state.isHolder.value;
-  // While it is dragged, the slider is where the pointer is, not where the program is.
+  // While the slider is dragged, it follows the pointer, not the value of the program.
   const dragged = useSignal<number | null>(null);
   const set = (value: number) => void app.operations.tell('factor', { value });
   const position = dragged.value ?? (factor === 0 ? 2 : Math.log10(factor));
@@ -55,7 +55,7 @@ function Factor({ app }: { app: PageApp }) {
   );
 }
 
-function Measures({ app }: { app: PageApp }) {
+function Measures({ app }: { app: Stores<'state'> }) {
   const speed = app.state.simulation.value?.measures?.['speed'];
   return typeof speed !== 'number' ? null : (
     <dl class="figures">
@@ -67,7 +67,7 @@ function Measures({ app }: { app: PageApp }) {
   );
 }
 
-export function RunControls({ app }: { app: PageApp }) {
+export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' | 'state' | 'tickRate'> }) {
   const { state, operations } = app;
   const isHolder = state.isHolder.value;
   const runState = state.simulation.value?.state ?? 'paused';

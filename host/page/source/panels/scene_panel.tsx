@@ -1,4 +1,4 @@
-// The 3D view: a canvas that a worker draws on, and what pointer and keys do to it.
+// The 3D view: a canvas on which a worker draws, and its reactions to pointer and keys.
 import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { limitFrameRate, onFrame } from '../frame_clock.js';
@@ -183,7 +183,7 @@ function MoveButton({ mover }: { mover: MoveTool }) {
   );
 }
 
-// Without the sign of -0.000.
+// The text has no sign for -0.000.
 function positionText(name: string, head: Float64Array): string {
   const [x, y, z] = [...head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
   return `${name}  x ${x}  y ${y}  z ${z} m`;
@@ -197,7 +197,7 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   let preview: unknown = null;
   let withGhost = false;
   let compared: unknown = null;
-  let unwritten: ScenePose | null = null; // whose head is not written yet
+  let unwritten: ScenePose | null = null; // pose whose head is not written yet
   let lastReadout = 0;
   const sendChangedPose = () => {
     const { rowsAtCursor: history, time, mover } = app;
@@ -233,7 +233,7 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   return onFrame((now) => {
     sendChangedPose();
     if (unwritten !== null && readout.current !== null && now - lastReadout > readoutPeriod) {
-      // No bus says where a robot is: what is shown there is where its simulation is.
+      // A bus does not report the place of a robot: the view shows the place of its simulation.
       const name = app.state.busSession.peek() === null ? 'head' : 'simulated head';
       readout.current.textContent = unwritten.head === null ? '' : positionText(name, unwritten.head);
       lastReadout = now;

@@ -14,7 +14,7 @@ const keyStep = 24; // pixels
 const moveStep = 0.01; // metres
 const turnStep = 5; // degrees
 const degreesPerPixel = 0.5;
-const wheelFactor = 0.0012; // for each pixel
+const wheelFactor = 0.0012; // change of the zoom for each pixel
 
 // Moves the robot with the same pointer and keys instead, while it is active.
 //   drag: in the plane of the ground     Shift and drag: height     Ctrl and drag: turn     arrows, Page Up, Page Down: steps
@@ -31,7 +31,7 @@ export function listenToPointer(
   pull: ScenePull,
 ): () => void {
   let moverStart: Point | null = null; // where a drag of the robot began
-  let turn = 0; // degrees since then
+  let turn = 0; // degrees since the drag began
   const pointers = new Map<number, Point>();
   let isPanning = false;
   const abort = new AbortController();
@@ -140,7 +140,7 @@ function turnByKey(event: KeyboardEvent, send: (message: ToScene) => void): void
   }
 }
 
-// -1 to 1, y up.
+// The place of an event in the view, -1 to 1, y up.
 function positionIn(canvas: HTMLCanvasElement, event: PointerEvent): Point {
   const box = canvas.getBoundingClientRect();
   return { x: ((event.clientX - box.left) / box.width) * 2 - 1, y: 1 - ((event.clientY - box.top) / box.height) * 2 };

@@ -1,4 +1,4 @@
-// The pose of the robot at a tick, from the telemetry; or where a hand has put it since the last tick.
+// The pose of the robot at a tick, from the telemetry; or the pose into which a hand has moved it since the last tick.
 import { poseFromArray } from '../geometry/quaternion.js';
 import type { RobotView } from '../robot_view.js';
 import { placedHead } from '../state/move_tool.js';
@@ -11,7 +11,8 @@ const quaternionUnit = 2 ** 30;
 const micrometre = 1e-6;
 const degree = Math.PI / 180;
 
-// What the 3D view shows; `withGhost`: with the simulation beside a robot on a bus, if there is one. Null if nothing is known.
+// The pose for the 3D view. `withGhost`: includes the simulation beside a robot on a bus, if there is one. Null if nothing
+// is known.
 export function shownPose(app: RobotView, tick: number, withGhost: boolean): ScenePose | null {
   const { rowsAtCursor: history, time, mover } = app;
   const isLive = time.isLive.peek() && time.cursor.peek() === null;
@@ -31,7 +32,7 @@ export function shownPose(app: RobotView, tick: number, withGhost: boolean): Sce
   return { ...(known ?? straight), head: Float64Array.of(...position, ...orientation), run: history.run, isLive: false };
 }
 
-// Null if the row is not there.
+// The pose in a row; null if the row does not exist.
 export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean, withGhost: boolean): ScenePose | null {
   const row = Math.min(history.end - 1, history.rowAtTick(tick));
   if (row < history.first) {
@@ -59,7 +60,7 @@ function headAt(history: TelemetryHistory, row: number): Float64Array | null {
   return posesAt(history, 'head', row);
 }
 
-// Of each pose x, y, z in metres, then the quaternion; null if the row has none.
+// The poses in a row: x, y, z in metres, then the quaternion; null if the row has none.
 function posesAt(history: TelemetryHistory, signal: string, row: number): Float64Array | null {
   const poses = new Float64Array(signal === 'head' ? headValues : (history.rings.get(signal)?.count ?? 0));
   for (let i = 0; i < poses.length; i += 1) {
@@ -88,7 +89,7 @@ export function wholePathOf(history: TelemetryHistory, marks: readonly Mark[]): 
   return Float64Array.from(path);
 }
 
-// Radians; of the first signal that has a value for the joint, else 0.
+// The angle of a joint in radians, from the first signal that has a value for the joint, else 0.
 function anglesAt(history: TelemetryHistory, signals: readonly string[], row: number): Float32Array {
   return Float32Array.from({ length: history.rings.get(signals[0] as string)?.count ?? 0 }, (_, joint) => {
     const signal = signals.find((name) => history.valueAt(name, joint, row) !== noValue);

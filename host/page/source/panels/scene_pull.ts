@@ -9,7 +9,7 @@ export class ScenePull {
   // asked: the worker has not yet said which joint it is.
   private state: 'none' | 'asked' | 'pulling' = 'none';
   private joint = 0;
-  private start = 0; // degrees
+  private start = 0; // angle of the joint when it was grabbed, in degrees
 
   constructor(
     private readonly app: RobotView,
@@ -20,7 +20,7 @@ export class ScenePull {
     return this.app.poses?.isPossible === true;
   }
 
-  // x and y as in the messages to the worker.
+  // Begins a pull; x and y are those of the messages to the worker.
   press(x: number, y: number): void {
     if (this.isPossible) {
       this.state = 'asked';
@@ -28,7 +28,7 @@ export class ScenePull {
     }
   }
 
-  // False: the movement is not for a joint, so it turns the view.
+  // Moves the pull. Returns false if the movement is not for a joint, so that it turns the view.
   move(x: number, y: number): boolean {
     if (this.state === 'pulling') {
       this.send({ kind: 'drag_joint', x, y });

@@ -11,7 +11,7 @@ import { signalTitle, valueName } from './value_names.js';
 
 const framePeriod = 30; // milliseconds: about 30 images a second
 const smallestLabel = 14; // CSS pixels between two names of joints
-// CSS pixels: of the strip, and of a joint in it where there are many.
+// Heights in CSS pixels: of the strip, and of a joint in it if there are many.
 const smallestHeight = 120;
 const largestHeight = 260;
 const jointHeight = 4;
@@ -42,7 +42,8 @@ class StripDrawing {
   private readonly image = new StripImage();
   private lastKey = '';
   private lastTime = 0;
-  // In CSS pixels. To ask the canvas in each frame would make the browser lay the page out twice in it.
+  // The size in CSS pixels is kept, because reading it from the canvas in each frame makes the browser lay out the page
+  // twice.
   private box = { width: 0, height: 0 };
   private readonly observer = new ResizeObserver(([entry]) => (this.box = (entry as ResizeObserverEntry).contentRect));
 
@@ -118,7 +119,7 @@ class StripDrawing {
     context.textBaseline = 'middle';
     for (let row = 0; row < rows; row += 1) {
       const isHovered = row === hovered;
-      // Near the hovered name there is no room for another one.
+      // Names near the hovered one are left out, because there is no room for them.
       const isCovered = hovered !== null && !isHovered && Math.abs(row - hovered) < every;
       if (isHovered || (row % every === 0 && !isCovered)) {
         context.fillStyle = isHovered ? theme.highlight : theme.text;

@@ -1,9 +1,9 @@
 // The present tick and time.
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 
-export function TickCounter({ app }: { app: PageApp }) {
+export function TickCounter({ app }: { app: Stores<'newestTick' | 'tickRate'> }) {
   const tick = useRef<HTMLElement>(null);
   const time = useRef<HTMLElement>(null);
   useEffect(

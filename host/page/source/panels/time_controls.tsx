@@ -1,14 +1,14 @@
 // The time window of strip and plots, the way back to live, markers and loop.
 import { useEffect } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { closeIcon } from './icons.js';
 
 const windows = [2, 5, 10, 30, 60, 120]; // seconds
 
-const longestPause = 250; // milliseconds between two frames; more is a hidden tab, not time that the loop plays
+const longestPause = 250; // milliseconds between two frames; a longer pause comes from a hidden tab and does not count as playing time
 
-function LoopControls({ app }: { app: PageApp }) {
+function LoopControls({ app }: { app: Stores<'marks' | 'newestTick' | 'tickRate'> }) {
   const { marks } = app;
   const { from, to } = marks.loop.value;
   const text = (tick: number | null, key: string) => (tick === null ? key : `${(tick / app.tickRate).toFixed(2)} s`);
@@ -38,7 +38,7 @@ function LoopControls({ app }: { app: PageApp }) {
   );
 }
 
-function MarkerList({ app }: { app: PageApp }) {
+function MarkerList({ app }: { app: Stores<'marks' | 'newestTick' | 'tickRate'> }) {
   const { marks } = app;
   if (marks.markers.value.length === 0) {
     return null;
@@ -66,7 +66,7 @@ function MarkerList({ app }: { app: PageApp }) {
   );
 }
 
-export function TimeControls({ app }: { app: PageApp }) {
+export function TimeControls({ app }: { app: Stores<'marks' | 'newestTick' | 'state' | 'tickRate' | 'time'> }) {
   const { time } = app;
   const rate = app.tickRate;
   const seconds = time.window.value / rate;

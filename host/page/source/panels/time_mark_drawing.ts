@@ -4,14 +4,14 @@ import type { TickRange } from '../state/time_view.js';
 import { isDark } from '../theme.js';
 import { chartTheme } from './chart_theme.js';
 
-// Where the chart is on its canvas.
+// The place of the chart on its canvas.
 export interface ChartBox {
   left: number;
   width: number;
   height: number;
 }
 
-// Another text for another picture.
+// A text that differs if the picture differs.
 export function timeMarksKey(marks: TimeMarks | null): string {
   if (marks === null) return '';
   const { from, to } = marks.loop.peek();

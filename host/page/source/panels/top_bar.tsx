@@ -1,5 +1,5 @@
-// The bar that is always there: which robot, its state, who has control, STOP.
-import type { PageApp, PageName } from '../page_app.js';
+// The bar that is always visible: the robot, its state, the viewer who has control, STOP.
+import type { PageName, Stores } from '../robot_view.js';
 import type { PageState } from '../state/page_state.js';
 import { describeStop, isConfirmed } from '../state/stop_report.js';
 import type { SessionDocument } from '../wire/messages.js';
@@ -55,7 +55,7 @@ function RobotName({ state }: { state: PageState }) {
   );
 }
 
-// How fast the simulation goes, or how full the bus is.
+// The speed of the simulation, or the load of the bus.
 function Rate({ state }: { state: PageState }) {
   const bus = state.bus.value;
   const simulation = state.simulation.value;
@@ -91,7 +91,7 @@ function Figures({ state }: { state: PageState }) {
   );
 }
 
-function Control({ app }: { app: PageApp }) {
+function Control({ app }: { app: Stores<'operations' | 'state'> }) {
   const { state } = app;
   if (!state.isConnected.value) {
     return <div class="control">not connected</div>;
@@ -129,7 +129,7 @@ function Control({ app }: { app: PageApp }) {
   );
 }
 
-function Stop({ app }: { app: PageApp }) {
+function Stop({ app }: { app: Stores<'stop'> }) {
   const report = app.stop.report.value;
   return (
     <div class="stop-area">
@@ -144,11 +144,11 @@ function Stop({ app }: { app: PageApp }) {
           aria-keyshortcuts="Escape Space"
           title="Stops the robot at once: Esc, or Space outside text fields. This does not replace a power switch."
           onPointerDown={(event) => {
-            // At the press, not at the release; the click that follows has no second effect.
+            // STOP acts at the press, not at the release; the click that follows has no second effect.
             if (event.button === 0) app.stop.press();
           }}
           onClick={(event) => {
-            // detail 0: from the keyboard or from a program that reads the screen.
+            // detail is 0 for a click by the keyboard or by a program that reads the screen.
             if (event.detail === 0) app.stop.press();
           }}
         >
@@ -162,7 +162,7 @@ function Stop({ app }: { app: PageApp }) {
   );
 }
 
-function PageButton({ app, page, title, number }: { app: PageApp; page: PageName; title: string; number: number }) {
+function PageButton({ app, page, title, number }: { app: Stores<'shownPage'>; page: PageName; title: string; number: number }) {
   return (
     <button
       type="button"
@@ -175,8 +175,8 @@ function PageButton({ app, page, title, number }: { app: PageApp; page: PageName
   );
 }
 
-export function TopBar({ app }: { app: PageApp }) {
-  // Only recordings: nothing to stop, until one of them is continued.
+export function TopBar({ app }: { app: Stores<'operations' | 'shownPage' | 'state' | 'stop'> }) {
+  // If there are only recordings, there is no robot to stop until one of them is continued.
   const isAlone = app.state.isAlone.value;
   return (
     <header class="top-bar">

@@ -1,4 +1,4 @@
-// Names of the values of a signal, as people know them: joints and links.
+// Names of the values of a signal for people: those of joints and links.
 import type { RobotDocument, Signal } from '../wire/messages.js';
 
 const poseParts = ['x', 'y', 'z', 'qw', 'qx', 'qy', 'qz'];
@@ -15,7 +15,7 @@ export function valueName(robot: RobotDocument | null, signal: Signal | undefine
     }
     return signal.name === 'head' ? part : `value ${index + 1}`;
   }
-  // An internal value has one for each joint of its slot.
+  // An internal value has one value for each joint of its slot.
   const slot = robot?.slots.find((candidate) => signal?.name.startsWith(`${candidate.number}/`));
   const joint = slot === undefined ? index : (slot.joints[index] ?? index);
   return robot?.joints[joint]?.name ?? `joint ${joint + 1}`;

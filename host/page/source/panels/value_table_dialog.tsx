@@ -2,7 +2,7 @@
 //   arrows, Enter: move     Shift and arrows: choose a range     Ctrl+A: all     type: change a value
 import { useSignal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import { type Cell, type CellProblem, cellText, contains, copyText, paste, rangeOf, wantedOf } from '../state/value_table.js';
 import type { Parameter } from '../wire/messages.js';
 import { Dialog } from './dialog.js';
@@ -31,7 +31,7 @@ function classOf(parameter: Parameter, joint: number, isChosen: boolean): string
   return [isChanged && 'changed', isPending && 'pending', isChosen && 'chosen'].filter(Boolean).join(' ');
 }
 
-export function ValueTableDialog({ app }: { app: PageApp }) {
+export function ValueTableDialog({ app }: { app: Stores<'newGesture' | 'sets' | 'state'> }) {
   const parameters = app.state.parameters.value;
   const joints = app.state.robot.value?.joints.map((joint) => joint.name) ?? [];
   const isHolder = app.state.isHolder.value;
@@ -58,7 +58,7 @@ export function ValueTableDialog({ app }: { app: PageApp }) {
     const column = Math.max(0, Math.min(joints.length - 1, cell.column));
     const input = frame.current?.querySelector<HTMLInputElement>(`[data-at="${row},${column}"]`);
     const from = anchor.value;
-    input?.focus(); // moves both ends
+    input?.focus(); // moves both ends of the range
     input?.select();
     current.value = { row, column };
     if (keepsAnchor) anchor.value = from;
@@ -79,7 +79,7 @@ export function ValueTableDialog({ app }: { app: PageApp }) {
     event.preventDefault();
   };
   const onCopy = (event: ClipboardEvent) => {
-    if (!isRange) return; // the text that is chosen in the field
+    if (!isRange) return; // the browser copies the chosen text of the field
     event.clipboardData?.setData('text/plain', copyText(parameters, range));
     event.preventDefault();
   };

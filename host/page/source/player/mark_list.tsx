@@ -1,10 +1,10 @@
-// What changed or failed in the run: a click goes there.
+// The list of changes and failures of the run: a click on one goes to its time.
 import type { PlayedRecording } from './player_app.js';
 
 const kinds = { change: 'change', fault: 'fault', restart: 'module', move: 'move', loss: 'loss' } as const;
 
 export function MarkList({ app }: { app: PlayedRecording }) {
-  // Where frames were lost stands only on the time line: in some recordings that is everywhere.
+  // Lost frames are shown only on the time line, because some recordings have them everywhere.
   const marks = app.recording.marks.filter(({ kind }) => kind !== 'loss');
   if (marks.length === 0) {
     return null;

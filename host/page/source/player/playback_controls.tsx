@@ -1,4 +1,4 @@
-// Play, speed, the time line, and where the time cursor is.
+// Controls for playing and speed, the time line, and the time of the cursor.
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import { pauseIcon, runIcon } from '../panels/icons.js';

@@ -3,7 +3,7 @@ import { openDialog } from '../dialogs.js';
 import { sharedActions } from '../shared_actions.js';
 import type { PlayedRecording, PlayerApp } from './player_app.js';
 
-// Those of a time line, wherever it is. `playKeys`: Space plays only where there is no robot to stop.
+// Adds the actions of a time line. `playKeys`: Space plays only if there is no robot to stop.
 export function addPlaybackActions({ actions, time, tickRate }: PlayedRecording, playKeys: readonly string[]): void {
   const step = (id: string, title: string, key: string, ticks: number) => ({
     id,

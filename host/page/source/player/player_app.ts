@@ -1,4 +1,4 @@
-// The parts of the player, put together.
+// Creates the stores of the player and connects them.
 import { signal } from '@preact/signals-core';
 import { historyFor, loadTicks, type RecordingDocuments, type RecordingSource } from '../data/recording_source.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
@@ -9,7 +9,7 @@ import { Playback } from '../state/playback.js';
 import { SignalSelection } from '../state/signal_selection.js';
 import type { RecordingDocument, RobotDocument, TelemetryDocument } from '../wire/messages.js';
 
-// A recording that is played, wherever its rows come from.
+// A recording that is played, from any source of rows.
 export interface PlayedRecording extends RobotView {
   readonly recording: RecordingDocument;
   readonly parameters: RecordingDocuments['parameters'];
@@ -27,7 +27,7 @@ export class PlayerApp implements PlayedRecording {
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly wholePath = signal<Float64Array | null>(null);
-  // The share of the recording that has been read, 0 to 1; why it cannot be read.
+  // The share of the recording that has been read, 0 to 1, and the reason why it cannot be read.
   readonly loaded = signal(0);
   readonly failure = signal<string | null>(null);
 

@@ -1,15 +1,15 @@
-// What the recording says of itself: where it comes from, its parameters at the start, its figures.
+// Facts about the recording: its origin, its parameters at the start, its figures.
 import { formatRaw } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import type { PlayedRecording } from './player_app.js';
 
-// One value, or those of all joints from the head.
+// The text of one value, or of those of all joints from the head.
 function valuesText(parameter: Parameter): string {
   const texts = parameter.file.map((raw) => formatRaw(raw, parameter));
   return new Set(texts).size === 1 ? (texts[0] as string) : texts.join('  ');
 }
 
-// Six digits of a long number; hashes and words as they are.
+// The text with six digits of a long number; hashes and words are unchanged.
 function shortText(text: string): string {
   return /^-?\d+\.\d{5,}(e-?\d+)?$/.test(text) ? String(Number(Number(text).toPrecision(6))) : text;
 }

@@ -7,7 +7,7 @@ export function Timeline({ app }: { app: PlayedRecording }) {
   const track = useRef<HTMLDivElement>(null);
   const thumb = useRef<HTMLDivElement>(null);
   const { time } = app;
-  // A recording may grow.
+  // The length is computed at each use, because a recording may grow.
   const length = () => Math.max(1, time.last - time.first);
   const percent = (tick: number) => `${Math.max(0, Math.min(100, ((tick - time.first) / length()) * 100))}%`;
   useEffect(() => {
@@ -47,7 +47,7 @@ export function Timeline({ app }: { app: PlayedRecording }) {
           if (event.buttons === 1) seek(event);
         }}
         onKeyDown={(event) => {
-          // The arrow keys, which the page leaves to sliders (keyboard.ts); it has acted on the others.
+          // Handles the arrow keys, which the page leaves to sliders (keyboard.ts); the page has handled the other keys.
           if (!event.defaultPrevented) app.actions.forKey(event, false)?.run();
         }}
       >

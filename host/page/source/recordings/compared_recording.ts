@@ -5,7 +5,7 @@ import type { RunComparison } from '../wire/messages.js';
 import type { RecordingClient } from './recording_client.js';
 import { RecordingReader } from './recording_reader.js';
 
-const askPeriod = 500; // milliseconds between two questions how far the comparison is
+const askPeriod = 500; // milliseconds between two requests for the progress of the comparison
 
 export class ComparedRecording {
   readonly comparison;
@@ -22,7 +22,7 @@ export class ComparedRecording {
     this.askedAt = now();
   }
 
-  // Rejects with one line if the two cannot be compared.
+  // Opens a second recording. Rejects with one line if the two cannot be compared.
   static async open(first: RecordingClient, second: RecordingClient, now: () => number = () => performance.now()): Promise<ComparedRecording> {
     const comparison = await first.compare(second);
     const documents = await second.open();
@@ -37,7 +37,7 @@ export class ComparedRecording {
     return this.reader.failure.value ?? this.comparison.value.damage ?? this.reader.document.value.damage;
   }
 
-  // At each frame while it is shown. `names`: of signals.
+  // To be called at each frame while the recording is shown. `names`: names of signals.
   advance(time: Playback, names: ReadonlySet<string>): void {
     this.reader.advance(time, names);
     const isKnown = isDecided(this.comparison.peek()) && this.reader.document.peek().finished;
@@ -63,7 +63,7 @@ export function isDecided({ first_tick, last_tick, compared, difference, damage 
   return difference !== null || damage !== null || compared > last_tick - first_tick;
 }
 
-// One line: which ticks both have, and whether their set-points are the same.
+// One line that says which ticks both recordings have, and whether their set-points are the same.
 export function comparisonText(comparison: RunComparison): string {
   const { first_tick, last_tick, compared, difference } = comparison;
   const ticks = last_tick - first_tick + 1;
@@ -76,7 +76,7 @@ export function comparisonText(comparison: RunComparison): string {
     : `${both}; the same set-points in all ${ticks} ticks, bit for bit`;
 }
 
-// How far the heads moved in the common ticks.
+// The distances that the heads moved in the common ticks, as text.
 export function wayText({ head_m }: RunComparison): string {
   const way = (metres: number | null) => (metres === null ? 'not known' : `${metres.toFixed(3)} m`);
   return `head: ${way(head_m[0])}, second ${way(head_m[1])}`;

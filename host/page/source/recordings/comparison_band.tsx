@@ -1,4 +1,4 @@
-// What two recordings have in common, in one line; and the way back to one.
+// One line about two compared recordings, and the way back to a single one.
 import type { OpenedRecording } from './opened_recording.js';
 import { comparisonText, wayText } from './compared_recording.js';
 

@@ -1,5 +1,5 @@
-// Every tick about the time cursor: for the 3D view, the table of joints and the values beside the lines. While the recording
-// plays, the next ticks come before they are shown.
+// Reads every tick near the time cursor, for the 3D view, the table of joints and the values beside the lines. While the
+// recording plays, the next ticks are read before they are shown.
 import { pyramidBlock } from '../data/min_max_pyramid.js';
 import { TelemetryHistory } from '../data/telemetry_history.js';
 import { drawSoon } from '../frame_clock.js';
@@ -7,9 +7,9 @@ import type { Signal } from '../wire/messages.js';
 import { rowLayout } from '../wire/subscription.js';
 import type { AskRows } from './range_rows.js';
 
-const jump = 128; // ticks that are read about a tick elsewhere: as few as come soon
-const piece = 512; // ticks that are read while it plays
-const ahead = 384; // ticks before the end of what is there
+const jump = 128; // ticks that are read around a distant tick: few, so that they come soon
+const piece = 512; // ticks that are read at once while the recording plays
+const ahead = 384; // distance in ticks to the end of the present rows at which more are read
 
 export class CursorRows {
   readonly history = new TelemetryHistory(pyramidBlock);
@@ -26,7 +26,7 @@ export class CursorRows {
     return this.history.has(tick);
   }
 
-  // Call it at each frame: it asks only for what is missing.
+  // To be called at each frame: requests only missing rows.
   want(tick: number, signals: readonly Signal[], first: number, last: number, isPlaying: boolean): void {
     const names = signals.map((signal) => signal.name).join();
     if (this.isAsking || signals.length === 0 || this.failedAt === tick) {

@@ -1,4 +1,4 @@
-// Pictures of the panels, and a table of what strip and plots show.
+// Exports pictures of the panels, and a table of the values in strip and plots.
 import { useSignal } from '@preact/signals';
 import { panelImage, save } from './panel_image.js';
 import type { OpenedRecording } from './opened_recording.js';
@@ -11,7 +11,7 @@ const panels = [
   { title: 'x over y', selector: '.xy-panel' },
 ] as const;
 
-// All joints of the strip, then the lines of the plots that are not among them.
+// The columns: all joints of the strip, then the lines of the plots that are not among them.
 export function shownColumns(opened: OpenedRecording): TsvColumn[] {
   const signals = opened.state.telemetry.value?.signals ?? [];
   const strip = signals.find((signal) => signal.name === opened.selection.strip.value);

@@ -1,4 +1,5 @@
-// A recording that is shown, alone or with a second one: what the panels show of it, and its time. A growing one is followed.
+// A recording that is shown, alone or with a second one: the values for the panels, and its time. A recording that grows is
+// followed.
 import { effect, signal, untracked } from '@preact/signals-core';
 import { addPlaybackActions } from '../player/player_actions.js';
 import type { PlayedRecording } from '../player/player_app.js';
@@ -27,7 +28,7 @@ export class OpenedRecording implements PlayedRecording {
     client: RecordingClient,
     documents: OpenDocuments,
     readonly startSceneWorker: () => Worker,
-    // Actions of the page that hold here, too.
+    // Actions of the page that are available here, too.
     pageActions: ActionList,
     now: () => number = () => performance.now(),
   ) {
@@ -47,7 +48,7 @@ export class OpenedRecording implements PlayedRecording {
     const isOfPage = (action: Action) => action.group === 'Page' || action.id === 'stop' || action.id === 'take_control';
     this.actions = new ActionList(pageActions, isOfPage);
     addPlaybackActions(this, ['K']);
-    // Not only at the next frame: it may be 30 ms later.
+    // The rows are read at once, because the next frame may come 30 ms later.
     effect(() => {
       this.time.cursor.value;
       this.read();
@@ -94,7 +95,7 @@ export class OpenedRecording implements PlayedRecording {
     return this.reader.document.peek().last_tick;
   }
 
-  // At each frame while it is shown.
+  // To be called at each frame while the recording is shown.
   advance(milliseconds: number): void {
     const { time } = this;
     time.advance(milliseconds);
@@ -104,7 +105,7 @@ export class OpenedRecording implements PlayedRecording {
     this.read();
   }
 
-  // What is missing at the time cursor.
+  // Reads missing rows at the time cursor.
   private read(): void {
     untracked(() => {
       const names = new Set(this.selection.needed(this.reader.telemetry.signals).map((signal) => signal.name));

@@ -1,4 +1,4 @@
-// A panel as a picture: its canvases where they are, and the names of its lines above them.
+// Makes a picture of a panel: its canvases in their places, and the names of its lines above them.
 const titleHeight = 22; // CSS pixels
 
 interface Label {
@@ -13,7 +13,7 @@ function labelsOf(panel: Element): Label[] {
   }));
 }
 
-// Throws an Error if there is nothing to draw.
+// Makes the picture. Throws an Error if there is nothing to draw.
 export function panelImage(panel: Element, title: string): Promise<Blob> {
   const box = panel.getBoundingClientRect();
   const ratio = window.devicePixelRatio;

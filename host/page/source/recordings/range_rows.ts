@@ -1,5 +1,5 @@
-// The rows of the part of a recording that strip and plots show. It asks for more when the part leaves what is there, one
-// question at a time.
+// Reads the rows of the part of a recording that strip and plots show. It requests more when the part leaves the present
+// rows, with one request at a time.
 import { pyramidBlock } from '../data/min_max_pyramid.js';
 import { TelemetryHistory } from '../data/telemetry_history.js';
 import type { TickRange } from '../state/time_view.js';
@@ -13,22 +13,22 @@ export type AskRows = (signals: readonly Signal[], from: number, to: number) => 
 interface Loaded {
   names: string;
   from: number;
-  to: number; // the last tick that is there
+  to: number; // the last tick that was read
   askedTo: number;
-  stride: number; // that was asked for
+  stride: number; // stride that was requested
   at: number; // milliseconds
 }
 
 const retryPeriod = 300; // milliseconds: for ticks that are not there yet
-const margin = 0.25; // of the range, on both sides
+const margin = 0.25; // share of the range that is added on both sides
 
-// Two rows for each block.
+// The history has two rows for each block.
 const capacity = Math.ceil((2 * mostPoints) / pyramidBlock) * pyramidBlock;
 
 export class RangeRows {
-  // For lines: of blocks the minima, and the maxima half a block later.
+  // Rows for lines: the minima of blocks, and their maxima half a block later.
   readonly lines = new TelemetryHistory(capacity);
-  // Of blocks the first row.
+  // The first row of each block.
   readonly samples = new TelemetryHistory(capacity);
   private loaded: Loaded | null = null;
   private isAsking = false;
@@ -40,7 +40,7 @@ export class RangeRows {
     private readonly failed: (reason: string) => void,
   ) {}
 
-  // Call it at each frame: it asks only for what is missing. `first`, `last`: of the recording.
+  // To be called at each frame: requests only missing rows. `first`, `last`: ticks of the recording.
   want(range: TickRange, signals: readonly Signal[], first: number, last: number): void {
     const from = Math.max(first, Math.floor(range.from));
     const to = Math.min(last, Math.ceil(range.to));
@@ -71,7 +71,7 @@ export class RangeRows {
       this.take(rows, signals);
     } catch (error) {
       this.failed((error as Error).message);
-      loaded.to = Infinity; // the same question would have the same answer
+      loaded.to = Infinity; // the same request would have the same answer
     }
     loaded.at = this.now();
     this.loaded = loaded;

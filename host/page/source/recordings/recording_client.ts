@@ -1,4 +1,4 @@
-// A recording behind the server.
+// Reads a recording behind the server.
 import type { OperationQueue } from '../state/operations.js';
 import type { Documents, RecordedFile, RunComparison, ServedRecordingDocument, Signal } from '../wire/messages.js';
 import { decodeRecordedRows, type RecordedRows } from '../wire/recorded_rows.js';
@@ -12,7 +12,7 @@ export interface OpenDocuments extends Pick<Documents, 'robot' | 'parameters' | 
 export const mostPoints = 2048;
 export const strides = [1, 8, 64, 512, 4096] as const;
 
-// The stride of an answer about so many ticks.
+// The stride of an answer for this number of ticks.
 export function strideFor(ticks: number): number {
   return strides.find((stride) => Math.ceil(ticks / stride) <= mostPoints) ?? 4096;
 }
@@ -27,12 +27,13 @@ export class RecordingClient {
     return (await this.operations.ask('recording.open', { file: this.file })) as OpenDocuments;
   }
 
-  // How far the comparison with another recording is. Rejects if the two cannot be compared.
+  // The progress of the comparison with another recording. Rejects if the two cannot be compared.
   async compare(other: RecordingClient): Promise<RunComparison> {
     return (await this.operations.ask('recording.compare', { file: this.file, with: other.file })) as RunComparison;
   }
 
-  // Ticks `from` up to, including, `to`: every tick, or blocks if they are more than mostPoints. May end before `to`.
+  // Reads the ticks from `from` up to, including, `to`: every tick, or blocks if they are more than mostPoints. The answer
+  // may end before `to`.
   async rows(signals: readonly Signal[], from: number, to: number): Promise<RecordedRows> {
     const names = signals.map((signal) => signal.name);
     const buffer = await this.operations.ask('recording.rows', { file: this.file, signals: names, from, to, points: mostPoints });

@@ -1,4 +1,4 @@
-// What is read of a recording: its document, which may grow, and the rows that the panels show.
+// Reads a recording: its document, which may grow, and the rows for the panels.
 import { signal } from '@preact/signals-core';
 import { wholePathOf } from '../panels/scene_pose.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
@@ -15,7 +15,7 @@ export class RecordingReader {
   readonly telemetry: TelemetryDocument;
   readonly document;
   readonly wholePath = signal<Float64Array | null>(null);
-  // Why something cannot be shown.
+  // The reason why a part cannot be shown.
   readonly failure = signal<string | null>(null);
   readonly ask: AskRows;
   private readonly range: RangeRows;
@@ -40,7 +40,7 @@ export class RecordingReader {
     this.cursor = new CursorRows(this.ask, failed);
   }
 
-  // As in RobotView.
+  // The histories below are those of RobotView.
   get history(): TelemetryHistory {
     return this.range.lines;
   }
@@ -57,7 +57,8 @@ export class RecordingReader {
     return this.cursor.has(tick);
   }
 
-  // At each frame while it is shown. `names`: of signals; those that it has are read.
+  // To be called at each frame while the recording is shown. `names`: names of signals; those that the recording has are
+  // read.
   advance(time: Playback, names: ReadonlySet<string>): void {
     const { first_tick, last_tick, finished, indexed, damage, has_path } = this.document.peek();
     const signals = this.telemetry.signals.filter(({ name }) => names.has(name));

@@ -1,7 +1,7 @@
-// The page Recordings: the files, and the one that is shown.
+// The stores of the page Recordings: the files, and the recording that is shown.
 import { effect, signal } from '@preact/signals-core';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { Stores } from '../robot_view.js';
 import type { RecordedFile } from '../wire/messages.js';
 import { ComparedRecording } from './compared_recording.js';
 import { OpenedRecording } from './opened_recording.js';
@@ -10,10 +10,12 @@ import { listRecordings, RecordingClient } from './recording_client.js';
 const listPeriod = 2000; // milliseconds between two looks at the folder
 const longestFrame = 250; // milliseconds: a tab that was hidden goes on where it was
 
+export type RecordingsStores = Stores<'actions' | 'operations' | 'recordingActions' | 'shownPage' | 'startSceneWorker' | 'state'>;
+
 export class RecordingsApp {
   readonly files = signal<readonly RecordedFile[] | null>(null);
   readonly opened = signal<OpenedRecording | null>(null);
-  // The file that is being opened; why the list or a file cannot be shown.
+  // The file that is being opened, and the reason why the list or a file cannot be shown.
   readonly opening = signal<string | null>(null);
   readonly problem = signal<string | null>(null);
   // The recording for which a second one is chosen from the list.
@@ -22,7 +24,7 @@ export class RecordingsApp {
   private isListing = false;
   private last = performance.now();
 
-  constructor(readonly page: PageApp) {
+  constructor(readonly page: RecordingsStores) {
     onFrame((now) => this.advance(now));
     effect(() => {
       const file = page.state.recordings.value?.open ?? null;
@@ -63,7 +65,7 @@ export class RecordingsApp {
     });
   }
 
-  // From the list: the next file that is chosen is compared with this one.
+  // Starts the choice of a second file from the list, which is compared with this one.
   chooseSecond(file: string | null): void {
     this.comparing.value = file;
     this.problem.value = null;
@@ -84,7 +86,7 @@ export class RecordingsApp {
     });
   }
 
-  // Why the simulation cannot go on from the time cursor; null: it can.
+  // The reason why the simulation cannot continue from the time cursor; null: it can.
   obstacleToContinue({ recording }: OpenedRecording): string | null {
     const { robot, isConnected, isHolder } = this.page.state;
     if (recording.program !== 'simulate') return 'Only a simulation can be computed again, not a robot that had modules.';
@@ -102,7 +104,7 @@ export class RecordingsApp {
     this.listedAt = -Infinity;
   }
 
-  // Opens a file; if that fails, its line is the problem.
+  // Opens a file; if that fails, the line of the error becomes `problem`.
   private async attempt(file: string, action: () => Promise<void>): Promise<void> {
     this.opening.value = file;
     this.problem.value = null;
@@ -137,7 +139,7 @@ export class RecordingsApp {
     this.isListing = true;
     try {
       this.files.value = await listRecordings(this.page.operations);
-      // Files that were not read yet will be soon.
+      // The list is read again soon if it has files that were not read yet.
       if (this.files.value.some((file) => !file.described)) this.listedAt -= listPeriod * 0.8;
     } catch (error) {
       this.problem.value = (error as Error).message;

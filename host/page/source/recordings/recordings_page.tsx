@@ -3,7 +3,6 @@ import { JointTable } from '../panels/joint_table.js';
 import { PlotPanel } from '../panels/plot_panel.js';
 import { ScenePanel } from '../panels/scene_panel.js';
 import { StripPanel } from '../panels/strip_panel.js';
-import type { PageApp } from '../page_app.js';
 import { MarkList } from '../player/mark_list.js';
 import { PlaybackControls } from '../player/playback_controls.js';
 import { RecordingFacts } from '../player/recording_facts.js';
@@ -12,9 +11,9 @@ import { ExportTools } from './export_tools.js';
 import { ComparisonBand } from './comparison_band.js';
 import { XyPanel } from './xy_panel.js';
 import { RecordingList } from './recording_list.js';
-import { RecordingsApp } from './recordings_app.js';
+import { RecordingsApp, type RecordingsStores } from './recordings_app.js';
 
-let recordings: RecordingsApp | null = null; // one for the page; it stays when another page is shown
+let recordings: RecordingsApp | null = null; // the only one of the page; it stays when another page is shown
 
 function RecordingBands({ opened }: { opened: OpenedRecording }) {
   const { recording } = opened;
@@ -96,7 +95,7 @@ function OpenedView({ app, opened }: { app: RecordingsApp; opened: OpenedRecordi
   );
 }
 
-export function RecordingsPage({ app: page }: { app: PageApp }) {
+export function RecordingsPage({ app: page }: { app: RecordingsStores }) {
   recordings ??= new RecordingsApp(page);
   const app = recordings;
   const opened = app.opened.value;

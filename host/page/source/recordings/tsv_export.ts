@@ -1,4 +1,5 @@
-// What strip and plots show, as a table: a line for each tick of the part that is shown, columns separated by tabs.
+// Makes a table of the values in strip and plots: a line for each tick of the part that is shown, columns separated by
+// tabs.
 import type { RobotDocument, Signal } from '../wire/messages.js';
 import { noValue } from '../wire/messages.js';
 import { valueName } from '../panels/value_names.js';
@@ -13,17 +14,17 @@ export interface TsvColumn {
 export interface TsvRequest {
   columns: readonly TsvColumn[];
   from: number;
-  to: number; // including
+  to: number; // last tick, included
   tickSeconds: number;
   robot: RobotDocument | null;
 }
 
-// As `proleg export` names them: `angle_deg.J2`.
+// The title of a column, like that of `proleg export`: `angle_deg.J2`.
 function title({ signal, index }: TsvColumn, robot: RobotDocument | null): string {
   return `${signal.name}${signal.unit === '' ? '' : `_${signal.unit}`}.${valueName(robot, signal, index)}`;
 }
 
-// Ten digits tell all int32 apart. Empty: no value.
+// The text of a value, empty if there is none. Ten digits distinguish all int32.
 function text(raw: number, scale: number): string {
   return raw === noValue ? '' : String(Number((raw * scale).toPrecision(10)));
 }

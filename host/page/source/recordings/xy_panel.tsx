@@ -67,7 +67,7 @@ function draw(app: OpenedRecording, canvas: HTMLCanvasElement, x: Line, y: Line)
     context.textBaseline = 'middle';
     context.fillText(formatMeasured(yValue), edge.left - 6, pixelY(yValue));
   }
-  // Every tick is a curve; samples that are some ticks apart are points.
+  // Rows of every tick are drawn as a curve; samples that are some ticks apart are drawn as points.
   context.strokeStyle = context.fillStyle = theme.lines[0] ?? theme.text;
   context.beginPath();
   points.x.forEach((value, i) => {

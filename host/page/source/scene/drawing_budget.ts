@@ -1,5 +1,5 @@
-// How much detail the 3D view has, so that drawing leaves time for the controls. It is told of each animation frame: where
-// the computer cannot keep up, frames come late.
+// Chooses the detail of the 3D view, so that drawing leaves time for the controls. It is called for each animation frame:
+// on a computer that cannot keep up, frames come late.
 
 export interface Detail {
   ratio: number; // most device pixels for each CSS pixel
@@ -14,16 +14,16 @@ export const details: readonly Detail[] = [
   { ratio: 0.5, hasShadows: false },
 ];
 
-// In milliseconds.
-const window = 1000; // over which frames are counted
-const pause = 1000; // without a frame: the page was hidden
-export const slowFrame = 34; // mean: drawing is too expensive
-// Mean, where the processor draws: it needs time for the robot and the controls as well.
+// The durations below are in milliseconds.
+const window = 1000; // duration over which frames are counted
+const pause = 1000; // duration without a frame that means that the page was hidden
+export const slowFrame = 34; // mean duration of a frame from which drawing is too expensive
+// The limit of the mean if the processor draws, which needs time for the robot and the controls as well.
 export const slowFrameInSoftware = 24;
-const quickFrame = 20; // mean: more detail may be possible
-const shortestPatience = 10000; // of quick frames before an attempt at more detail
+const quickFrame = 20; // mean duration of a frame up to which more detail may be possible
+const shortestPatience = 10000; // duration of quick frames before an attempt at more detail
 const longestPatience = 600000;
-const fewestDrawn = 5; // in a window that says something about drawing
+const fewestDrawn = 5; // frames in a window that is long enough for a decision
 
 export class DrawingBudget {
   private begin: number | null = null;
@@ -43,7 +43,7 @@ export class DrawingBudget {
     return details[this.level] as Detail;
   }
 
-  // An animation frame at `now`; `hasDrawn`: the view was drawn in it. True if the level has changed.
+  // Counts an animation frame at `now`; `hasDrawn`: the view was drawn in it. Returns whether the level has changed.
   note(now: number, hasDrawn: boolean): boolean {
     if (this.begin === null || now - this.last > pause) {
       this.restart(now);

@@ -1,4 +1,4 @@
-// The line along which the head moved; where a hand moved the robot it is cut.
+// The line along which the head moved. It is cut where a hand moved the robot.
 import * as THREE from 'three';
 import type { Vector } from '../geometry/quaternion.js';
 import { PathPoints } from './path_points.js';
@@ -15,7 +15,7 @@ export class HeadPath {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', this.positions);
     geometry.setIndex(this.segments);
-    // Seen through the robot, which mostly lies on its own path.
+    // The line is visible through the robot, which mostly lies on its own path.
     this.line = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ depthTest: false, transparent: true }));
     this.line.frustumCulled = false;
     this.show();
@@ -26,7 +26,7 @@ export class HeadPath {
     this.show();
   }
 
-  // The next point is not joined to the last one.
+  // Cuts the line: the next point is not joined to the last one.
   cut(): void {
     this.points.cut();
   }

@@ -1,13 +1,13 @@
 // The points of a path in pieces, and the segments between them. It has room for a number of points; when it is full, every
-// second one goes.
+// second point is removed.
 import type { Vector } from '../geometry/quaternion.js';
 
 export class PathPoints {
   readonly positions: Float32Array; // x, y, z of each point
   readonly segments: Uint16Array; // the two points of each segment
   count = 0;
-  segmentEnds = 0; // numbers in `segments`
-  private readonly begins: boolean[] = []; // of each point, whether it begins a piece
+  segmentEnds = 0; // count of the used numbers in `segments`
+  private readonly begins: boolean[] = []; // whether each point begins a piece
   private isCut = true;
 
   // capacity: even, at most 65536.
@@ -22,12 +22,12 @@ export class PathPoints {
     this.isCut = true;
   }
 
-  // The next point begins a piece.
+  // Makes the next point begin a piece.
   cut(): void {
     this.isCut = true;
   }
 
-  // False if the point is left out, because it is closer than `spacing` to the last one.
+  // Adds a point. Returns false if it is left out, because it is closer than `spacing` to the last one.
   add(point: Vector, spacing: number): boolean {
     if (!this.isCut && Math.hypot(...point.map((value, axis) => value - (this.positions[3 * (this.count - 1) + axis] as number))) < spacing) {
       return false;
@@ -53,12 +53,12 @@ export class PathPoints {
 
   private dropEverySecond(): void {
     const kept = this.count / 2;
-    this.isCut ||= this.begins[this.count - 1] === true; // which goes
+    this.isCut ||= this.begins[this.count - 1] === true; // the last point is removed
     this.count = 0;
     this.segmentEnds = 0;
     for (let i = 0; i < kept; i += 1) {
       this.positions.copyWithin(3 * i, 6 * i, 6 * i + 3);
-      // The point before, which goes, may have begun the piece.
+      // The point before, which is removed, may have begun the piece.
       this.append(this.begins[2 * i] === true || (i > 0 && this.begins[2 * i - 1] === true));
     }
   }

@@ -34,7 +34,7 @@ function scaleOf(shape: Shape): Vector {
   }
 }
 
-// With a normal for each triangle, not for each vertex: edges are seen.
+// The geometry has a normal for each triangle, not for each vertex, so that edges are visible.
 function geometryOf(mesh: Mesh): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
   const count = mesh.vertices.length / 3;
@@ -114,7 +114,7 @@ const kinds = ['box', 'sphere', 'cylinder'] as const;
 
 const white = new THREE.Color(1, 1, 1);
 
-// Flat boxes, one for each segment.
+// Makes flat boxes, one for each segment of the rulers.
 function rulerInstances(rulers: readonly Ruler[]): Instance[] {
   return rulers.flatMap(({ from, to, division, width }, number) => {
     const way: Vector = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
@@ -133,7 +133,7 @@ function rulerInstances(rulers: readonly Ruler[]): Instance[] {
   });
 }
 
-// Behind the robot where both are at the same place: the robot keeps its colours there.
+// The ghost is drawn behind the robot where both are at the same place, so that the robot keeps its colours.
 const ghostLook = {
   transparent: true,
   opacity: 0.38,
@@ -146,7 +146,7 @@ const ghostLook = {
 // A link that a ray hits, and the joint that a pull at it turns.
 export interface Hit {
   joint: number;
-  sense: 1 | -1; // of the joint's angle, as the link turns about the axis
+  sense: 1 | -1; // sense of the joint's angle, when the link turns about the axis
   point: Vector;
 }
 
@@ -164,7 +164,7 @@ export class RobotModel {
   private readonly rulers: InstanceSet;
   private readonly joints: InstanceSet;
   private readonly contacts: InstanceSet;
-  private readonly centres: Vector[]; // of the links, in their frames
+  private readonly centres: Vector[]; // centres of the links, in their frames
   private contactBits: ArrayLike<number> = [];
   private highlighted: number | null = null;
   private displacements: Pose[] = [];
@@ -247,12 +247,13 @@ export class RobotModel {
     this.paintContacts();
   }
 
-  // Where the middle of the head link is when its frame is there.
+  // The middle of the head link for a pose of its frame.
   headCentre(head: Pose): Vector {
     return compose(head, { position: this.centres[0] as Vector, orientation: [1, 0, 0, 0] }).position;
   }
 
-  // Where the robot is until its first tick, and if it is not known where it is: its head as if all of it lay straight on the floor.
+  // Places the robot until its first tick, and if its place is not known: its head is where it is if all of the robot lies
+  // straight on the floor.
   rest(angles: ArrayLike<number> = [], contactBits: ArrayLike<number> = []): void {
     const head = poseFromArray((this.robot.links[0] as Body).pose);
     const [x, y, z] = head.position;
@@ -271,7 +272,7 @@ export class RobotModel {
     this.paint();
   }
 
-  // What is pointed at: a link, which turns about the joint behind it; the last link has none and turns about that before it.
+  // The link that is pointed at. It turns about the joint behind it; the last link turns about the joint before it.
   hit(caster: THREE.Raycaster): Hit | null {
     const sets = [...this.links, this.joints];
     sets.forEach(({ mesh }) => mesh.computeBoundingSphere());
@@ -285,7 +286,7 @@ export class RobotModel {
     return { joint: Math.min(instance.link, last), sense: instance.link > last ? -1 : 1, point: [x, y, z] };
   }
 
-  // Where a joint's axis is now; `axis` has length 1.
+  // The present place of a joint's axis; `axis` has length 1.
   axisOf(index: number): { anchor: Vector; axis: Vector } {
     const joint = this.robot.joints[index] as Joint;
     const displacement = this.displacements[index] as Pose;
@@ -329,7 +330,7 @@ export class RobotModel {
 
   private paintContacts(): void {
     const colour = colours(this.isDark);
-    // Two marks for each link: the rear one first, as the bits.
+    // Each link has two marks: the rear one first, in the order of the bits.
     this.contacts.paint((instance, i) =>
       (((this.contactBits[instance.link] ?? 0) >> (i % 2)) & 1) === 1 ? colour.contact : colour.noContact,
     );
@@ -348,9 +349,9 @@ export class RobotModel {
     );
   }
 
-  // Half of the smallest side of a typical link.
+  // The half of the smallest side of a typical link.
   private typicalThickness(): number {
-    // Of each link its thickest shape: others may be its feet.
+    // The thickest shape of each link counts, because others may be its feet.
     const sizes = this.robot.links
       .filter(({ shapes }) => shapes.length > 0)
       .map(({ shapes }) => Math.max(...shapes.map((shape) => Math.min(...(shape.kind === 'mesh' ? shape.size : scaleOf(shape))))))
@@ -358,7 +359,7 @@ export class RobotModel {
     return sizes[Math.floor(sizes.length / 2)] ?? 0.02;
   }
 
-  // A cylinder along the axis, fixed to the link before the joint.
+  // Makes cylinders along the axes of joints, each fixed to the link before the joint.
   private jointInstances(robot: RobotDocument, thickness: number): Instance[] {
     return robot.joints.map((joint, j) => {
       const link = poseFromArray((robot.links[j] as Body).pose);
@@ -376,7 +377,7 @@ export class RobotModel {
     });
   }
 
-  // Rear and front touch sensors: below the link, towards its ends. Front is where the head is.
+  // Makes marks for the rear and front touch sensors: below the link, towards its ends. The front is at the head.
   private contactInstances(robot: RobotDocument, thickness: number): Instance[] {
     const centres = this.restCentres(robot);
     const first = centres[0] as Vector;
@@ -391,7 +392,7 @@ export class RobotModel {
       const reach = halfExtent(body, forwardVector) * 0.65;
       const depth = halfExtent(body, [0, 0, 1]) * 0.8;
       const across = rotate(inverse, acrossVector);
-      // Right through the link, so that the marks are seen from both sides.
+      // The marks extend through the link, so that they are visible from both sides.
       const width = halfExtent(body, acrossVector) * 1.05;
       const along = (axis: 0 | 1 | 2) => size + Math.abs(across[axis]) * (width - size);
       return [-1, 1].map((side): Instance => {
@@ -408,7 +409,7 @@ export class RobotModel {
   }
 }
 
-// How far the link reaches from its middle along a unit vector of the robot's frame at angles 0, in metres.
+// The extent of the link in metres from its middle along a unit vector of the robot's frame at angles 0.
 function halfExtent(body: Body, direction: Vector): number {
   const reaches = body.shapes.map((shape) => {
     const { orientation } = compose(poseFromArray(body.pose), poseFromArray(shape.pose));
@@ -426,7 +427,7 @@ function invertRotation(pose: Pose): readonly [number, number, number, number] {
   return [w, -x, -y, -z];
 }
 
-// Turns the y axis into `axis`.
+// The rotation that turns the y axis into `axis`.
 function fromYTo(axis: Vector): readonly [number, number, number, number] {
   const length = Math.hypot(...axis) || 1;
   const cosine = axis[1] / length;
@@ -440,7 +441,7 @@ function centreOf(body: Body): Vector {
   return [mean(0), mean(1), mean(2)];
 }
 
-// Where the grid lies: the top of the widest box, else 0.
+// The height of the grid: the top of the widest box, else 0.
 function floorHeight(robot: RobotDocument): number {
   let widest = 0;
   let height = 0;

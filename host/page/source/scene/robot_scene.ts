@@ -13,7 +13,7 @@ import type { DragWay, ScenePose } from './scene_messages.js';
 const fieldOfView = 40; // degrees, vertical
 const gridCells = 60;
 const farthestDrag = 5; // metres
-const longRobot = 1.5; // metres: from here on the cells of the grid are larger
+const longRobot = 1.5; // metres; for longer robots the cells of the grid are larger
 
 function rayOf({ ray }: THREE.Raycaster): Ray {
   const { origin, direction } = ray;
@@ -40,11 +40,11 @@ export class RobotScene {
   private hasWholePath = false;
   private width = 1;
   private height = 1;
-  private ratio = 1; // device pixels for each CSS pixel, of the display
+  private ratio = 1; // device pixels of the display for each CSS pixel
   private gridCell = 0.1; // metres
   private readonly fog = new THREE.Fog(0, 1, 2);
   private isDirty = true;
-  private grabbed: THREE.Vector3 | null = null; // the point on the robot, where it was
+  private grabbed: THREE.Vector3 | null = null; // place of the grabbed point of the robot when it was grabbed
   private lastOffset: Vector = [0, 0, 0];
 
   // Throws an Error without WebGL.
@@ -114,7 +114,7 @@ export class RobotScene {
     this.resetView();
   }
 
-  // It is not seen until a pose has it.
+  // Sets the ghost, which is invisible until a pose contains it.
   setGhost(robot: RobotDocument): void {
     this.remove(this.ghost, this.ghostPath);
     this.ghost = new RobotModel(robot, this.isDark, true);
@@ -192,7 +192,7 @@ export class RobotScene {
     this.isDirty = true;
   }
 
-  // Stops following: else the robot would pull the view back.
+  // Moves the view and stops following, because otherwise the robot would pull the view back.
   pan(right: number, down: number): void {
     this.isFollowing = false;
     this.orbit.pan(right, down, this.height, (fieldOfView * Math.PI) / 180);
@@ -209,12 +209,12 @@ export class RobotScene {
     this.isDirty = true;
   }
 
-  // x and y as in the messages: -1 to 1.
+  // The joint at a point; x and y are those of the messages: -1 to 1.
   jointAt(x: number, y: number): number | null {
     return this.model?.hit(this.casterAt(x, y))?.joint ?? null;
   }
 
-  // Begins to turn the joint of the link there. Null if there is none that can be turned from this view.
+  // Begins to turn the joint of the link at a point. Null if there is none that can be turned from this view.
   grabJoint(x: number, y: number): number | null {
     this.pulled = null;
     const caster = this.casterAt(x, y);
@@ -231,19 +231,20 @@ export class RobotScene {
     return hit.joint;
   }
 
-  // Radians of the joint since the grab.
+  // Turns the grabbed joint. Returns its angle since the grab in radians.
   dragJoint(x: number, y: number): number {
     return this.pulled === null ? 0 : this.pulled.sense * this.pulled.drag.angleOf(rayOf(this.casterAt(x, y)));
   }
 
-  // Whether there is a link.
+  // Grabs the robot. Returns whether there is a link at the point.
   grabRobot(x: number, y: number): boolean {
     const hit = this.model?.hit(this.casterAt(x, y)) ?? null;
     this.grabbed = hit === null ? null : new THREE.Vector3(...hit.point);
     return this.grabbed !== null;
   }
 
-  // How far it is from where it was grabbed: at the pointer in the plane of the ground, or up and down. Null if nothing is grabbed.
+  // The way from the place where the robot was grabbed: to the pointer in the plane of the ground, or up and down. Null if
+  // nothing is grabbed.
   dragRobot(x: number, y: number, way: DragWay): Vector | null {
     const from = this.grabbed;
     if (from === null) {
@@ -257,7 +258,7 @@ export class RobotScene {
     const normal = isHeight ? new THREE.Vector3(cameraX - from.x, cameraY - from.y, 0).normalize() : new THREE.Vector3(0, 0, 1);
     const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, from);
     const to = this.casterAt(x, y).ray.intersectPlane(plane, new THREE.Vector3());
-    // Towards the horizon the way grows without end.
+    // Near the horizon the way has no bound.
     if (to === null || to.distanceTo(from) > farthestDrag) {
       return this.lastOffset;
     }
@@ -277,7 +278,7 @@ export class RobotScene {
     return caster;
   }
 
-  // False if nothing has changed.
+  // Draws the view. Returns false if nothing has changed.
   render(): boolean {
     if (!this.isDirty) {
       return false;

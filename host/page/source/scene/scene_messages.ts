@@ -1,4 +1,4 @@
-// What the page and the worker of the 3D view say to each other.
+// The messages between the page and the worker of the 3D view.
 import type { Vector } from '../geometry/quaternion.js';
 import type { RobotDocument } from '../wire/messages.js';
 
@@ -6,9 +6,9 @@ export interface ScenePose {
   angles: Float32Array; // radians
   head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: not known
   ghost: Float32Array | null; // angles of the simulation beside the robot, or of a second recording, radians
-  ghostHead?: Float64Array | null; // of a second recording; not there: the ghost has the same head
-  objects?: Float64Array | null; // of each object that moves, as `head`; null or not there: where they were at the start
-  contacts: Int32Array; // of each link: bit 0 rear, bit 1 front
+  ghostHead?: Float64Array | null; // head in a second recording; absent: the ghost has the same head
+  objects?: Float64Array | null; // pose of each object that moves, like `head`; null or absent: their poses at the start
+  contacts: Int32Array; // contacts of each link: bit 0 rear, bit 1 front
   run: number;
   isLive: boolean; // only then the path grows
   lastMove: number | null; // tick of the last move by hand before: another one cuts the path
@@ -23,7 +23,7 @@ export type ToScene =
   | { kind: 'robot'; robot: RobotDocument }
   | { kind: 'ghost'; robot: RobotDocument } // the ghost is this robot, with a path of its own
   | { kind: 'pose'; pose: ScenePose }
-  | { kind: 'path'; heads: Float64Array; isOfGhost: boolean } // the whole path: of each point as `head` of a pose; NaN: a cut
+  | { kind: 'path'; heads: Float64Array; isOfGhost: boolean } // the whole path: the values of `head` for each point; NaN: a cut
   | { kind: 'theme'; isDark: boolean }
   | { kind: 'highlight'; joint: number | null }
   | { kind: 'turn'; right: number; down: number } // pixels
@@ -31,19 +31,19 @@ export type ToScene =
   | { kind: 'zoom'; factor: number }
   | { kind: 'follow'; isOn: boolean }
   | { kind: 'reset_view' }
-  | { kind: 'grab_robot'; x: number; y: number } // as in `point`: the link there, if there is one
+  | { kind: 'grab_robot'; x: number; y: number } // place as in `point`; grabs the link there, if there is one
   | { kind: 'drag_robot'; x: number; y: number; right: number; down: number; way: DragWay; turn: number } // turns the view if nothing is grabbed
   | { kind: 'drop_robot' }
-  | { kind: 'grab_joint'; x: number; y: number } // as in `point`: a link, to turn its joint
+  | { kind: 'grab_joint'; x: number; y: number } // place as in `point`; grabs a link, to turn its joint
   | { kind: 'drag_joint'; x: number; y: number }
   | { kind: 'point'; x: number; y: number }; // -1 to 1, y up
 
 export type FromScene =
   | { kind: 'grabbed_robot' }
-  | { kind: 'dragged_robot'; offset: Vector; turn: number } // metres, degrees, since it was grabbed
-  | { kind: 'dropped_robot' } // after all of its drag
+  | { kind: 'dragged_robot'; offset: Vector; turn: number } // metres and degrees since the robot was grabbed
+  | { kind: 'dropped_robot' } // sent after all messages of the drag
   | { kind: 'pointed'; joint: number | null }
-  | { kind: 'grabbed_joint'; joint: number | null } // null: nothing that can be turned from here
+  | { kind: 'grabbed_joint'; joint: number | null } // null: no joint can be turned from this view
   | { kind: 'dragged_joint'; angle: number } // radians since the grab
   | { kind: 'following'; isOn: boolean }
   | { kind: 'detail'; level: number } // 0: all of it

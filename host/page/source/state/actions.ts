@@ -4,13 +4,13 @@ export interface Action {
   id: string;
   title: string;
   group: 'Robot' | 'Recording' | 'View' | 'Parameters' | 'Page';
-  keys: readonly string[]; // as KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first one is shown
+  keys: readonly string[]; // values of KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first key is shown
   isEnabled?: () => boolean;
-  // Why it is not enabled, if not for want of control.
+  // The reason why the action is not enabled, unless the viewer lacks control.
   obstacle?: () => string | null;
-  // False: not for this kind of robot, so it is not listed and its key does nothing.
+  // False if the action does not fit this kind of robot: it is not listed and its key does nothing.
   isShown?: () => boolean;
-  // In text fields too: only for what must always work.
+  // Whether the key works in text fields, too: only for actions that must always work.
   isGlobal?: boolean;
   run(): void;
 }
@@ -23,7 +23,7 @@ export interface KeyPress {
   altKey: boolean;
 }
 
-// Letters without regard to case: with Caps Lock, `k` is `K`.
+// The name of a key, in which the case of letters does not matter: with Caps Lock, `k` is `K`.
 function nameOf(press: KeyPress): string {
   const key = press.key === ' ' ? 'Space' : press.key.length === 1 ? press.key.toUpperCase() : press.key;
   const isSymbol = press.key.length === 1 && press.key.toUpperCase() === press.key.toLowerCase();
@@ -73,7 +73,7 @@ export class ActionList {
     );
   }
 
-  // Those whose title has all words of the text.
+  // The actions whose title has all words of the text.
   matching(text: string): Action[] {
     const words = text.toLowerCase().split(/\s+/).filter(Boolean);
     return this.all.filter((action) => words.every((word) => `${action.group} ${action.title}`.toLowerCase().includes(word)));

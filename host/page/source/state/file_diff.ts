@@ -1,9 +1,9 @@
-// What of the differences between the page's values and the file is to be written.
+// The choice of the differences between the page's values and the file that are to be written.
 import type { FileDiff, FileDiffEntry } from '../wire/messages.js';
 
 export interface FileGroup {
   file: string;
-  numbers: number[]; // positions of its entries in the list
+  numbers: number[]; // positions of the entries of the diff in the list
 }
 
 export function groupByFile(entries: readonly FileDiffEntry[]): FileGroup[] {
@@ -12,7 +12,7 @@ export function groupByFile(entries: readonly FileDiffEntry[]): FileGroup[] {
   return [...groups].map(([file, numbers]) => ({ file, numbers }));
 }
 
-// What stays the same when the values change once more.
+// The identity of an entry, which stays the same when the values change again.
 export function keyOf(entry: FileDiffEntry): string {
   return `${entry.slot}.${entry.name}:${entry.joints.join()}`;
 }
@@ -22,7 +22,7 @@ export function chosenNumbers(diff: FileDiff, leftOut: ReadonlySet<string>): num
   return diff.entries.flatMap((entry, i) => (leftOut.has(keyOf(entry)) ? [] : [i]));
 }
 
-// `names`: of all joints; `group`: the joints of the slot.
+// The text for the joints of an entry. `names`: names of all joints; `group`: the joints of the slot.
 export function jointsText(entry: FileDiffEntry, names: readonly string[], group: readonly number[]): string {
   if (entry.joints.length === group.length) {
     return 'all joints';

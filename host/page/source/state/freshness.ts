@@ -1,4 +1,5 @@
-// How old what the page shows is. A robot sends telemetry all the time; silence must not look like a robot at rest.
+// The age of the data that the page shows. A robot sends telemetry all the time; silence must not look like a robot at
+// rest.
 import { signal } from '@preact/signals-core';
 
 const oldAfter = 2000; // milliseconds
@@ -8,7 +9,7 @@ export class Freshness {
   readonly age = signal<number | null>(null);
   private last: number | null = null;
 
-  // `now` in milliseconds, steady.
+  // Notes that data were received. `now`: milliseconds of a steady clock.
   note(now: number): void {
     this.last = now;
     this.age.value = null;

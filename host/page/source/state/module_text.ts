@@ -21,7 +21,7 @@ export function moduleState(module: BusModule): ModuleState {
   return { text, tone: module.drive === 'operation enabled' ? 'good' : 'quiet' };
 }
 
-const nearLimit = 0.8; // of the limit
+const nearLimit = 0.8; // share of the limit
 
 // A servo's current in mA. A mark is a word, too: not everybody sees colours. The limit: 0: off; null: not known.
 export function currentState(current: number | null, limit: number | null): { text: string; tone: '' | 'near-limit' | 'above-limit' } {

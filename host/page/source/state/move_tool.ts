@@ -4,13 +4,15 @@ import { compose, fromAxisAngle, type Pose, type Vector } from '../geometry/quat
 import type { SessionDocument } from '../wire/messages.js';
 import type { PageState } from './page_state.js';
 
-// Where the head's frame goes, in metres, and by how many degrees the robot turns to the left about the vertical there.
+// The place to which the head's frame moves, in metres, and the angle in degrees by which the robot turns to the left about
+// the vertical there.
 export interface RobotPlace {
   position: Vector;
   turn: number;
 }
 
-// A place that the program was asked for. `session`: the document when it said yes, which has the head where it was before.
+// A place that was requested from the program. `session`: the document at its confirmation, which still has the old place
+// of the head.
 interface AskedPlace {
   position: Vector;
   session: SessionDocument | null;
@@ -23,12 +25,12 @@ export class MoveTool {
   readonly isOn = signal(false);
   readonly isPossible = computed(() => this.state.isHolder.value && this.state.simulation.value?.state === 'paused');
   readonly isActive = computed(() => this.isOn.value && this.isPossible.value);
-  // While the robot is dragged; the program has not been asked yet.
+  // The place while the robot is dragged; the program has not been asked yet.
   readonly preview = signal<RobotPlace | null>(null);
-  private start: Vector | null = null; // of the head, when the drag began
-  private asked: AskedPlace | null = null; // the last one
+  private start: Vector | null = null; // place of the head when the drag began
+  private asked: AskedPlace | null = null; // the last request
 
-  // `ask`: null: refused.
+  // `ask`: requests a move; its result is null if the move was refused.
   constructor(
     private readonly state: PageState,
     private readonly ask: (place: RobotPlace) => Promise<unknown>,
@@ -44,7 +46,7 @@ export class MoveTool {
     return head === undefined ? null : [head[0], head[1], head[2]];
   }
 
-  // From where the robot is as soon as the program has done what it was asked for: keys come faster than documents.
+  // Starts from the place of the robot after the requested moves, because keys come faster than documents.
   begin(): void {
     const { asked } = this;
     const isOnTheWay = asked !== null && (asked.isPending || asked.session === this.state.session.peek());
@@ -71,14 +73,14 @@ export class MoveTool {
     }
   }
 
-  // By so much, as a key does.
+  // Moves the robot by an offset and an angle, as a key does.
   async step(offset: Vector, turn: number): Promise<void> {
     this.begin();
     this.drag(offset, turn);
     await this.drop();
   }
 
-  // False: it is not possible, or refused.
+  // Moves the robot. Returns false if that is not possible, or was refused.
   async moveTo(place: RobotPlace): Promise<boolean> {
     if (!this.isActive.peek()) {
       return false;

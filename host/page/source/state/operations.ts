@@ -1,4 +1,4 @@
-// Operations that the page asks for, and their answers.
+// Operations that the page requests, and their answers.
 import type { OperationRequest } from '../wire/connection.js';
 import type { Operations, ResultMessage } from '../wire/messages.js';
 import type { PageState } from './page_state.js';
@@ -19,7 +19,7 @@ export class OperationQueue {
     private readonly send: (request: OperationRequest) => void,
   ) {}
 
-  // Rejects with OperationRefused, whose message is that of the program.
+  // Requests an operation. Rejects with OperationRefused, whose message is that of the program.
   ask<Name extends keyof Operations>(name: Name, parameters: Operations[Name]): Promise<unknown> {
     const key = ++this.lastKey;
     return new Promise((resolve, reject) => {
@@ -28,7 +28,7 @@ export class OperationQueue {
     });
   }
 
-  // As `ask`; a refusal becomes a notice, and the result null.
+  // Requests an operation; a refusal becomes a notice, and the result null.
   async tell<Name extends keyof Operations>(name: Name, parameters: Operations[Name]): Promise<unknown> {
     try {
       return await this.ask(name, parameters);

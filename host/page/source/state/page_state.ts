@@ -1,4 +1,4 @@
-// What the page knows of the robot and its program: the documents as last received, the connection, the notices.
+// The knowledge of the page about the robot and its program: the last documents, the connection, the notices.
 import { computed, signal } from '@preact/signals-core';
 import type { ConnectionStatus } from '../wire/connection.js';
 import { Freshness } from './freshness.js';
@@ -26,7 +26,7 @@ export interface Notice {
 
 const keptNotices = 200;
 
-// Entries that are as before stay the same objects. Drawing all of 60 joints anew holds up a slider for 7 ms.
+// Unchanged entries stay the same objects, because drawing all of 60 joints again delays a slider by 7 ms.
 function reuse<T>(before: readonly T[], after: readonly T[]): readonly T[] {
   return after.map((value, i) => {
     const known = before[i];
@@ -36,7 +36,7 @@ function reuse<T>(before: readonly T[], after: readonly T[]): readonly T[] {
 
 export class PageState {
   readonly connection = signal<ConnectionStatus>({ state: 'connecting' });
-  readonly latency = signal<number | null>(null); // milliseconds, to the session and back
+  readonly latency = signal<number | null>(null); // milliseconds to the session and back
   readonly robot = signal<RobotDocument | null>(null);
   readonly parameters = signal<readonly Parameter[]>([]);
   readonly internalValues = signal<readonly InternalValue[]>([]);
@@ -64,7 +64,7 @@ export class PageState {
     const session = this.session.value;
     return session?.kind === 'bus' ? session : null;
   });
-  // There are only recordings, and no robot until one of them is continued.
+  // Whether there are only recordings, and no robot until one of them is continued.
   readonly isAlone = computed(() => this.recordings.value?.alone === true && this.robot.value === null);
   // Whether this viewer drives.
   readonly isHolder = computed(
@@ -75,7 +75,7 @@ export class PageState {
 
   private lastNotice = 0;
 
-  // Why a robot on a bus cannot do this now; null: it can.
+  // The reason why a robot on a bus cannot do this now; null: it can.
   obstacleTo(command: RobotCommand): string | null {
     return obstacleTo(command, {
       isConnected: this.isConnected.value,

@@ -1,7 +1,7 @@
 // Values of parameters as text and as words of `--set`.
 import type { Parameter } from '../wire/messages.js';
 
-// 1, 2 or 5 times a power of ten, at most `size`.
+// The greatest number that is 1, 2 or 5 times a power of ten and at most `size`.
 export function roundStep(size: number): number {
   if (!(size > 0)) {
     return 1;
@@ -17,13 +17,13 @@ export function decimalsOf(step: number): number {
 
 export type ParameterRange = Pick<Parameter, 'minimum' | 'maximum' | 'scale'>;
 
-// What a slider moves by: about 400 steps over the range.
+// The step of a slider: about 400 steps over the range.
 export function sliderStep(parameter: ParameterRange): number {
   return roundStep(((parameter.maximum - parameter.minimum) * parameter.scale) / 400);
 }
 
-// Without a fraction that only the number format has: 39.99999997 is 40. One decimal more than the slider's step, so that a
-// typed value is shown as typed.
+// The text of a value without a fraction that only the number format has: 39.99999997 is 40. It has one decimal more than
+// the slider's step, so that a typed value is shown as typed.
 export function formatRaw(raw: number, parameter: ParameterRange): string {
   return formatNumber(raw * parameter.scale, decimalsOf(sliderStep(parameter)) + 2);
 }
@@ -34,20 +34,21 @@ export function formatNumber(value: number, decimals: number): string {
   return short === '-0' ? '0' : short;
 }
 
-// About four digits, for values of telemetry whose size is not known beforehand.
+// The text with about four digits, for values of telemetry whose size is not known beforehand.
 export function formatMeasured(value: number): string {
   const size = Math.abs(value);
   return value.toFixed(size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : 3);
 }
 
-// A number, or a text that says what is wrong.
+// Reads a number; returns a text that says what is wrong otherwise.
 export function parseNumber(text: string): number | string {
   const trimmed = text.trim().replace(',', '.');
   const value = Number(trimmed);
   return trimmed === '' || !Number.isFinite(value) ? `found '${text}', expected a number` : value;
 }
 
-// A number in the parameter's unit, or a text that says what is wrong. An angle that wraps has no limits.
+// Reads a number in the parameter's unit; returns a text that says what is wrong otherwise. An angle that wraps has no
+// limits.
 export function parseValue(text: string, parameter: ParameterRange & Pick<Parameter, 'unit' | 'wraps'>): number | string {
   const value = parseNumber(text);
   if (typeof value === 'string' || parameter.wraps) {
@@ -55,7 +56,7 @@ export function parseValue(text: string, parameter: ParameterRange & Pick<Parame
   }
   const low = parameter.minimum * parameter.scale;
   const high = parameter.maximum * parameter.scale;
-  // Half a unit of the last place: the limits themselves are rounded.
+  // The tolerance is half a unit of the last place, because the limits themselves are rounded.
   const slack = Math.abs(parameter.scale) / 2;
   if (value < low - slack || value > high + slack) {
     const range = `${formatRaw(parameter.minimum, parameter)} to ${formatRaw(parameter.maximum, parameter)}`;
@@ -64,7 +65,7 @@ export function parseValue(text: string, parameter: ParameterRange & Pick<Parame
   return value;
 }
 
-// All joints of the slot, or one: `1.amplitude`, `1.amplitude:J2`.
+// The name of a parameter for all joints of the slot, or for one: `1.amplitude`, `1.amplitude:J2`.
 export function placeName(parameter: Pick<Parameter, 'slot' | 'name'>, joint: string | null): string {
   return `${parameter.slot}.${parameter.name}${joint === null ? '' : `:${joint}`}`;
 }
@@ -83,7 +84,7 @@ export interface ParameterSummary {
   isChanged: boolean; // a wanted value differs from the file's
   changed: boolean[];
   confirmed: number; // joints whose module has confirmed the wanted value
-  tick: number; // from which all confirmed values hold
+  tick: number; // tick from which all confirmed values hold
 }
 
 export function summarise(parameter: Parameter): ParameterSummary {

@@ -1,15 +1,16 @@
-// The time of a recording that is played: where it is, how fast it goes, and which part strip and plots show. In ticks.
+// The time of a recording that is played: the cursor, the speed, and the part that strip and plots show. All times are in
+// ticks.
 import { computed, signal } from '@preact/signals-core';
 import { longEnough, shiftedTo, zoomed, type ShownTime, type TickRange } from './time_view.js';
 
-// Times real time.
+// The speeds, as multiples of real time.
 export const speeds = [0.1, 0.2, 0.5, 1, 2, 5, 10] as const;
 
 export class Playback implements ShownTime {
   readonly isLive = signal(false);
   readonly isPlaying = signal(false);
   readonly speed = signal<number>(1);
-  // The part that strip and plots show; null: all.
+  // The part that strip and plots show; null: the whole recording.
   readonly part = signal<TickRange | null>(null);
   readonly cursor = computed(() => Math.floor(this.position.value));
   private readonly position;
@@ -28,13 +29,13 @@ export class Playback implements ShownTime {
     return this.end.value;
   }
 
-  // The recording has grown. `follows`: the time cursor goes with its end.
+  // Notes that the recording has grown. `follows`: the time cursor moves with its end.
   extend(last: number, follows: boolean): void {
     this.end.value = Math.max(last, this.end.peek());
     if (follows) this.seek(this.last);
   }
 
-  // Plays from the start again at the end.
+  // Starts or stops playing; at the end it plays from the start again.
   toggle(): void {
     if (!this.isPlaying.value && this.cursor.value >= this.last) {
       this.seek(this.first);
@@ -42,7 +43,7 @@ export class Playback implements ShownTime {
     this.isPlaying.value = !this.isPlaying.value;
   }
 
-  // Time has gone on.
+  // Moves the cursor while the recording plays.
   advance(milliseconds: number): void {
     if (!this.isPlaying.peek()) {
       return;
@@ -61,13 +62,13 @@ export class Playback implements ShownTime {
     }
   }
 
-  // Stops playing: the arrow keys look at single ticks.
+  // Stops playing and moves the cursor, because the arrow keys are for single ticks.
   step(ticks: number): void {
     this.isPlaying.value = false;
     this.seek(this.cursor.peek() + ticks);
   }
 
-  // To the next speed of the list.
+  // Chooses the next speed of the list.
   faster(): void {
     this.speed.value = speeds.find((speed) => speed > this.speed.value) ?? this.speed.value;
   }
@@ -94,7 +95,7 @@ export class Playback implements ShownTime {
     this.detach(zoomed(this.range(), factor, around));
   }
 
-  // Only a press moves the cursor of a recording, for it moves by itself.
+  // Does nothing: only a press moves the cursor of a recording, because it moves by itself.
   hover(): void {}
 
   leave(): void {}

@@ -4,7 +4,7 @@ import { signal } from '@preact/signals-core';
 
 export interface PosePorts {
   isPossible(): boolean; // the robot is held, and this viewer drives
-  // Rejects if it was refused. Null: the joint stays.
+  // Sends angles. Rejects if they were refused. Null: the joint stays.
   send(angles: (number | null)[], speed: number): Promise<unknown>;
   refused(reason: string): void;
   after(ms: number, action: () => void): void;
@@ -16,7 +16,7 @@ export const fastest = 180;
 
 export class PoseQueue {
   readonly speed = signal(60);
-  // Where each joint was last sent to, in degrees; until `forget`.
+  // The last angle that was sent to each joint, in degrees, until `forget`.
   readonly targets = signal<ReadonlyMap<number, number>>(new Map());
   private next = new Map<number, number>();
   private isBusy = false;
@@ -27,14 +27,14 @@ export class PoseQueue {
     return this.ports.isPossible();
   }
 
-  // `angles`: of joints, in degrees.
+  // Moves joints. `angles`: angles of joints in degrees.
   move(angles: ReadonlyMap<number, number>, joints: number): void {
     this.targets.value = new Map([...this.targets.value, ...angles]);
     angles.forEach((angle, joint) => this.next.set(joint, angle));
     void this.sendNext(joints);
   }
 
-  // The robot is no longer held, or another viewer drives: the targets hold no more, and what waits is not sent.
+  // Forgets the targets and unsent angles, because the robot is no longer held, or another viewer drives.
   forget(): void {
     this.next.clear();
     if (this.targets.peek().size > 0) {

@@ -36,7 +36,7 @@ export function wholeRange(parameter: Parameter): { lower: number; upper: number
   };
 }
 
-// What a person most likely wants of a new element, to begin with.
+// The binding with which a new element begins: the one that a person most likely wants.
 export function firstBinding(element: LearnedElement, parameters: readonly Parameter[]): RemoteBinding {
   const { device, name } = element;
   const parameter = parameters[0];
@@ -45,19 +45,19 @@ export function firstBinding(element: LearnedElement, parameters: readonly Param
     : { device, element: name, action: 'hold_to_run' };
 }
 
-// The same element, bound to a parameter.
+// The binding of the same element to a parameter.
 export function parameterBinding(binding: RemoteBinding, parameter: Parameter): RemoteBinding {
   const { device, element } = binding;
   const range = wholeRange(parameter);
   return { device, element, parameters: [placeName(parameter, null)], method: 'linear', ...range, dead_zone: 0, curve: 1, take_up: true };
 }
 
-// The same element, bound to an action.
+// The binding of the same element to an action.
 export function actionBinding({ device, element }: RemoteBinding, action: string): RemoteBinding {
   return { device, element, action };
 }
 
-// The names of a text field: between blanks or commas.
+// The names in a text field, which blanks or commas separate.
 export function parameterNames(text: string): string[] {
   return text.split(/[\s,]+/).filter((name) => name !== '');
 }
@@ -70,7 +70,7 @@ export function withNumber(binding: RemoteBinding, field: NumberField, text: str
   return typeof value === 'string' ? value : { ...binding, [field]: value };
 }
 
-// Where an element is, -1 to 1 (a button: 0 or 1); null: the device has gone.
+// The position of an element, -1 to 1 (of a button: 0 or 1); null: the device has gone.
 export function positionOf(values: RemoteValues | null, device: number, element: number): number | null {
   return values?.devices.find(({ id }) => id === device)?.positions[element] ?? null;
 }

@@ -6,7 +6,7 @@ export type RobotCommand = 'power_on' | 'power_off' | 'run' | 'hold' | 'pose' | 
 type State = BusSession['state'];
 
 export interface RobotSituation {
-  isConnected: boolean; // to the program
+  isConnected: boolean; // whether the page is connected to the program
   isHolder: boolean;
   session: Pick<BusSession, 'state' | 'recording'> | null;
   bus: Pick<BusDocument, 'connected' | 'other_host'> | null;
@@ -22,7 +22,7 @@ const allowed: Record<RobotCommand, readonly State[]> = {
   scan: ['off'],
 };
 
-// Those that give power.
+// The commands that switch the power on.
 const starts: readonly RobotCommand[] = ['power_on', 'run'];
 
 // Why a command is not possible in a state in which it is not allowed.
@@ -41,7 +41,7 @@ function stateObstacle(command: RobotCommand, state: State): string {
   }
 }
 
-// Null: the command is possible.
+// The reason why a command is not possible; null: it is possible.
 export function obstacleTo(command: RobotCommand, { isConnected, isHolder, session, bus }: RobotSituation): string | null {
   if (!isConnected || session === null) {
     return 'No connection to the program.';

@@ -2,7 +2,7 @@
 // other: a slider never builds up a queue, and its last value always arrives.
 
 export interface SetPorts {
-  // Both reject if they were refused.
+  // Both functions reject if the change was refused.
   send(words: string[], gesture: number): Promise<unknown>;
   reset(names: string[]): Promise<unknown>;
   refused(reason: string): void;
@@ -11,7 +11,7 @@ export interface SetPorts {
 // A message of the connection is at most 64 KiB.
 const mostWords = 400;
 
-// A word without its value: what it sets.
+// The part of an argument before the value: the parameter that it sets.
 function target(word: string): string {
   return word.slice(0, word.indexOf('='));
 }
@@ -39,14 +39,15 @@ export class SetQueue {
       this.next.push(last);
     }
     for (const word of words) {
-      // Deleted first: a word for all joints after one for a single joint must stay behind it.
+      // The old word is deleted first, so that a word for all joints stays behind an earlier one for a single joint.
       last.words.delete(target(word));
       last.words.set(target(word), word);
     }
     void this.sendNext();
   }
 
-  // Back to the values of the file, after what has been set before: a double click on a slider sets it twice first.
+  // Resets values to those of the file, after the values that were set before: a double click on a slider sets it twice
+  // first.
   reset(names: readonly string[]): void {
     this.next.push({ names: [...names] });
     void this.sendNext();

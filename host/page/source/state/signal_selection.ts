@@ -20,7 +20,7 @@ const baseSignals = ['angle', 'setpoint', 'head', 'object', 'contact', 'current'
 export class SignalSelection {
   readonly strip = signal('angle');
   readonly groups = signal<readonly LineGroup[]>([{ number: 1, lines: [{ signal: 'angle', index: 0 }] }]);
-  // Of panels beside strip and lines.
+  // Signals of panels beside strip and lines.
   readonly more = signal<readonly string[]>([]);
   readonly hoveredJoint = signal<number | null>(null);
   private lastGroup = 1;

@@ -1,4 +1,4 @@
-// What the page says after STOP.
+// The text of the page after STOP.
 import { signal } from '@preact/signals-core';
 import type { StopChannel, StopOutcome } from '../wire/stop_channel.js';
 

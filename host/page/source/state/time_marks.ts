@@ -3,7 +3,7 @@ import { computed, signal } from '@preact/signals-core';
 import type { TimeView } from './time_view.js';
 
 export interface Marker {
-  number: number; // of all markers, ascending; never used twice
+  number: number; // number of the marker, ascending; never used twice
   tick: number;
   name: string;
 }
@@ -17,9 +17,9 @@ const noLoop: Loop = { from: null, to: null };
 const longestName = 40; // characters
 
 export class TimeMarks {
-  readonly markers = signal<readonly Marker[]>([]); // by tick
+  readonly markers = signal<readonly Marker[]>([]); // in the order of ticks
   readonly loop = signal<Loop>(noLoop);
-  // The loop, once it has both ends.
+  // The range of the loop, when it has both ends.
   readonly range = computed(() => {
     const { from, to } = this.loop.value;
     return from === null || to === null ? null : { from, to };
@@ -27,11 +27,11 @@ export class TimeMarks {
   private readonly plays = signal(false);
   readonly isPlaying = computed(() => this.plays.value && this.range.value !== null && !this.time.isLive.value);
   private lastNumber = 0;
-  private position = 0; // of the loop, with a fraction
+  private position = 0; // position in the loop in ticks, with a fraction
 
   constructor(private readonly time: TimeView) {}
 
-  // At the tick that is shown. A tick has one marker.
+  // Sets a marker at the tick that is shown. A tick has one marker.
   mark(newest: number): void {
     const tick = this.time.shownTick(newest);
     if (this.markers.value.some((marker) => marker.tick === tick)) {
@@ -62,7 +62,8 @@ export class TimeMarks {
     }
   }
 
-  // An end at the tick that is shown, in the frozen view. The other end goes if it is on the wrong side.
+  // Sets an end of the loop at the tick that is shown, in the frozen view. The other end is removed if it is on the wrong
+  // side.
   setLoopStart(newest: number): void {
     const from = this.freezeAtShown(newest);
     const { to } = this.loop.value;
@@ -103,7 +104,7 @@ export class TimeMarks {
     this.time.showTick(Math.floor(this.position), newest);
   }
 
-  // Another run: its ticks are other ones.
+  // Removes the marks, because another run has other ticks.
   clear(): void {
     this.markers.value = [];
     this.removeLoop();

@@ -7,7 +7,7 @@ export interface TickRange {
   to: number;
 }
 
-// What strip, plots and 3D view need of a time, live or of a recording.
+// The time for strip, plots and 3D view, live or of a recording.
 export interface ShownTime {
   readonly isLive: ReadonlySignal<boolean>;
   readonly cursor: ReadonlySignal<number | null>;
@@ -15,7 +15,7 @@ export interface ShownTime {
   shownTick(newest: number): number;
   detach(range: TickRange): void;
   zoom(factor: number, around: number, newest: number): void;
-  // The pointer is over this tick, was pressed there, has left.
+  // The functions below report that the pointer is over this tick, was pressed there, or has left.
   hover(tick: number): void;
   pick(tick: number): void;
   leave(): void;
@@ -23,7 +23,7 @@ export interface ShownTime {
 
 const fewestTicks = 10;
 
-// The range, or a longer one about its middle.
+// The range, or a longer one with the same middle.
 export function longEnough({ from, to }: TickRange): TickRange {
   const length = Math.max(fewestTicks, to - from);
   const middle = (from + to) / 2;
@@ -34,16 +34,16 @@ export function zoomed({ from, to }: TickRange, factor: number, around: number):
   return { from: around - (around - from) * factor, to: around + (to - around) * factor };
 }
 
-// The range, moved just so far that it has the tick.
+// The range, moved by the smallest distance so that it contains the tick.
 export function shiftedTo(tick: number, { from, to }: TickRange): TickRange {
   const shift = tick < from ? tick - from : tick > to ? tick - to : 0;
   return { from: from + shift, to: to + shift };
 }
 
 export class TimeView implements ShownTime {
-  readonly window = signal(1000); // length when live
+  readonly window = signal(1000); // length of the live window
   readonly detached = signal<TickRange | null>(null);
-  // What the pointer or the arrow keys point at; null: the newest tick, or the end of the window when detached.
+  // The tick at the pointer or chosen by the arrow keys; null: the newest tick, or the end of the window when detached.
   readonly cursor = signal<number | null>(null);
   readonly isLive = computed(() => this.detached.value === null);
 
@@ -72,7 +72,7 @@ export class TimeView implements ShownTime {
     this.cursor.value = null;
   }
 
-  // More than 1 shows more. `around` stays where it is on the screen.
+  // Changes the length of the window; a factor above 1 shows more. `around` keeps its place on the screen.
   zoom(factor: number, around: number, newest: number): void {
     this.detach(zoomed(this.range(newest), factor, around));
   }
@@ -95,7 +95,7 @@ export class TimeView implements ShownTime {
     this.showTick(this.shownTick(newest) + ticks, newest);
   }
 
-  // Puts the cursor there in the frozen view, and moves the window if it does not have the tick.
+  // Puts the cursor to a tick in the frozen view, and moves the window if it does not contain the tick.
   showTick(wanted: number, newest: number): void {
     if (this.isLive.value) {
       this.freeze(newest);

@@ -16,13 +16,13 @@ export interface CellProblem extends Cell {
   reason: string;
 }
 
-// Either the words of the change, or what is wrong; then nothing may take effect.
+// Either the words of the change, or a text that says what is wrong; then nothing may take effect.
 export interface Paste {
   words: string[];
   problems: CellProblem[];
 }
 
-// The range with both cells, whichever comes first.
+// The range with both cells, in either order.
 export function rangeOf(a: Cell, b: Cell): CellRange {
   return {
     from: { row: Math.min(a.row, b.row), column: Math.min(a.column, b.column) },
@@ -64,8 +64,8 @@ export function copyText(parameters: readonly Parameter[], { from, to }: CellRan
     .join('\n');
 }
 
-// What a text does to the table from the first cell of the range on. One value fills the range. An empty cell of the text
-// leaves the value as it is.
+// The change by a text that is pasted at the first cell of the range. One value fills the range. An empty cell of the text
+// leaves the value unchanged.
 export function paste(text: string, { from, to }: CellRange, parameters: readonly Parameter[], joints: readonly string[]): Paste {
   const result: Paste = { words: [], problems: [] };
   const cells = splitCells(text);

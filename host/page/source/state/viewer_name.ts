@@ -1,4 +1,4 @@
-// How other viewers see this one: the browser and the system.
+// The name of this viewer for others: the browser and the system.
 
 const browsers: readonly [RegExp, string][] = [
   [/Edg\//, 'Edge'],

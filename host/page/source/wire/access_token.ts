@@ -3,7 +3,7 @@
 
 const key = 'proleg.token';
 
-// Null if neither the address nor the storage has a token.
+// Takes the token; null if neither the address nor the storage has one.
 export function takeToken(location: Location, history: History, storage: Storage): string | null {
   const fragment = location.hash.slice(1);
   if (fragment !== '') {

@@ -1,5 +1,5 @@
-// Answers in bytes: a header of 16 bytes (0, where telemetry has the number of a subscription; the id of the operation), then
-// the bytes of the answer.
+// Binary answers: a header of 16 bytes (0 in the place of telemetry's number of a subscription; the id of the operation),
+// then the bytes of the answer.
 
 export const bytesResultHeader = 16;
 

@@ -42,7 +42,7 @@ export interface ConnectionEvents {
   message(message: ServerMessage): void;
   telemetry(buffer: ArrayBuffer): void;
   result(key: number, result: ResultMessage): void;
-  latency(ms: number): void; // of an operation that does nothing: to the session and back
+  latency(ms: number): void; // duration of an operation that does nothing, to the session and back
 }
 
 export interface OperationRequest {
@@ -52,7 +52,7 @@ export interface OperationRequest {
   arguments: object;
 }
 
-// In milliseconds. The server takes a holder whose beats stop for 1 s as away.
+// Period in milliseconds. For the server, a holder whose beats stop for 1 s is away.
 const beatPeriod = 250;
 const pingPeriod = 1000;
 const longestSilence = 4000;
@@ -67,7 +67,7 @@ export class Connection {
   private socket: Socket | null = null;
   private attempt = 0; // counts sockets, so that a late event of an earlier one has no effect
   private failures = 0;
-  private hasEnded = false; // the program said so, and has not come back
+  private hasEnded = false; // the program has reported its end, and has not come back
   private client: number | null = null;
   private isHolder = false;
   private lastId = 0;
@@ -98,7 +98,7 @@ export class Connection {
     });
   }
 
-  // False if there is no connection: the operation has no effect.
+  // Sends an operation. Returns false if there is no connection: the operation has no effect.
   operate(request: OperationRequest): boolean {
     if (this.client === null) {
       return false;
@@ -110,14 +110,15 @@ export class Connection {
     return true;
   }
 
-  // `hash`: of the document `telemetry` that the signals come from. `newest`: the row that is there comes, too.
+  // Subscribes to signals. `hash`: hash of the document `telemetry` that has the signals. `newest`: the newest present row
+  // is sent, too.
   subscribe(signals: string[], hash: number, newest: boolean): void {
     if (this.client !== null) {
       this.send({ type: 'subscribe', signals, hash, newest });
     }
   }
 
-  // The main thread has answered.
+  // Notes that the main thread has answered.
   noteSignOfLife(): void {
     this.lastSign = this.ports.now();
   }
@@ -228,7 +229,7 @@ export class Connection {
       return;
     }
     this.failures += 1;
-    // Attempts that fail after that say nothing new.
+    // Later failed attempts do not change the end of the program.
     this.hasEnded ||= code === goingAway;
     this.events.status(this.hasEnded ? { state: 'ended' } : { state: 'lost', attempts: this.failures });
     this.ports.after(Math.min(longestDelay, shortestDelay * 2 ** (this.failures - 1)), () => this.open());

@@ -1,4 +1,4 @@
-// The worker that has the WebSocket. The main thread may hang; beats and pings go on, and the beats say how long it hangs.
+// The worker that has the WebSocket. The main thread may hang; beats and pings continue, and the beats contain its duration.
 import type { ResultMessage, ServerMessage } from './messages.js';
 import {
   Connection,
@@ -22,7 +22,7 @@ export type FromConnectionWorker =
   | { kind: 'latency'; ms: number }
   | { kind: 'alive?' };
 
-// In milliseconds: how often the main thread is asked for a sign of life.
+// Period in milliseconds at which the main thread is asked for a sign of life.
 const signPeriod = 200;
 
 const post = (message: FromConnectionWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });

@@ -2,7 +2,7 @@
 
 export const protocol = 1;
 
-// Value of a signal that has none at a tick.
+// Raw value of a signal that has no value at a tick.
 export const noValue = -2147483648;
 
 export interface Signal {
@@ -89,21 +89,21 @@ export interface RecordingDocument {
   finished: boolean;
   first_tick: number;
   last_tick: number;
-  has_path: boolean; // false: where the robot is was not measured
+  has_path: boolean; // false: the place of the robot was not measured
   results: { name: string; value: string }[];
   marks: Mark[]; // by ascending tick
 }
 
-// The same behind a server, which reads the file while it shows it.
+// A recording behind a server, which reads the file while it shows it.
 export interface ServedRecordingDocument extends RecordingDocument {
   indexed: number; // ticks from the first on whose smallest and largest values are known
-  damage: string | null; // why not all can be
+  damage: string | null; // reason why a part of the ticks cannot be read
 }
 
-// Where the recordings of this program are.
+// The place of the recordings of this program.
 export interface RecordingsDocument {
   folder: string;
-  open: string | null; // to show at once
+  open: string | null; // file to show at once
   alone: boolean; // there is no robot
 }
 
@@ -111,17 +111,17 @@ export interface RecordingsDocument {
 export interface RunComparison {
   first_tick: number;
   last_tick: number;
-  compared: number; // ticks, until now
+  compared: number; // number of ticks that were compared until now
   difference: { tick: number; joint: string } | null; // the first one
-  damage: string | null; // why it cannot go on
-  head_m: [number | null, number | null]; // how far each head moved
+  damage: string | null; // reason why the comparison cannot continue
+  head_m: [number | null, number | null]; // distance that each head moved, in metres
 }
 
 // A file of `recording.list`. What was not read yet, or cannot be read, is missing.
 export interface RecordedFile {
   name: string;
   bytes: number;
-  time_ms: number; // of the last change, since 1970
+  time_ms: number; // time of the last change, since 1970
   described: boolean;
   program?: string;
   scenario?: string;
@@ -159,7 +159,7 @@ export interface Parameter extends Omit<InternalValue, 'internal'> {
   file: number[];
   wanted: number[];
   confirmed: number[];
-  tick: number[]; // from which the confirmed value holds
+  tick: number[]; // tick from which the confirmed value holds
 }
 
 interface CommonSession {
@@ -181,19 +181,19 @@ export interface SimulationSession extends CommonSession {
   measured_factor: number | null;
   set: 'A' | 'B';
   head?: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
-  moved?: boolean; // by hand, since the last tick
+  moved?: boolean; // whether the robot was moved by hand since the last tick
   last_move?: number | null; // tick of the last move by hand
   repeats?: { file: string; tick: number } | null; // the recording that is computed again, up to this tick
   measures?: Record<string, number>;
 }
 
-// State frames of the modules against the gait of this computer, in the present or last run.
+// Comparison of the modules' state frames with the gait of this computer, in the present or last run.
 export interface GaitComparison {
   compared: number;
   differences: number;
   missing: number;
   first_difference: string | null;
-  end: string | null; // why nothing is compared any more
+  end: string | null; // reason why nothing is compared any more
 }
 
 export interface BusSession extends CommonSession {
@@ -207,8 +207,8 @@ export type SessionDocument = SimulationSession | BusSession;
 
 export interface BusModule {
   node: number;
-  joint: number | null; // null: not of this robot
-  state: string | null; // of NMT
+  joint: number | null; // null: the module does not belong to this robot
+  state: string | null; // NMT state
   drive: string | null;
   angle: number | null; // degrees
   current: number | null; // mA
@@ -217,7 +217,7 @@ export interface BusModule {
   fault: string | null;
   advice: string | null; // what to do
   silent: boolean;
-  stop_confirmed: boolean | null; // of the last STOP
+  stop_confirmed: boolean | null; // whether the module has confirmed the last STOP
 }
 
 export interface BusDocument {
@@ -225,7 +225,7 @@ export interface BusDocument {
   connected: boolean;
   problem: string | null;
   load: number; // 0 to 1
-  syncs: number; // of the last second
+  syncs: number; // number of SYNCs in the last second
   other_host: boolean;
   latency_ms: number | null;
   modules: BusModule[];
@@ -263,7 +263,7 @@ export interface RemoteDocument {
   bindings: RemoteBinding[];
   problems: string[];
   learning: boolean;
-  active: boolean; // somebody drives
+  active: boolean; // whether a viewer drives
   file: string | null;
   saved: boolean;
 }
@@ -328,7 +328,7 @@ export interface FileDiff {
 
 export interface FileDiffEntry {
   file: string;
-  line: number; // that changes, or after which the new line comes
+  line: number; // line that changes, or after which the new line comes
   old: string | null; // null: the line is new
   new: string;
   slot: number;

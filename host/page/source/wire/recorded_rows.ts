@@ -2,17 +2,18 @@
 import { bytesResultHeader } from './bytes_result.js';
 
 export interface RecordedRows {
-  tick: number; // of the first row
+  tick: number; // tick of the first row
   stride: number; // ticks from one row to the next; 1: every tick
   rows: number;
-  lastTick: number; // of the recording, as it is now
+  lastTick: number; // last tick of the recording at present
   width: number; // values in a row
   values: Int32Array; // of each row: the values at its tick; with a stride above 1, then the minima, then the maxima
 }
 
 const headerBytes = bytesResultHeader + 16;
 
-// `width`: values of the signals that were asked for. Throws an Error that says what was found and what was expected.
+// Decodes an answer. `width`: number of values of the requested signals. Throws an Error that says what was found and what
+// was expected.
 export function decodeRecordedRows(buffer: ArrayBuffer, width: number): RecordedRows {
   if (buffer.byteLength < headerBytes) {
     throw new Error(`rows: found ${buffer.byteLength} bytes, expected a header of ${headerBytes} bytes`);

@@ -1,4 +1,4 @@
-// STOP: a socket that is only for it, and POST /stop as second way. Either alone suffices.
+// The channel for STOP: a socket that is only for it, and POST /stop as a second way. Either of them suffices.
 import { protocol, type ClientMessage, type ServerMessage } from './messages.js';
 import type { Socket, SocketEvents } from './connection.js';
 
@@ -15,8 +15,8 @@ export interface StopOutcome {
   of: number | null;
 }
 
-// In milliseconds.
-const socketPatience = 150; // without an answer by then, POST is used too
+// The durations below are in milliseconds.
+const socketPatience = 150; // time without an answer after which POST is used, too
 const reopenDelay = 1000;
 
 interface Press {
@@ -56,9 +56,9 @@ export class StopChannel {
     this.socket = socket;
   }
 
-  // Rejects if neither way had an answer. Each press sends anew: a second press must never be less than the first.
-  // `complete` is called if the numbers come over the socket after the answer to the POST: a module that does not confirm
-  // takes longer than the patience.
+  // Sends STOP. Rejects if neither way had an answer. Each press sends again: a second press must never have less effect
+  // than the first. `complete` is called if the numbers come over the socket after the answer to the POST: a module that
+  // does not confirm takes longer than the patience.
   press(complete: (outcome: StopOutcome) => void = () => {}): Promise<StopOutcome> {
     return new Promise((resolve, reject) => {
       const press: Press = { time: this.ports.now(), resolve, reject, complete, isDone: false };

@@ -1,9 +1,9 @@
-// What a viewer has subscribed to, and where each signal is in a row of the answer.
+// The signals to which a viewer has subscribed, and the place of each in a row of the answer.
 import type { Signal, TelemetryDocument } from './messages.js';
 
 export interface SubscribedSignal {
   signal: Signal;
-  offset: number; // of its first value in a row
+  offset: number; // position of the first value of the signal in a row
 }
 
 export interface RowLayout {

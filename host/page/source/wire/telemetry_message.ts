@@ -2,7 +2,7 @@
 
 export interface TelemetryMessage {
   subscription: number; // 1 for the viewer's first `subscribe`
-  tick: number; // of the first row
+  tick: number; // tick of the first row
   rows: number;
   stride: number; // ticks from one row to the next
   run: number; // another number after a restart
@@ -15,7 +15,7 @@ const headerBytes = 16;
 
 const isLittleEndian = new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
 
-// Throws an Error that says what was found and what was expected.
+// Decodes a message. Throws an Error that says what was found and what was expected.
 export function decodeTelemetry(buffer: ArrayBuffer): TelemetryMessage {
   if (buffer.byteLength < headerBytes || buffer.byteLength % 4 !== 0) {
     throw new Error(`telemetry: found ${buffer.byteLength} bytes, expected a header of 16 bytes and a multiple of 4`);
@@ -38,7 +38,7 @@ export function decodeTelemetry(buffer: ArrayBuffer): TelemetryMessage {
   };
 }
 
-// A view where the processor has the byte order of the wire, else a copy.
+// The values: a view if the processor has the byte order of the wire, else a copy.
 function readValues(buffer: ArrayBuffer, header: DataView, count: number): Int32Array {
   if (isLittleEndian) {
     return new Int32Array(buffer, headerBytes, count);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/flash/image_file.hpp"
-#include "host/flash/program_format.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"

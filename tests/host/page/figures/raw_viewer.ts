@@ -1,6 +1,7 @@
 // A viewer that is not the page: a WebSocket (RFC 6455) on a plain TCP connection, so that it can stop reading.
 import { randomBytes } from 'node:crypto';
 import { connect, type Socket } from 'node:net';
+import { protocol } from '../../../../host/page/source/wire/messages.js';
 import { inTime } from './processes.js';
 
 export interface TelemetryHeader {
@@ -45,7 +46,7 @@ export class RawViewer {
         `Sec-WebSocket-Key: ${key}\r\nSec-WebSocket-Version: 13\r\n\r\n`,
     );
     await inTime(upgraded, 'an upgrade');
-    viewer.send({ type: 'hello', protocol: 1, token: hash.slice(1), name: 'page_figures' });
+    viewer.send({ type: 'hello', protocol, token: hash.slice(1), name: 'page_figures' });
     await viewer.next((message) => message.type === 'welcome');
     return viewer;
   }

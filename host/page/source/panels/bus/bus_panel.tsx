@@ -1,5 +1,5 @@
-// The bus: how full it is, and all modules on it, also those that are not of this robot.
-import type { PageApp } from '../../page_app.js';
+// The load of the bus, and all modules on it, also those that do not belong to this robot.
+import type { Stores } from '../../robot_view.js';
 import { currentState, moduleState } from '../../state/module_text.js';
 import type { BusDocument, BusModule } from '../../wire/messages.js';
 import { TableHead } from '../table_head.js';
@@ -31,7 +31,7 @@ function stopText(confirmed: boolean | null): string {
   return confirmed === null ? '–' : confirmed ? 'confirmed' : 'NOT CONFIRMED';
 }
 
-function ModuleRow({ app, module }: { app: PageApp; module: BusModule }) {
+function ModuleRow({ app, module }: { app: Stores<'selection' | 'state'>; module: BusModule }) {
   const { joint } = module;
   const { text, tone } = moduleState(module);
   const current = currentState(module.current, module.current_limit);
@@ -58,7 +58,7 @@ function ModuleRow({ app, module }: { app: PageApp; module: BusModule }) {
   );
 }
 
-export function BusPanel({ app }: { app: PageApp }) {
+export function BusPanel({ app }: { app: Stores<'operations' | 'selection' | 'state'> }) {
   const bus = app.state.bus.value;
   return (
     <section class={`panel bus-panel ${bus?.connected === true ? '' : 'old'}`} aria-label="Bus" data-testid="bus">

@@ -1,10 +1,10 @@
 // A button for a robot on a bus. When the command is not possible, it is disabled and says why.
 import type { ComponentChildren } from 'preact';
-import type { PageApp } from '../../page_app.js';
+import type { Stores } from '../../robot_view.js';
 import type { RobotCommand } from '../../state/robot_commands.js';
 
 interface Properties {
-  app: PageApp;
+  app: Stores<'state'>;
   command: RobotCommand;
   title: string;
   run(): void;

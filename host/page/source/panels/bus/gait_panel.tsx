@@ -1,8 +1,8 @@
-// The state frames of the modules against the gait of this computer.
-import type { PageApp } from '../../page_app.js';
+// The comparison of the modules' state frames with the gait of this computer.
+import type { Stores } from '../../robot_view.js';
 import { describeGait } from '../../state/gait_text.js';
 
-export function GaitPanel({ app }: { app: PageApp }) {
+export function GaitPanel({ app }: { app: Stores<'state'> }) {
   const gait = app.state.busSession.value?.gait ?? null;
   const { text, tone } = describeGait(gait);
   return (

@@ -1,8 +1,8 @@
-// Positions of joints: a slider and a number for each, at a limited speed. Only while the robot is held.
+// Positions of joints: a slider and a number for each, at a limited speed. It is possible only while the robot is held.
 import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../../frame_clock.js';
-import type { PageApp } from '../../page_app.js';
+import type { Stores } from '../../robot_view.js';
 import { poseZero } from '../../robot_actions.js';
 import { fastest, slowest } from '../../state/pose_queue.js';
 import { parseNumber } from '../../state/parameter_values.js';
@@ -12,13 +12,13 @@ import { CommandButton } from './command_button.js';
 
 const readoutPeriod = 100; // milliseconds
 
-// A number within limits, or what is wrong.
+// Reads a number within limits; returns a text that says what is wrong otherwise.
 function parseWithin(text: string, low: number, high: number): number | string {
   const value = parseNumber(text);
   return typeof value === 'number' && (value < low || value > high) ? `found ${text.trim()}, expected ${low} to ${high}` : value;
 }
 
-function PoseRow({ app, joint, index, isPossible }: { app: PageApp; joint: Joint; index: number; isPossible: boolean }) {
+function PoseRow({ app, joint, index, isPossible }: { app: Stores<'history' | 'poses' | 'rowsAtCursor' | 'selection' | 'state'>; joint: Joint; index: number; isPossible: boolean }) {
   const slider = useRef<HTMLInputElement>(null);
   const number = useRef<HTMLInputElement>(null);
   const mark = useRef<HTMLElement>(null);
@@ -31,7 +31,8 @@ function PoseRow({ app, joint, index, isPossible }: { app: PageApp; joint: Joint
     problem.value = typeof value === 'string' ? value : null;
     if (typeof value === 'number') move(value);
   };
-  // Written past Preact, as all that follows telemetry. What the user holds or edits is left alone.
+  // The texts are written without Preact, like all that follow telemetry. A field that the user holds or edits is not
+  // changed.
   useEffect(() => {
     let last = 0;
     return onFrame((now) => {
@@ -92,7 +93,7 @@ function PoseRow({ app, joint, index, isPossible }: { app: PageApp; joint: Joint
   );
 }
 
-function Speed({ app, isPossible }: { app: PageApp; isPossible: boolean }) {
+function Speed({ app, isPossible }: { app: Stores<'poses'>; isPossible: boolean }) {
   const { speed } = app.poses;
   return (
     <label class="pose-speed">
@@ -112,7 +113,7 @@ function Speed({ app, isPossible }: { app: PageApp; isPossible: boolean }) {
   );
 }
 
-export function PosePanel({ app }: { app: PageApp }) {
+export function PosePanel({ app }: { app: Stores<'history' | 'poses' | 'rowsAtCursor' | 'selection' | 'state'> }) {
   const obstacle = app.state.obstacleTo('pose');
   const joints = app.state.robot.value?.joints ?? [];
   return (

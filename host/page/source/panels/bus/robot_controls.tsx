@@ -1,12 +1,12 @@
-// Power, gait and hold of a robot on a bus; the present tick and time; why it stopped last.
-import type { PageApp } from '../../page_app.js';
+// Power, gait and hold of a robot on a bus; the present tick and time; the reason of the last stop.
+import type { Stores } from '../../robot_view.js';
 import { recordOrEnd } from '../../page_actions.js';
 import { pauseIcon, powerIcon, recordIcon, runIcon } from '../icons.js';
 import { TickCounter } from '../tick_counter.js';
 import { CommandButton } from './command_button.js';
 import { TroubleList } from './trouble_list.js';
 
-// What the robot does, and what the user can do next.
+// Texts by state: the activity of the robot, and the next step of the user.
 const hints = {
   off: 'The servos have no power. Power on to move joints, or run the gait.',
   starting: 'The modules are set up and get power. Joints that measure their angle stay, or go slowly to the start.',
@@ -15,7 +15,7 @@ const hints = {
   stopping: 'The joints go to the safe pose, then the servos lose their power.',
 } as const;
 
-export function RobotControls({ app }: { app: PageApp }) {
+export function RobotControls({ app }: { app: Stores<'newestTick' | 'operations' | 'state' | 'tickRate'> }) {
   const { state, operations } = app;
   const session = state.busSession.value;
   if (session === null) {

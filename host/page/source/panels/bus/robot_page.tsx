@@ -1,6 +1,6 @@
 // The page Live of a robot on a bus.
 import { useEffect } from 'preact/hooks';
-import type { PageApp } from '../../page_app.js';
+import type { PageStores } from '../../robot_view.js';
 import { JointTable } from '../joint_table.js';
 import { ParameterPanel } from '../parameter_panel.js';
 import { PlotPanel } from '../plot_panel.js';
@@ -13,8 +13,8 @@ import { GaitPanel } from './gait_panel.js';
 import { PosePanel } from './pose_panel.js';
 import { RobotControls } from './robot_controls.js';
 
-export function RobotPage({ app }: { app: PageApp }) {
-  // Measured against set-point, before the user chooses lines.
+export function RobotPage({ app }: { app: PageStores }) {
+  // The lines before the user chooses some: measured angles and set-points.
   useEffect(() => app.selection.begin(['angle', 'setpoint', 'simulated_angle']), []);
   return (
     <div class={`live ${app.state.freshness.age.value === null ? '' : 'old'}`}>

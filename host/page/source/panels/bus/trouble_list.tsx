@@ -1,8 +1,8 @@
-// What is wrong with modules, and what to do.
-import type { PageApp } from '../../page_app.js';
+// The list of modules with faults, and of the remedies.
+import type { Stores } from '../../robot_view.js';
 import { troublesOf } from '../../state/module_text.js';
 
-export function TroubleList({ app }: { app: PageApp }) {
+export function TroubleList({ app }: { app: Stores<'state'> }) {
   const troubles = troublesOf(app.state.bus.value, app.state.robot.value);
   return troubles.length === 0 ? null : (
     <section class="panel trouble-panel" aria-label="Faults" data-testid="troubles">

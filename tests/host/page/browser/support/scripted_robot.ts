@@ -12,7 +12,7 @@ import type {
   RobotDocument,
   Signal,
 } from '../../../../../host/page/source/wire/messages.js';
-import { noValue } from '../../../../../host/page/source/wire/messages.js';
+import { noValue, protocol } from '../../../../../host/page/source/wire/messages.js';
 import { encodeTelemetry } from '../../support/telemetry.js';
 import { WebSocketPeer } from './web_socket_peer.js';
 
@@ -173,7 +173,7 @@ export class ScriptedRobot {
     const answer = (fields: object) => this.sendTo(viewer, fields);
     switch (message['type']) {
       case 'hello':
-        answer({ type: 'welcome', protocol: 1, client: viewer.client, program: 'script' });
+        answer({ type: 'welcome', protocol, client: viewer.client, program: 'script' });
         if (message['only'] !== 'stop') {
           this.viewers.push(viewer);
           this.sendDocuments(viewer);

@@ -1,4 +1,4 @@
-#include "host/flash/ailment.hpp"
+#include "host/flash/module_fault.hpp"
 
 #include <algorithm>
 
@@ -14,9 +14,9 @@ class Diagnosis {
   Diagnosis(const FlashCandidate& module, std::span<const FlashCandidate> all, const RecoveryMeans& means)
       : module_(module), program_(module.program), all_(all), means_(means) {}
 
-  std::vector<Ailment> run() {
+  std::vector<ModuleFault> run() {
     if (!program_.has_answered) {
-      add(AilmentKind::no_update_protocol,
+      add(ModuleFaultKind::no_update_protocol,
           "answers no request for an update: its program is older than that, or it has no bootloader",
           {Remedy::by_hand, std::string(flash_bare)});
     } else {
@@ -24,10 +24,10 @@ class Diagnosis {
     }
     examine_node_id();
     if (program_.is(flag::has_newer_settings)) {
-      add(AilmentKind::newer_settings, "its settings are those of a later program, of which it uses only the node id",
-          remedy_for_settings());
+      add(ModuleFaultKind::newer_settings,
+          "its settings are those of a later program, of which it uses only the node id", remedy_for_settings());
     }
-    return std::move(ailments_);
+    return std::move(faults_);
   }
 
  private:
@@ -36,8 +36,8 @@ class Diagnosis {
     std::string text;
   };
 
-  void add(AilmentKind kind, std::string text, Action action) {
-    ailments_.push_back({kind, std::move(text), action.remedy, std::move(action.text)});
+  void add(ModuleFaultKind kind, std::string text, Action action) {
+    faults_.push_back({kind, std::move(text), action.remedy, std::move(action.text)});
   }
   [[nodiscard]] std::string program_name() const {
     return program_.image ? "its program " + version_text(*program_.image) : "its program";
@@ -46,18 +46,18 @@ class Diagnosis {
   void examine_program() {
     const bool runs = program_.is(flag::runs_program);
     if (!program_.is(flag::has_bootloader)) {
-      add(AilmentKind::no_bootloader, "has no bootloader", {Remedy::by_hand, std::string(flash_bare)});
+      add(ModuleFaultKind::no_bootloader, "has no bootloader", {Remedy::by_hand, std::string(flash_bare)});
     } else if (!program_.is(flag::has_image)) {
-      add(AilmentKind::no_program, "has no program", another_program());
+      add(ModuleFaultKind::no_program, "has no program", another_program());
     } else if (!runs && program_.is(flag::starts_badly)) {
-      add(AilmentKind::starts_badly, program_name() + " stops just after its start, again and again",
+      add(ModuleFaultKind::starts_badly, program_name() + " stops just after its start, again and again",
           another_program());
     } else if (!program_.is(flag::is_confirmed)) {
-      add(AilmentKind::never_confirmed,
+      add(ModuleFaultKind::never_confirmed,
           program_name() + (runs ? " runs on trial, and has not confirmed itself" : " has never started well"),
           start_or_another_program());
     } else if (!runs) {
-      add(AilmentKind::in_bootloader, "is in its bootloader, and does not run " + program_name(),
+      add(ModuleFaultKind::in_bootloader, "is in its bootloader, and does not run " + program_name(),
           start_or_another_program());
     }
   }
@@ -78,7 +78,7 @@ class Diagnosis {
     if (is_same && program_.is(flag::is_confirmed)) {
       return {Remedy::by_hand, "the image is the program that it has: run 'proleg recover' with another one"};
     }
-    // Whatever runs is better than what does not.
+    // Any program that runs is better than one that does not.
     return flash({.older_version = true});
   }
 
@@ -91,7 +91,7 @@ class Diagnosis {
 
   void examine_node_id() {
     if (module_.node == 0) {
-      add(AilmentKind::no_node_id, "has no node id", {Remedy::number, "gets a free one"});
+      add(ModuleFaultKind::no_node_id, "has no node id", {Remedy::number, "gets a free one"});
       return;
     }
     const auto others = std::ranges::count_if(all_, [this](const FlashCandidate& other) {
@@ -101,15 +101,16 @@ class Diagnosis {
       const std::string text = "has the same node id as " +
                                (others == 1 ? "another module" : std::to_string(others) + " other modules") +
                                "; they stop when they notice it";
-      add(AilmentKind::duplicate_node_id, text,
+      add(ModuleFaultKind::duplicate_node_id, text,
           keeps_node_id() ? Action{Remedy::keep_number, "keeps it, and restarts"}
                           : Action{Remedy::renumber, "gets a free one"});
     } else if (!module_.serves_objects && program_.is(flag::runs_program)) {
-      add(AilmentKind::stopped, "is Stopped", {Remedy::restart, "restarts it"});
+      add(ModuleFaultKind::stopped, "is Stopped", {Remedy::restart, "restarts it"});
     }
   }
 
-  /// A module that runs, if there is one; of several the one with the lowest serial number.
+  /// Whether this module keeps the shared node id: modules that run a program come first, then the lowest serial
+  /// number counts.
   [[nodiscard]] bool keeps_node_id() const {
     const auto rank = [](const FlashCandidate& one) {
       return std::pair(!one.program.is(flag::runs_program), one.program.serial);
@@ -118,7 +119,8 @@ class Diagnosis {
         all_, [&](const FlashCandidate& other) { return other.node != module_.node || rank(module_) <= rank(other); });
   }
 
-  /// The module does not report the schema of its settings, only that it is higher than that of its program.
+  /// The remedy for settings of a higher schema than that of the program. The module does not report the schema
+  /// itself.
   [[nodiscard]] Action remedy_for_settings() const {
     std::string why_not = "a later image may know them";
     if (means_.image != nullptr && program_.image) {
@@ -142,37 +144,37 @@ class Diagnosis {
   const ModuleProgram& program_;
   std::span<const FlashCandidate> all_;
   const RecoveryMeans& means_;
-  std::vector<Ailment> ailments_;
+  std::vector<ModuleFault> faults_;
 };
 
 }  // namespace
 
-std::vector<Ailment> find_ailments(const FlashCandidate& module, std::span<const FlashCandidate> all,
-                                   const RecoveryMeans& means) {
+std::vector<ModuleFault> find_module_faults(const FlashCandidate& module, std::span<const FlashCandidate> all,
+                                            const RecoveryMeans& means) {
   return Diagnosis(module, all, means).run();
 }
 
-std::string_view code_of(AilmentKind kind) {
+std::string_view code_of(ModuleFaultKind kind) {
   switch (kind) {
-    case AilmentKind::no_update_protocol:
+    case ModuleFaultKind::no_update_protocol:
       return "no_update_protocol";
-    case AilmentKind::no_bootloader:
+    case ModuleFaultKind::no_bootloader:
       return "no_bootloader";
-    case AilmentKind::no_program:
+    case ModuleFaultKind::no_program:
       return "no_program";
-    case AilmentKind::starts_badly:
+    case ModuleFaultKind::starts_badly:
       return "starts_badly";
-    case AilmentKind::never_confirmed:
+    case ModuleFaultKind::never_confirmed:
       return "never_confirmed";
-    case AilmentKind::in_bootloader:
+    case ModuleFaultKind::in_bootloader:
       return "in_bootloader";
-    case AilmentKind::no_node_id:
+    case ModuleFaultKind::no_node_id:
       return "no_node_id";
-    case AilmentKind::duplicate_node_id:
+    case ModuleFaultKind::duplicate_node_id:
       return "duplicate_node_id";
-    case AilmentKind::stopped:
+    case ModuleFaultKind::stopped:
       return "stopped";
-    case AilmentKind::newer_settings:
+    case ModuleFaultKind::newer_settings:
       return "newer_settings";
   }
   return "unknown";

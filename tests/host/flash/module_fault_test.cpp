@@ -1,15 +1,15 @@
 // What is wrong with a module, from what it says of itself, and what can be done about it.
 
-#include "host/flash/ailment.hpp"
+#include "host/flash/module_fault.hpp"
 
 #include <gtest/gtest.h>
 
 namespace proleg::test {
 namespace {
 
-using host::Ailment;
-using host::AilmentKind;
 using host::FlashCandidate;
+using host::ModuleFault;
+using host::ModuleFaultKind;
 using host::RecoveryMeans;
 using host::Remedy;
 namespace flag = broadcast::module_flag;
@@ -35,18 +35,20 @@ FlashCandidate module_with(unsigned flags, std::uint8_t node = 3, std::uint32_t 
   return module;
 }
 
-class AilmentTest : public testing::Test {
+class ModuleFaultTest : public testing::Test {
  protected:
   /// Of the first module on the bus.
-  std::vector<Ailment> find(const std::vector<FlashCandidate>& all) { return find_ailments(all.front(), all, means); }
-  /// The only one of a module that is alone.
-  Ailment of(const FlashCandidate& module) {
-    const std::vector<Ailment> found = find({module});
-    EXPECT_EQ(found.size(), 1U);
-    return found.empty() ? Ailment{} : found.front();
+  std::vector<ModuleFault> find(const std::vector<FlashCandidate>& all) {
+    return find_module_faults(all.front(), all, means);
   }
-  void expect(const FlashCandidate& module, AilmentKind kind, Remedy remedy) {
-    const Ailment found = of(module);
+  /// The only one of a module that is alone.
+  ModuleFault of(const FlashCandidate& module) {
+    const std::vector<ModuleFault> found = find({module});
+    EXPECT_EQ(found.size(), 1U);
+    return found.empty() ? ModuleFault{} : found.front();
+  }
+  void expect(const FlashCandidate& module, ModuleFaultKind kind, Remedy remedy) {
+    const ModuleFault found = of(module);
     EXPECT_EQ(code_of(found.kind), code_of(kind));
     EXPECT_EQ(found.remedy, remedy) << found.to_do;
     EXPECT_FALSE(found.text.empty());
@@ -57,7 +59,7 @@ class AilmentTest : public testing::Test {
   RecoveryMeans means;
 };
 
-TEST_F(AilmentTest, AModuleThatRunsAConfirmedProgramIsWell) {
+TEST_F(ModuleFaultTest, AModuleThatRunsAConfirmedProgramIsWell) {
   EXPECT_TRUE(find({module_with(good_flags)}).empty());
   EXPECT_TRUE(find({module_with(good_flags | flag::is_gateway)}).empty());
   means.image = &image;
@@ -65,33 +67,33 @@ TEST_F(AilmentTest, AModuleThatRunsAConfirmedProgramIsWell) {
   EXPECT_TRUE(find({module_with(good_flags), module_with(good_flags, 4, 0x1235)}).empty());
 }
 
-TEST_F(AilmentTest, WithoutAProgramItNeedsAnImage) {
+TEST_F(ModuleFaultTest, WithoutAProgramItNeedsAnImage) {
   const FlashCandidate empty = module_with(flag::has_bootloader);
-  expect(empty, AilmentKind::no_program, Remedy::by_hand);
+  expect(empty, ModuleFaultKind::no_program, Remedy::by_hand);
   EXPECT_NE(of(empty).to_do.find("proleg recover IMAGE.pimg"), std::string::npos);
   means.image = &image;
-  expect(empty, AilmentKind::no_program, Remedy::flash);
+  expect(empty, ModuleFaultKind::no_program, Remedy::flash);
   EXPECT_NE(of(empty).to_do.find("0.2.0"), std::string::npos);
 }
 
-TEST_F(AilmentTest, AProgramThatWasGivenUpNeedsAnotherOneEvenIfThatIsOlder) {
+TEST_F(ModuleFaultTest, AProgramThatWasGivenUpNeedsAnotherOneEvenIfThatIsOlder) {
   const FlashCandidate given_up =
       module_with(flag::has_bootloader | flag::has_image | flag::is_confirmed | flag::starts_badly);
-  expect(given_up, AilmentKind::starts_badly, Remedy::by_hand);
+  expect(given_up, ModuleFaultKind::starts_badly, Remedy::by_hand);
   for (const image::Header& other : {image_of(2), image_of(0)}) {
     means.image = &other;
-    expect(given_up, AilmentKind::starts_badly, Remedy::flash);
+    expect(given_up, ModuleFaultKind::starts_badly, Remedy::flash);
   }
   const image::Header same = image_of(1);
   means.image = &same;
-  expect(given_up, AilmentKind::starts_badly, Remedy::by_hand);
+  expect(given_up, ModuleFaultKind::starts_badly, Remedy::by_hand);
   EXPECT_NE(of(given_up).to_do.find("another one"), std::string::npos) << "the same would not start either";
 }
 
-TEST_F(AilmentTest, AProgramThatMayStartIsStartedBeforeAnythingIsFlashed) {
+TEST_F(ModuleFaultTest, AProgramThatMayStartIsStartedBeforeAnythingIsFlashed) {
   for (const unsigned confirmed : {0U, unsigned{flag::is_confirmed}}) {
     const FlashCandidate waiting = module_with(flag::has_bootloader | flag::has_image | confirmed);
-    const AilmentKind kind = confirmed != 0 ? AilmentKind::in_bootloader : AilmentKind::never_confirmed;
+    const ModuleFaultKind kind = confirmed != 0 ? ModuleFaultKind::in_bootloader : ModuleFaultKind::never_confirmed;
     means = {};
     expect(waiting, kind, Remedy::start);
     means.image = &image;
@@ -103,52 +105,52 @@ TEST_F(AilmentTest, AProgramThatMayStartIsStartedBeforeAnythingIsFlashed) {
   }
 }
 
-TEST_F(AilmentTest, AProgramOnTrialThatRunsGetsTimeToConfirmItself) {
-  expect(module_with(flag::has_bootloader | flag::has_image | flag::runs_program), AilmentKind::never_confirmed,
+TEST_F(ModuleFaultTest, AProgramOnTrialThatRunsGetsTimeToConfirmItself) {
+  expect(module_with(flag::has_bootloader | flag::has_image | flag::runs_program), ModuleFaultKind::never_confirmed,
          Remedy::start);
 }
 
-TEST_F(AilmentTest, AnUnconfirmedProgramMayBeSentAgain) {
+TEST_F(ModuleFaultTest, AnUnconfirmedProgramMayBeSentAgain) {
   const image::Header same = image_of(1);
   means.image = &same;
   means.has_tried_start = true;
-  expect(module_with(flag::has_bootloader | flag::has_image), AilmentKind::never_confirmed, Remedy::flash);
+  expect(module_with(flag::has_bootloader | flag::has_image), ModuleFaultKind::never_confirmed, Remedy::flash);
 }
 
-TEST_F(AilmentTest, WithoutABootloaderOrAnAnswerItNeedsAProbe) {
+TEST_F(ModuleFaultTest, WithoutABootloaderOrAnAnswerItNeedsAProbe) {
   means.image = &image;
   const FlashCandidate without = module_with(good_flags & ~unsigned{flag::has_bootloader});
-  expect(without, AilmentKind::no_bootloader, Remedy::by_hand);
+  expect(without, ModuleFaultKind::no_bootloader, Remedy::by_hand);
   FlashCandidate old = module_with(0);
   old.program = {0x1234, false, {}, {}};
-  expect(old, AilmentKind::no_update_protocol, Remedy::by_hand);
+  expect(old, ModuleFaultKind::no_update_protocol, Remedy::by_hand);
   for (const FlashCandidate& module : {without, old}) {
     EXPECT_NE(of(module).to_do.find("proleg flash --bare"), std::string::npos);
   }
 }
 
-TEST_F(AilmentTest, AnImageForAnotherBoardIsNotFlashed) {
+TEST_F(ModuleFaultTest, AnImageForAnotherBoardIsNotFlashed) {
   const image::Header other = image_of(2, 2, 7);
   means.image = &other;
   const FlashCandidate empty = module_with(flag::has_bootloader);
-  expect(empty, AilmentKind::no_program, Remedy::by_hand);
+  expect(empty, ModuleFaultKind::no_program, Remedy::by_hand);
   EXPECT_NE(of(empty).to_do.find("board 7"), std::string::npos) << of(empty).to_do;
   EXPECT_NE(of(empty).to_do.find("'proleg flash'"), std::string::npos) << "which can send it anyway";
 }
 
-TEST_F(AilmentTest, WithoutANodeIdItGetsAFreeOne) {
-  expect(module_with(good_flags, 0), AilmentKind::no_node_id, Remedy::number);
+TEST_F(ModuleFaultTest, WithoutANodeIdItGetsAFreeOne) {
+  expect(module_with(good_flags, 0), ModuleFaultKind::no_node_id, Remedy::number);
   EXPECT_EQ(find({module_with(good_flags, 0), module_with(good_flags, 0, 0x99)}).size(), 1U)
       << "two without one have nothing in common";
 }
 
-TEST_F(AilmentTest, OfModulesWithOneNodeIdOneKeepsIt) {
+TEST_F(ModuleFaultTest, OfModulesWithOneNodeIdOneKeepsIt) {
   const FlashCandidate low = module_with(good_flags, 3, 10);
   const FlashCandidate high = module_with(good_flags, 3, 20);
   const FlashCandidate other = module_with(good_flags, 4, 5);
   const auto remedy_of = [this](std::vector<FlashCandidate> all) {
-    const std::vector<Ailment> found = find(all);
-    EXPECT_EQ(code_of(found.back().kind), code_of(AilmentKind::duplicate_node_id));
+    const std::vector<ModuleFault> found = find(all);
+    EXPECT_EQ(code_of(found.back().kind), code_of(ModuleFaultKind::duplicate_node_id));
     return found.back().remedy;
   };
   EXPECT_EQ(remedy_of({low, high, other}), Remedy::keep_number);
@@ -159,44 +161,44 @@ TEST_F(AilmentTest, OfModulesWithOneNodeIdOneKeepsIt) {
   EXPECT_EQ(remedy_of({low, empty, high}), Remedy::keep_number);
 }
 
-TEST_F(AilmentTest, AStoppedModuleIsRestartedOnceItHasItsNodeIdAlone) {
+TEST_F(ModuleFaultTest, AStoppedModuleIsRestartedOnceItHasItsNodeIdAlone) {
   FlashCandidate stopped = module_with(good_flags);
   stopped.serves_objects = false;
-  expect(stopped, AilmentKind::stopped, Remedy::restart);
+  expect(stopped, ModuleFaultKind::stopped, Remedy::restart);
   FlashCandidate other = module_with(good_flags, 3, 0x99);
   other.serves_objects = false;
-  const std::vector<Ailment> found = find({stopped, other});
+  const std::vector<ModuleFault> found = find({stopped, other});
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(code_of(found.front().kind), code_of(AilmentKind::duplicate_node_id)) << "which explains it";
+  EXPECT_EQ(code_of(found.front().kind), code_of(ModuleFaultKind::duplicate_node_id)) << "which explains it";
 }
 
-TEST_F(AilmentTest, NewerSettingsNeedAProgramWithAHigherSchemaOrAreReset) {
+TEST_F(ModuleFaultTest, NewerSettingsNeedAProgramWithAHigherSchemaOrAreReset) {
   const FlashCandidate newer = module_with(good_flags | flag::has_newer_settings);
   const image::Header higher = image_of(2, 3);
-  expect(newer, AilmentKind::newer_settings, Remedy::by_hand);
+  expect(newer, ModuleFaultKind::newer_settings, Remedy::by_hand);
   EXPECT_NE(of(newer).to_do.find("--reset-settings"), std::string::npos);
   means.image = &higher;
-  expect(newer, AilmentKind::newer_settings, Remedy::flash);
+  expect(newer, ModuleFaultKind::newer_settings, Remedy::flash);
   means.image = &image;
-  expect(newer, AilmentKind::newer_settings, Remedy::by_hand);
+  expect(newer, ModuleFaultKind::newer_settings, Remedy::by_hand);
   EXPECT_NE(of(newer).to_do.find("schema 2"), std::string::npos) << of(newer).to_do;
   means.resets_settings = true;
-  expect(newer, AilmentKind::newer_settings, Remedy::reset_settings);
+  expect(newer, ModuleFaultKind::newer_settings, Remedy::reset_settings);
   means.image = &higher;
-  expect(newer, AilmentKind::newer_settings, Remedy::flash);
+  expect(newer, ModuleFaultKind::newer_settings, Remedy::flash);
 }
 
-TEST_F(AilmentTest, AnOlderProgramIsNoRemedyForOneThatRuns) {
+TEST_F(ModuleFaultTest, AnOlderProgramIsNoRemedyForOneThatRuns) {
   const image::Header older = image_of(0, 3);
   means.image = &older;
-  expect(module_with(good_flags | flag::has_newer_settings), AilmentKind::newer_settings, Remedy::by_hand);
+  expect(module_with(good_flags | flag::has_newer_settings), ModuleFaultKind::newer_settings, Remedy::by_hand);
 }
 
-TEST_F(AilmentTest, AModuleMayHaveSeveral) {
-  const std::vector<Ailment> found = find({module_with(flag::has_bootloader, 0)});
+TEST_F(ModuleFaultTest, AModuleMayHaveSeveral) {
+  const std::vector<ModuleFault> found = find({module_with(flag::has_bootloader, 0)});
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(code_of(found[0].kind), code_of(AilmentKind::no_program));
-  EXPECT_EQ(code_of(found[1].kind), code_of(AilmentKind::no_node_id));
+  EXPECT_EQ(code_of(found[0].kind), code_of(ModuleFaultKind::no_program));
+  EXPECT_EQ(code_of(found[1].kind), code_of(ModuleFaultKind::no_node_id));
 }
 
 }  // namespace

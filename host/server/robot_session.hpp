@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,6 +19,9 @@ struct OperationRequest {
   ClientId client = 0;
   std::string client_name;
 };
+
+/// Answers to so many STOPs are waited for. Of more the oldest are forgotten: each of them stops the whole robot.
+inline constexpr std::size_t max_pending_stops = 1024;
 
 struct StopRequest {
   RequestId request = 0;

@@ -12,6 +12,9 @@ void SessionRequests::operate(const OperationRequest& request) {
 
 void SessionRequests::stop(const StopRequest& request) {
   const std::lock_guard lock(mutex_);
+  if (stops_.size() >= max_pending_stops) {
+    stops_.erase(stops_.begin());
+  }
   stops_.push_back({request.request, request.by, Clock::now()});
   notify();
 }

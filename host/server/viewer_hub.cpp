@@ -13,7 +13,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t protocol = 1;
-constexpr std::size_t max_pending_stops = 1024;
 
 }  // namespace
 

@@ -41,6 +41,18 @@ TEST(SessionRequests, AStopOvertakesWhatCameBeforeItAndWhatComesWhileItWaits) {
   EXPECT_EQ(requests.take_operation()->request, 5U);
 }
 
+TEST(SessionRequests, KeepTheNewestOfManyStops) {
+  SessionRequests requests;
+  constexpr RequestId sent = 10 * max_pending_stops;
+  for (RequestId request = 1; request <= sent; ++request) {
+    requests.stop({request, "desk"});
+  }
+  std::deque<OperationRequest> outdated;
+  const std::vector<SessionRequests::Stop> stops = requests.take_stops(outdated);
+  ASSERT_EQ(stops.size(), max_pending_stops);
+  EXPECT_EQ(stops.back().request, sent);
+}
+
 TEST(SessionRequests, WithoutAStopNothingIsOutdated) {
   SessionRequests requests;
   requests.operate(operation(1));

@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <string_view>
 #include <system_error>
+#include <thread>
 
 #include "host/server/access_token.hpp"
 
@@ -67,7 +70,16 @@ bool PageAddress::open() const {
   pid_t process = 0;
   const int error = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  return error == 0;
+  if (error != 0) {
+    return false;
+  }
+  // It may end at once or stay as long as the browser; a child whose status nobody takes stays in the list of
+  // processes.
+  std::thread([process] {
+    while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }).detach();
+  return true;
 }
 
 }  // namespace proleg::tools

@@ -122,8 +122,12 @@ json RecordedSession::rows(const json& arguments) {
 }
 
 json RecordedSession::compare(const json& arguments) {
-  RecordedRun& run = *run_of(arguments).run;
-  RecordedRun& other = *run_of(arguments, "with").run;
+  OpenRun& first = run_of(arguments);
+  const std::filesystem::path path = first.path;
+  OpenRun& second = run_of(arguments, "with");
+  RecordedRun& other = *second.run;
+  // The same file may have been replaced in between: then the first run is closed.
+  RecordedRun& run = second.path == path ? other : *first.run;
   const auto found =
       std::ranges::find_if(comparisons_, [&](const OpenComparison& open) { return open.comparison.is_of(run, other); });
   if (found != comparisons_.end()) {

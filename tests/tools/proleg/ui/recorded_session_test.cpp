@@ -1,13 +1,16 @@
 #include "tools/proleg/ui/recorded_session.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "shipped.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -198,6 +201,25 @@ TEST_F(RecordedSessionTest, ForgetsAComparisonWithAFileThatItCloses) {
       ASSERT_TRUE(answer.is_done) << answer.error;
     }
   }
+}
+
+TEST_F(RecordedSessionTest, ComparesAFileWithItselfWhileItIsReplaced) {
+  record("run.proleg", 5);
+  record("other.proleg", 5);
+  begin();
+  std::atomic<bool> ends = false;
+  std::thread replacing([&] {
+    while (!ends) {
+      ::renameat2(AT_FDCWD, (folder_ / "run.proleg").c_str(), AT_FDCWD, (folder_ / "other.proleg").c_str(),
+                  RENAME_EXCHANGE);
+    }
+  });
+  for (int round = 0; round < 100; ++round) {
+    const RecordingViewers::Answer answer = ask("recording.compare", {{"file", "run.proleg"}, {"with", "run.proleg"}});
+    EXPECT_TRUE(answer.is_done) << answer.error;
+  }
+  ends = true;
+  replacing.join();
 }
 
 TEST(SessionRouter, RobotAndRecordingsGetTheirOwn) {

@@ -38,14 +38,23 @@ void BusConnection::detach(BusUser& user) {
 
 template <typename Call>
 void BusConnection::for_each_user(Call&& call) {
-  ++calls_;
+  /// Also after an exception of a user.
+  struct Calls {
+    explicit Calls(BusConnection& connection) : bus(connection) { ++bus.calls_; }
+    ~Calls() {
+      if (--bus.calls_ == 0) {
+        std::erase(bus.users_, nullptr);
+      }
+    }
+    Calls(const Calls&) = delete;
+    Calls& operator=(const Calls&) = delete;
+    BusConnection& bus;
+  };
+  const Calls calls(*this);
   for (std::size_t i = 0; i < users_.size(); ++i) {
     if (users_[i] != nullptr) {
       call(*users_[i]);
     }
-  }
-  if (--calls_ == 0) {
-    std::erase(users_, nullptr);
   }
 }
 

@@ -44,14 +44,15 @@ json gait_json(const GaitCheck& check) {
 
 BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
                        host::SessionRequests& requests, host::SessionOutput& output)
-    : file_(file),
+    : SessionThread(requests, output),
+      file_(file),
       address_(std::move(address)),
       options_(std::move(options)),
-      requests_(requests),
-      output_(output),
       bus_(bus.connection()),
       monitor_(bus_),
+      monitor_attachment_(bus_, monitor_),
       stops_of_others_(bus_),
+      stops_attachment_(bus_, stops_of_others_),
       edits_(file, file),
       delivery_(edits_),
       started_(file),
@@ -59,30 +60,15 @@ BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string ad
       stop_confirmed_(file.robot.joints.size()) {
   output_.publish("robot", robot_document(file, "bus"));
   output_.set_signals(rows_.layout(), file.kernel.tick_period_us);
-  thread_ = std::thread([this] { run(); });
-}
-
-BusSession::~BusSession() {
-  requests_.end();
-  thread_.join();
-}
-
-void BusSession::run() {
-  const host::BusAttachment monitor_attachment(bus_, monitor_);
-  const host::BusAttachment stops_attachment(bus_, stops_of_others_);
   begin_scan();
-  traffic_from_ = Clock::now();
-  while (!requests_.ends()) {
-    serve();
-  }
-  close();
-  end_scan();
+  begin_thread();
 }
+
+BusSession::~BusSession() { end_thread(); }
 
 void BusSession::serve() {
   constexpr Microseconds look_period_us = 5'000;
-  bus_.run_until(bus_.now() + look_period_us, [this] { return requests_.are_there(); });
-  take_stops();
+  stop_at_once();
   look_at_holder();
   take_operations();
   poll_robot();
@@ -92,12 +78,28 @@ void BusSession::serve() {
   }
   add_idle_rows();
   publish_all(Clock::now());
+  bus_.run_until(bus_.now() + look_period_us, [this] { return requests_.are_there(); });
 }
 
-/// The robot comes to rest before the program ends.
-void BusSession::close() {
+void BusSession::close() { let_robot_rest("the end of the program"); }
+
+void BusSession::fail(const std::string& why) {
+  has_failed_ = true;
+  failure_ = why;
+  is_session_new_ = true;
+  try {
+    let_robot_rest("an error");
+  } catch (...) {
+    // Without a master the modules stop by themselves.
+    robot_.reset();
+    monitor_.set_reads(true);
+    throw;
+  }
+}
+
+void BusSession::let_robot_rest(const std::string& by) {
   if (robot_) {
-    stop_robot("the end of the program");
+    stop_robot(by);
   }
   const Clock::time_point begin = Clock::now();
   while (robot_ && Clock::now() < begin + std::chrono::microseconds(GaitRun::stop_time_us)) {
@@ -118,36 +120,36 @@ void BusSession::end_scan() {
   scan_.reset();
 }
 
-/// What was asked for before a STOP has no effect after it.
-void BusSession::take_stops() {
-  std::deque<host::OperationRequest> outdated;
-  for (const host::SessionRequests::Stop& stop : requests_.take_stops(outdated)) {
-    stops_.push_back({stop.request, stop.since});
-    stopped_by_ = stop.by;
-    is_session_new_ = true;
-    output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
-    std::ranges::fill(stop_confirmed_, false);
-    const auto confirmed = [this](unsigned joint) {
-      stop_confirmed_[joint] = true;
-      last_confirmation_ = Clock::now();
-    };
-    if (robot_) {
-      robot_->quick_stop(confirmed);
-      continue;
-    }
-    // Another program may move the robot.
-    for (unsigned joint = 0; joint < stop_confirmed_.size(); ++joint) {
-      stops_of_others_.write(file_.modules[joint].node, canopen::object::controlword.address,
-                             canopen::object::controlword.type, canopen::quick_stop_controlword,
-                             [joint, confirmed](const host::SdoResult& result) {
-                               if (result.is_good()) {
-                                 confirmed(joint);
-                               }
-                             });
-    }
+/// All STOPs that wait are one for the modules.
+void BusSession::stop_at_once() {
+  const Stops stops = take_stops();
+  if (stops.empty()) {
+    return;
   }
-  for (const host::OperationRequest& operation : outdated) {
-    output_.refuse(operation.request, "STOP came first");
+  for (const host::SessionRequests::Stop& stop : stops) {
+    stops_.push_back({stop.request, stop.since});
+    output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
+  }
+  stopped_by_ = stops.back().by;
+  is_session_new_ = true;
+  std::ranges::fill(stop_confirmed_, false);
+  const auto confirmed = [this](unsigned joint) {
+    stop_confirmed_[joint] = true;
+    last_confirmation_ = Clock::now();
+  };
+  if (robot_) {
+    robot_->quick_stop(confirmed);
+    return;
+  }
+  // Another program may move the robot.
+  for (unsigned joint = 0; joint < stop_confirmed_.size(); ++joint) {
+    stops_of_others_.write(file_.modules[joint].node, canopen::object::controlword.address,
+                           canopen::object::controlword.type, canopen::quick_stop_controlword,
+                           [joint, confirmed](const host::SdoResult& result) {
+                             if (result.is_good()) {
+                               confirmed(joint);
+                             }
+                           });
   }
 }
 
@@ -179,23 +181,17 @@ void BusSession::look_at_holder() {
   }
 }
 
-void BusSession::take_operations() {
-  while (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
-    try {
-      output_.answer(operation->request, carry_out(*operation));
-    } catch (const std::exception& error) {
-      output_.refuse(operation->request, one_line(error.what()));
-    }
-  }
-}
-
 json BusSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{
       {"power", &BusSession::power}, {"run", &BusSession::go_on},   {"pause", &BusSession::pause},
       {"pose", &BusSession::pose},   {"set", &BusSession::set},     {"undo", &BusSession::undo},
       {"redo", &BusSession::redo},   {"reset", &BusSession::reset}, {"record", &BusSession::record},
       {"scan", &BusSession::scan},   {"ping", &BusSession::ping}};
-  return (this->*handler_of(handlers, operation.name))(operation.arguments);
+  const Handler handler = handler_of(handlers, operation.name);
+  if (has_failed_ && operation.name != "scan" && operation.name != "ping") {
+    throw std::runtime_error("the session has failed; start proleg ui again");
+  }
+  return (this->*handler)(operation.arguments);
 }
 
 DrivenRobot& BusSession::powered() {
@@ -274,13 +270,14 @@ json BusSession::pose(const json& arguments) {
 json BusSession::set(const json& arguments) {
   const auto words = argument<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  std::vector<sim::Setting> internal_values = edits_.set(words.value_or(std::vector<std::string>{}), gesture);
-  are_parameters_new_ = true;
+  std::vector<sim::Setting> internal_values = edits_.read(words.value_or(std::vector<std::string>{}));
   std::erase_if(internal_values, [](const sim::Setting& setting) { return !setting.internal; });
   if (!internal_values.empty()) {
     static_cast<void>(powered());
-    delivery_.add(internal_values);
   }
+  edits_.set(*words, gesture);
+  are_parameters_new_ = true;
+  delivery_.add(internal_values);
   return {{"tick", nullptr}};
 }
 
@@ -341,17 +338,8 @@ void BusSession::start_robot(bool holds) {
   std::unique_ptr<sim::Recorder> recorder;
   if (!holds && !planned_recording_.empty()) {
     recorder = std::make_unique<sim::Recorder>(planned_recording_, started_, "drive", options_.build_id);
-    recording_ = std::exchange(planned_recording_, {});
   }
-  end_scan();
-  monitor_.set_reads(false);  // the master needs the bus, and reads what it needs
-  delivery_.begin_run();
-  are_parameters_new_ = true;
-  dropped_changes_ = 0;
-  failure_.clear();
-  stopped_by_.clear();
-  started_with_ = holds ? "power" : "run";
-  std::ranges::fill(stop_confirmed_, std::nullopt);
+  const bool is_recording = recorder != nullptr;
   robot_.emplace(
       started_, bus_, holds, std::move(recorder),
       DrivenRobot::Listener{
@@ -365,6 +353,18 @@ void BusSession::start_robot(bool holds) {
           [this](const std::string& line, bool is_error) {
             output_.notice(is_error ? host::NoticeLevel::error : host::NoticeLevel::warning, line);
           }});
+  if (is_recording) {
+    recording_ = std::exchange(planned_recording_, {});
+  }
+  end_scan();
+  monitor_.set_reads(false);  // the master needs the bus, and reads what it needs
+  delivery_.begin_run();
+  are_parameters_new_ = true;
+  dropped_changes_ = 0;
+  failure_.clear();
+  stopped_by_.clear();
+  started_with_ = holds ? "power" : "run";
+  std::ranges::fill(stop_confirmed_, std::nullopt);
   is_session_new_ = true;
 }
 
@@ -441,6 +441,9 @@ void BusSession::add_idle_rows() {
 }
 
 std::string BusSession::state_name() const {
+  if (has_failed_) {
+    return "failed";
+  }
   if (!robot_) {
     return "off";
   }

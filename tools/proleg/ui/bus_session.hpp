@@ -9,20 +9,18 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "host/robot/bus_connection.hpp"
 #include "host/robot/bus_monitor.hpp"
 #include "host/robot/bus_scan.hpp"
-#include "host/server/session_output.hpp"
-#include "host/server/session_requests.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/ui/change_delivery.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/robot_row.hpp"
+#include "tools/proleg/ui/session_thread.hpp"
 
 namespace proleg::tools {
 
@@ -31,23 +29,19 @@ struct BusSessionOptions {
   std::string build_id;
 };
 
-class BusSession {
+class BusSession final : private SessionThread {
  public:
   /// Does what `requests` has, and tells it `output`. file, bus, requests, output: must outlive the session. Another
   /// thread must not use the bus.
   BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
              host::SessionRequests& requests, host::SessionOutput& output);
   /// The joints ramp to the safe pose and lose their power first.
-  ~BusSession();
-  BusSession(const BusSession&) = delete;
-  BusSession& operator=(const BusSession&) = delete;
+  ~BusSession() override;
 
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"ping", "scan"}; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   /// A STOP that waits for the modules to confirm it.
   struct PendingStop {
     host::RequestId request;
@@ -60,18 +54,22 @@ class BusSession {
   /// A STOP is answered after this time, with the modules that have confirmed it by then.
   static constexpr std::chrono::milliseconds longest_confirmation{500};
 
-  void run();
-  void serve();
-  void take_stops();
+  // SessionThread
+  void serve() override;
+  /// The robot loses its power; operations that need the robot are refused from now on.
+  void fail(const std::string& why) override;
+  /// The robot comes to rest before the program ends.
+  void close() override;
+  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
+
+  void stop_at_once();
   void answer_stops();
-  void take_operations();
   void look_at_holder();
   void poll_robot();
   void give_changes();
   void add_idle_rows();
   void end_scan();
-  void close();
-  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
+  void let_robot_rest(const std::string& by);
 
   // The operations: take their arguments and return the value of the answer, or throw.
   using Handler = nlohmann::json (BusSession::*)(const nlohmann::json&);
@@ -100,13 +98,13 @@ class BusSession {
   const sim::Scenario& file_;
   std::string address_;
   BusSessionOptions options_;
-  host::SessionRequests& requests_;
-  host::SessionOutput& output_;
   host::BusConnection& bus_;
 
   // Of the thread.
   host::BusMonitor monitor_;
+  host::BusAttachment monitor_attachment_;
   host::SdoQueue stops_of_others_;  ///< quick stops while this program drives nothing
+  host::BusAttachment stops_attachment_;
   std::optional<host::BusScan> scan_;
   std::optional<host::BusAttachment> scan_attachment_;
   ParameterEdits edits_;
@@ -117,6 +115,7 @@ class BusSession {
   std::string started_with_;
   std::string stopped_by_;
   std::string failure_;
+  bool has_failed_ = false;
   nlohmann::json gait_;  ///< of the last run
   std::string planned_recording_;
   std::string recording_;
@@ -128,9 +127,7 @@ class BusSession {
   bool are_parameters_new_ = true;
   bool is_session_new_ = true;
   Clock::time_point publish_at_{};
-  Clock::time_point traffic_from_{};
-
-  std::thread thread_;  ///< the last to begin
+  Clock::time_point traffic_from_ = Clock::now();
 };
 
 }  // namespace proleg::tools

@@ -15,8 +15,7 @@ ParameterEdits::ParameterEdits(const sim::Scenario& file, const sim::Scenario& s
   scratch_.sources.clear();  // they are not needed, and cost time to copy
 }
 
-std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& words,
-                                              std::optional<std::uint64_t> gesture) {
+std::vector<sim::Setting> ParameterEdits::read(const std::vector<std::string>& words) {
   if (words.empty()) {
     throw InputError("set", 0, "no word", "NAME=VALUE");
   }
@@ -27,8 +26,14 @@ std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& wo
     }
     sim::apply_setting(scratch_, word + "@1");
   }
+  return scratch_.changes.front().settings;
+}
+
+std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& words,
+                                              std::optional<std::uint64_t> gesture) {
+  std::vector<sim::Setting> settings = read(words);
   ChangeHistory::Entry entry{words.front().substr(0, words.front().find('=')), {}, gesture};
-  for (const sim::Setting& setting : scratch_.changes.front().settings) {
+  for (const sim::Setting& setting : settings) {
     if (!setting.internal) {
       const ParameterPlace place = place_of(setting);
       entry.steps.push_back({place, parameters_.at(place).wanted, setting.value});
@@ -38,7 +43,7 @@ std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& wo
   if (!entry.steps.empty()) {
     history_.add(std::move(entry));
   }
-  return scratch_.changes.front().settings;
+  return settings;
 }
 
 std::optional<std::vector<sim::Setting>> ParameterEdits::undo() {

@@ -18,10 +18,13 @@ class ParameterEdits {
   /// file: as the files have it; must outlive this. start: the same with the start values of the first run.
   ParameterEdits(const sim::Scenario& file, const sim::Scenario& start);
 
+  /// What words mean, as for --set, without a tick. Changes nothing. Throws InputError.
+  [[nodiscard]] std::vector<sim::Setting> read(const std::vector<std::string>& words);
+
   // Each of these wants other values and returns them.
 
-  /// Words as for --set, without a tick. Internal values are among the result; they are not wanted longer than once.
-  /// Throws InputError, and then changes nothing. gesture: as in ChangeHistory.
+  /// Words as for read(). Internal values are among the result; they are not wanted longer than once. Throws
+  /// InputError, and then changes nothing. gesture: as in ChangeHistory.
   std::vector<sim::Setting> set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture);
   /// Nothing if there is nothing to undo.
   std::optional<std::vector<sim::Setting>> undo();

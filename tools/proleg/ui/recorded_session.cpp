@@ -17,29 +17,18 @@ using nlohmann::json;
 
 RecordedSession::RecordedSession(RecordedSessionOptions options, host::SessionRequests& requests,
                                  host::SessionOutput& output)
-    : requests_(requests), output_(output), folder_(options.folder) {
+    : SessionThread(requests, output), folder_(options.folder) {
   output_.publish("recordings", {{"folder", std::filesystem::canonical(options.folder).filename().string()},
                                  {"open", options.file ? json(*options.file) : json()},
                                  {"alone", options.is_alone}});
-  thread_ = std::thread([this] { run(); });
+  begin_thread();
 }
 
-RecordedSession::~RecordedSession() {
-  requests_.end();
-  thread_.join();
-}
+RecordedSession::~RecordedSession() { end_thread(); }
 
-void RecordedSession::run() {
-  while (!requests_.ends()) {
-    if (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
-      try {
-        output_.answer(operation->request, carry_out(*operation));
-      } catch (const std::exception& error) {
-        output_.refuse(operation->request, one_line(error.what()));
-      }
-    } else if (!work()) {
-      requests_.wait();
-    }
+void RecordedSession::serve() {
+  if (!take_operations() && !work()) {
+    requests_.wait();
   }
 }
 
@@ -88,16 +77,16 @@ RecordedSession::OpenRun& RecordedSession::run_of(const json& arguments, const c
     return runs_.front();
   }
   if (found != runs_.end()) {
-    close(found);
+    close_run(found);
   }
   runs_.push_front({path, std::make_unique<RecordedRun>(path)});
   if (runs_.size() > max_open_runs) {
-    close(std::prev(runs_.end()));
+    close_run(std::prev(runs_.end()));
   }
   return runs_.front();
 }
 
-void RecordedSession::close(std::list<OpenRun>::iterator run) {
+void RecordedSession::close_run(std::list<OpenRun>::iterator run) {
   std::erase_if(comparisons_, [&](const OpenComparison& open) { return open.comparison.is_of(*run->run); });
   runs_.erase(run);
 }

@@ -11,14 +11,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
-#include "host/server/session_output.hpp"
-#include "host/server/session_requests.hpp"
 #include "tools/proleg/ui/recorded_run.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
 #include "tools/proleg/ui/run_comparison.hpp"
+#include "tools/proleg/ui/session_thread.hpp"
 
 namespace proleg::tools {
 
@@ -28,7 +26,7 @@ struct RecordedSessionOptions {
   bool is_alone = false;            ///< there is no robot until a recording is continued
 };
 
-class RecordedSession {
+class RecordedSession final : private SessionThread {
  public:
   static constexpr std::size_t max_open_runs = 6;
   static constexpr std::size_t max_comparisons = 2;
@@ -38,9 +36,7 @@ class RecordedSession {
   /// Does what `requests` has, and tells it `output`, which both must outlive the session. Throws InputError if there
   /// is no such folder.
   RecordedSession(RecordedSessionOptions options, host::SessionRequests& requests, host::SessionOutput& output);
-  ~RecordedSession();
-  RecordedSession(const RecordedSession&) = delete;
-  RecordedSession& operator=(const RecordedSession&) = delete;
+  ~RecordedSession() override;
 
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() {
@@ -59,14 +55,18 @@ class RecordedSession {
     bool may_have_more = true;  ///< ticks to compare
   };
 
-  void run();
+  // SessionThread
+  void serve() override;
+  /// What is open stays open.
+  void fail(const std::string& /*why*/) override {}
+  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
+
   /// What nobody waits for; false: there is nothing to do.
   [[nodiscard]] bool work();
-  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
   /// Opens the recording that the argument names, if it is not open. Of more than max_open_runs the one that was used
   /// least recently is closed.
   [[nodiscard]] OpenRun& run_of(const nlohmann::json& arguments, const char* name = "file");
-  void close(std::list<OpenRun>::iterator run);
+  void close_run(std::list<OpenRun>::iterator run);
 
   using Handler = nlohmann::json (RecordedSession::*)(const nlohmann::json&);
   nlohmann::json list(const nlohmann::json& arguments);
@@ -74,12 +74,9 @@ class RecordedSession {
   nlohmann::json rows(const nlohmann::json& arguments);
   nlohmann::json compare(const nlohmann::json& arguments);
 
-  host::SessionRequests& requests_;
-  host::SessionOutput& output_;
   RecordingFolder folder_;
   std::list<OpenRun> runs_;                ///< the last used first
   std::list<OpenComparison> comparisons_;  ///< of open runs, the last used first
-  std::thread thread_;                     ///< the last to begin
 };
 
 }  // namespace proleg::tools

@@ -56,19 +56,49 @@ void RemoteSession::run() {
   } catch (const std::system_error& error) {
     remote_.problems_changed({"gamepads cannot be read: " + one_line(error.what())});
   }
-  while (true) {
-    remote_.advance(now());
-    // Who has lost control is told before what a hand does now.
-    tasks_.run();
-    if (ends_) {
-      return;
+  constexpr std::chrono::milliseconds pause_after_error{20};
+  while (!ends_) {
+    try {
+      serve();
+    } catch (const std::exception& error) {
+      fail(one_line(error.what()));
+      std::this_thread::sleep_for(pause_after_error);  // an error that stays does not take the processor
     }
-    if (devices_) {
-      devices_->read();
-    }
+  }
+}
+
+void RemoteSession::serve() {
+  if (!has_failed_) {
     remote_.advance(now());
-    publish_news();
-    wait();
+  }
+  // Who has lost control is told before what a hand does now.
+  tasks_.run();
+  if (ends_) {
+    return;
+  }
+  if (devices_) {
+    devices_->read();
+  }
+  if (!has_failed_) {
+    remote_.advance(now());
+  }
+  publish_news();
+  wait();
+}
+
+/// Without devices nothing moves by a hand any more; what a button holds ends as if the holder went away.
+void RemoteSession::fail(const std::string& why) {
+  if (has_failed_) {
+    return;
+  }
+  has_failed_ = true;
+  viewers_->notice(host::NoticeLevel::error, std::string(own_name) + ": " + why);
+  devices_.reset();
+  try {
+    remote_.problems_changed({"the remote control has failed: " + why});
+    remote_.set_allowed(false);
+  } catch (const std::exception& error) {
+    viewers_->notice(host::NoticeLevel::error, std::string(own_name) + ": " + one_line(error.what()));
   }
 }
 

@@ -60,6 +60,9 @@ class RemoteSession final : public host::RobotSession, public host::SessionOutpu
   [[nodiscard]] bool is_running() const override { return is_running_; }
 
   void run();
+  void serve();
+  /// From now on only requests of viewers are answered.
+  void fail(const std::string& why);
   void wait() const;
   [[nodiscard]] static host::RemoteTime now();
   void receive(const std::string& document, const nlohmann::json& value);
@@ -95,6 +98,7 @@ class RemoteSession final : public host::RobotSession, public host::SessionOutpu
   std::uint64_t published_revision_ = 0;
   nlohmann::json published_values_;
   bool is_saved_new_ = false;
+  bool has_failed_ = false;
 
   TaskQueue tasks_;
   bool ends_ = false;

@@ -49,17 +49,17 @@ json text_or_null(const std::string& text) { return text.empty() ? json() : json
 
 SimulatedSession::SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
                                    host::SessionRequests& requests, host::SessionOutput& output)
-    : options_(std::move(options)),
+    : SessionThread(requests, output),
+      options_(std::move(options)),
       folder_(options_.recordings),
-      requests_(requests),
-      output_(output),
       live_(std::move(live)),
       pace_(live_ == nullptr ? default_tick_period_us : live_->scenario().kernel.tick_period_us),
       state_(options_.starts_paused ? State::paused : State::running) {
   if (live_ != nullptr) {
     publish_robot();
   }
-  thread_ = std::thread([this] { run(); });
+  pace_.begin(Clock::now());
+  begin_thread();
 }
 
 void SimulatedSession::publish_robot() {
@@ -71,39 +71,30 @@ void SimulatedSession::publish_robot() {
   publish_changes();
 }
 
-SimulatedSession::~SimulatedSession() {
-  requests_.end();
-  thread_.join();
-}
+SimulatedSession::~SimulatedSession() { end_thread(); }
 
-void SimulatedSession::run() {
-  pace_.begin(Clock::now());
-  while (true) {
-    wait();
-    if (requests_.ends()) {
-      break;
-    }
-    // A simulation goes on without a driver.
-    static_cast<void>(requests_.take_holder());
-    take_stops();
-    take_operations();
-    const Clock::time_point now = Clock::now();
-    if (may_tick() && (steps_left_ > 0 || now >= pace_.due())) {
-      tick();
-    }
-    if (live_ == nullptr) {
-      continue;
-    }
+void SimulatedSession::serve() {
+  // A simulation goes on without a driver.
+  static_cast<void>(requests_.take_holder());
+  stop_at_once();
+  take_operations();
+  const Clock::time_point now = Clock::now();
+  if (may_tick() && (steps_left_ > 0 || now >= pace_.due())) {
+    tick();
+  }
+  if (live_ != nullptr) {
     publish_changes();
     if (is_session_new_ || (may_tick() && now >= publish_at_)) {
       publish_session(now);
     }
   }
-  try {
-    end_recording();
-  } catch (const std::exception& error) {
-    output_.notice(host::NoticeLevel::error, one_line(error.what()));
-  }
+  wait();
+}
+
+void SimulatedSession::fail(const std::string& why) {
+  failure_ = why;
+  stop_steps();
+  set_state(State::failed);
 }
 
 /// Until there is something to do.
@@ -119,10 +110,8 @@ void SimulatedSession::wait() {
   }
 }
 
-void SimulatedSession::take_stops() {
-  std::deque<host::OperationRequest> outdated;
-  const std::vector<host::SessionRequests::Stop> stops = requests_.take_stops(outdated);
-  for (const host::SessionRequests::Stop& stop : stops) {
+void SimulatedSession::stop_at_once() {
+  for (const host::SessionRequests::Stop& stop : take_stops()) {
     stop_steps();
     if (state_ != State::failed) {
       stopped_by_ = stop.by;
@@ -132,19 +121,6 @@ void SimulatedSession::take_stops() {
     output_.stopped(stop.request, joints, joints,
                     std::chrono::duration<double, std::milli>(Clock::now() - stop.since).count());
     output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
-  }
-  for (const host::OperationRequest& operation : outdated) {
-    output_.refuse(operation.request, "STOP came first");
-  }
-}
-
-void SimulatedSession::take_operations() {
-  while (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
-    try {
-      output_.answer(operation->request, carry_out(*operation));
-    } catch (const std::exception& error) {
-      output_.refuse(operation->request, one_line(error.what()));
-    }
   }
 }
 
@@ -312,9 +288,9 @@ json SimulatedSession::continue_recording(const json& arguments) {
     throw InputError("tick", 0, "none", "a tick of the recording");
   }
   auto repeated = std::make_unique<RepeatedRun>(folder_.find(file.value_or("")), *tick);
-  end_recording();
   auto live = std::make_unique<LiveSimulation>(repeated->scenario(), std::vector<std::string>{}, &repeated->losses());
   live->repeat(repeated->inputs());
+  end_recording();
   live_ = std::move(live);
   repeated_ = std::move(repeated);
   options_.command = repeated_->command();
@@ -359,24 +335,15 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
 }
 
 void SimulatedSession::tick() {
-  std::optional<sim::TickSample> sample;
-  try {
-    live_->advance();
-    sample = live_->sample();
-    fill_row(*sample, live_->scenario(), row_);
-  } catch (const std::exception& error) {
-    failure_ = one_line(error.what());
-    stop_steps();
-    set_state(State::failed);
-    output_.notice(host::NoticeLevel::error, failure_);
-    return;
-  }
+  live_->advance();
+  const sim::TickSample sample = live_->sample();
+  fill_row(sample, live_->scenario(), row_);
   if (const std::optional<std::string> failure = live_->take_recording_failure()) {
     output_.notice(host::NoticeLevel::error, "the recording has ended: " + one_line(*failure));
     recording_.clear();
     is_session_new_ = true;
   }
-  if (!sample->moves.empty()) {
+  if (!sample.moves.empty()) {
     publish_session(Clock::now());  // before the row that it explains
   }
   output_.add_row(run_, live_->simulation().tick() - 1, row_);
@@ -385,7 +352,7 @@ void SimulatedSession::tick() {
     is_session_new_ = true;
   }
   if (is_repeating_) {
-    check_repetition(*sample);
+    check_repetition(sample);
   }
 }
 

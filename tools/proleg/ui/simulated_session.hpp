@@ -10,15 +10,13 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "host/server/session_output.hpp"
-#include "host/server/session_requests.hpp"
 #include "tools/proleg/ui/live_simulation.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
 #include "tools/proleg/ui/repeated_run.hpp"
 #include "tools/proleg/ui/run_pace.hpp"
+#include "tools/proleg/ui/session_thread.hpp"
 
 namespace proleg::tools {
 
@@ -30,32 +28,32 @@ struct SimulatedSessionOptions {
   bool starts_paused = false;
 };
 
-class SimulatedSession {
+class SimulatedSession final : private SessionThread {
  public:
   /// Does what `requests` has, and tells it `output`; both must outlive the session. live: null if there is no
   /// simulation until a recording is continued. Throws InputError if there is no folder of recordings.
   SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
                    host::SessionRequests& requests, host::SessionOutput& output);
   /// Ends the thread, and a recording.
-  ~SimulatedSession();
-  SimulatedSession(const SimulatedSession&) = delete;
-  SimulatedSession& operator=(const SimulatedSession&) = delete;
+  ~SimulatedSession() override;
 
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line", "file.diff", "ping"}; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   enum class State : std::uint8_t { paused, running, stopped, failed };
 
   static constexpr std::chrono::milliseconds publish_period{500};
 
-  void run();
+  // SessionThread
+  void serve() override;
+  /// Nothing moves until a restart.
+  void fail(const std::string& why) override;
+  void close() override { end_recording(); }
+  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
+
   void wait();
-  void take_stops();
-  void take_operations();
-  /// Returns the value of the answer.
-  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
+  void stop_at_once();
   void tick();
   /// What all viewers must know of another simulation.
   void publish_robot();
@@ -95,8 +93,6 @@ class SimulatedSession {
 
   SimulatedSessionOptions options_;
   RecordingFolder folder_;
-  host::SessionRequests& requests_;
-  host::SessionOutput& output_;
 
   // Of the thread.
   std::unique_ptr<RepeatedRun> repeated_;  ///< the recording that is continued; it has the losses of the simulation
@@ -113,8 +109,6 @@ class SimulatedSession {
   std::uint64_t published_revision_ = 0;
   bool is_session_new_ = true;
   Clock::time_point publish_at_{};
-
-  std::thread thread_;  ///< the last to begin
 };
 
 }  // namespace proleg::tools

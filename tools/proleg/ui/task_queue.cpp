@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -31,8 +32,15 @@ void TaskQueue::run() {
     eventfd_t count = 0;
     [[maybe_unused]] const int ignored = eventfd_read(event_.number(), &count);
   }
-  for (const std::function<void()>& task : tasks) {
-    task();
+  for (auto task = tasks.begin(); task != tasks.end(); ++task) {
+    try {
+      (*task)();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      tasks_.insert(tasks_.begin(), std::make_move_iterator(task + 1), std::make_move_iterator(tasks.end()));
+      [[maybe_unused]] const int ignored = eventfd_write(event_.number(), 1);
+      throw;
+    }
   }
 }
 

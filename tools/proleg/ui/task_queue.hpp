@@ -18,7 +18,7 @@ class TaskQueue {
   void post(std::function<void()> task);
   /// Can be read when there is something to do.
   [[nodiscard]] int descriptor() const { return event_.number(); }
-  /// Does it, in order.
+  /// Does it, in order. If a task throws, the later ones wait for the next call.
   void run();
 
  private:

@@ -10,7 +10,7 @@ export function BusBands({ app }: { app: Stores<'state'> }) {
   if (session === null) {
     return null;
   }
-  const withoutPower = session.state === 'off' || session.state === 'stopping';
+  const withoutPower = session.state === 'off' || session.state === 'stopping' || session.state === 'failed';
   const unconfirmed = (bus?.modules ?? []).filter((module) => withoutPower && module.stop_confirmed === false);
   const names = unconfirmed.map((module) => moduleName(module, state.robot.value)).join(', ');
   return (

@@ -19,7 +19,7 @@ const allowed: Record<RobotCommand, readonly State[]> = {
   hold: ['running'],
   pose: ['held'],
   record: ['off'],
-  scan: ['off'],
+  scan: ['off', 'failed'],
 };
 
 // The commands that switch the power on.
@@ -32,6 +32,8 @@ function stateObstacle(command: RobotCommand, state: State): string {
       return 'Wait until the robot has started.';
     case 'stopping':
       return 'Wait until the servos have lost their power.';
+    case 'failed':
+      return 'The session has failed: start proleg ui again.';
     case 'off':
       return command === 'pose' ? 'Power on first.' : 'The servos have no power.';
     case 'held':

@@ -198,7 +198,7 @@ export interface GaitComparison {
 
 export interface BusSession extends CommonSession {
   kind: 'bus';
-  state: 'off' | 'starting' | 'held' | 'running' | 'stopping';
+  state: 'off' | 'starting' | 'held' | 'running' | 'stopping' | 'failed';
   gait: GaitComparison | null; // null: no run yet
   started_with: 'power' | 'run' | null;
 }

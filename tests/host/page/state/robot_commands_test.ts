@@ -25,6 +25,7 @@ describe('the commands of a robot on a bus', () => {
     ['held', ['power_off', 'run', 'pose']],
     ['running', ['power_off', 'hold']],
     ['stopping', []],
+    ['failed', ['scan']],
   ];
 
   for (const [state, expected] of table) {

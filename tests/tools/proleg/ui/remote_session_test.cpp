@@ -208,6 +208,20 @@ TEST_F(Remote, StopsARobotThatRefusesToPause) {
   EXPECT_TRUE(viewers.log.has("notice remote control: no"));
 }
 
+TEST_F(Remote, PausesAndAnswersViewersAfterAnErrorOfADevice) {
+  session.holder_changed(true, false);
+  ask(1, "remote.bind", bound_button("hold_to_run"));
+  ASSERT_TRUE(viewers.log.has("answer 1"));
+  move(1, 1);
+  ASSERT_TRUE(robot.log.has("run"));
+  session.answer(robot.last_request(), json::object());
+  hand.post([] { throw std::runtime_error("the pad is broken"); });
+  EXPECT_TRUE(viewers.log.has("notice remote control: the pad is broken"));
+  EXPECT_TRUE(robot.log.has("pause"));
+  ask(2, "remote.unbind", {{"place", 0}});
+  EXPECT_TRUE(viewers.log.has("answer 2 {}"));
+}
+
 TEST_F(Remote, StopsWithoutControl) {
   ask(1, "remote.bind", bound_button("stop"));
   ASSERT_TRUE(viewers.log.has("answer 1"));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <fstream>
 #include <map>
@@ -50,6 +51,9 @@ class Viewers final : public host::SessionOutput {
     row_size_ = layout.row_size();
   }
   void add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row) override {
+    if (tick == fails_at_tick) {
+      throw std::invalid_argument("a row without signals");
+    }
     change([&] {
       is_gapless_ = is_gapless_ && (tick == 0 || (tick == last_tick_ + 1 && run == run_)) && row.size() == row_size_;
       run_ = run;
@@ -96,6 +100,8 @@ class Viewers final : public host::SessionOutput {
   bool is_gapless() {
     return when([] { return true; }, [&] { return is_gapless_; });
   }
+
+  std::atomic<std::uint32_t> fails_at_tick = 0xFFFF'FFFF;
 
  private:
   std::mutex mutex_;
@@ -182,6 +188,18 @@ TEST_F(SimulatedSessionTest, StepsByTicks) {
   EXPECT_TRUE(ask("step", {{"ticks", 7}}).is_done);
   viewers_.session([](const json& session) { return session["tick"] == 7; });
   EXPECT_EQ(viewers_.rows(), 7U);
+}
+
+TEST_F(SimulatedSessionTest, ServesViewersAfterAnErrorUntilARestart) {
+  viewers_.fails_at_tick = 3;
+  open(false);
+  EXPECT_EQ(viewers_.state("failed")["failure"], "a row without signals");
+  EXPECT_EQ(viewers_.notices(), "a row without signals\n");
+  EXPECT_EQ(ask("run").text, "the simulation has failed; restart it");
+  viewers_.fails_at_tick = 0xFFFF'FFFF;
+  EXPECT_TRUE(ask("restart").is_done);
+  EXPECT_TRUE(ask("run").is_done);
+  viewers_.state("running");
 }
 
 TEST_F(SimulatedSessionTest, StopHoldsFromEveryState) {

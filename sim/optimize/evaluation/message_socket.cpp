@@ -1,9 +1,12 @@
 #include "sim/optimize/evaluation/message_socket.hpp"
 
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <string>
 #include <system_error>
 
 namespace proleg::optimize {
@@ -21,7 +24,11 @@ std::pair<int, int> make_message_sockets() {
     throw std::system_error(errno, std::generic_category(), "opening a socket");
   }
   for (const int end : ends) {
-    setsockopt(end, SOL_SOCKET, SO_SNDBUF, &max_message, sizeof max_message);
+    if (setsockopt(end, SOL_SOCKET, SO_SNDBUF, &max_message, sizeof max_message) != 0) {
+      const int error = errno;
+      std::ranges::for_each(ends, close);
+      throw std::system_error(error, std::generic_category(), "giving a socket its room");
+    }
   }
   return {ends[0], ends[1]};
 }
@@ -47,6 +54,10 @@ bool send_message(int socket, const Bytes& message) {
   do {
     sent = ::send(socket, message.data(), message.size(), MSG_NOSIGNAL);
   } while (sent < 0 && errno == EINTR);
+  if (sent < 0 && errno == EMSGSIZE) {
+    throw std::system_error(errno, std::generic_category(),
+                            "sending " + std::to_string(message.size()) + " bytes to a process");
+  }
   return sent == static_cast<ssize_t>(message.size());
 }
 

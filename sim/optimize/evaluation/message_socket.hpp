@@ -13,7 +13,7 @@ namespace proleg::optimize {
 
 /// Waits for the next message; empty if the other end is closed. No message is empty.
 [[nodiscard]] Bytes receive_message(int socket);
-/// False if the other end is closed.
-bool send_message(int socket, const Bytes& message);
+/// False if the other end is closed. Throws std::system_error for a message that is longer than the sockets take.
+[[nodiscard]] bool send_message(int socket, const Bytes& message);
 
 }  // namespace proleg::optimize

@@ -202,7 +202,7 @@ class PooledWorkers final : public Workers {
  public:
   PooledWorkers(int socket, std::size_t share) : socket_(socket), share_(share) {}
   ~PooledWorkers() override {
-    send_message(socket_, farewell);
+    static_cast<void>(send_message(socket_, farewell));  // a pool that has ended needs none
     close(socket_);
   }
   PooledWorkers(const PooledWorkers&) = delete;

@@ -20,25 +20,27 @@ namespace {
 constexpr std::byte is_result{0};
 constexpr std::byte is_failure{1};
 
-Bytes reply_to(std::span<const Task> tasks, const Experiment& experiment, const RunTasks& run) {
+/// False if the parent has ended.
+bool reply_to(std::span<const Task> tasks, int socket, const Experiment& experiment, const RunTasks& run) {
   try {
     Bytes reply = to_bytes(run(experiment, tasks));
     reply.insert(reply.begin(), is_result);
-    return reply;
+    return send_message(socket, reply);
   } catch (const std::exception& error) {
-    const std::string what = error.what();
+    constexpr std::size_t longest = 10'000;  // characters
+    const std::string what = std::string(error.what()).substr(0, longest);
     Bytes reply{is_failure};
     for (const char character : what) {
       reply.push_back(static_cast<std::byte>(character));
     }
-    return reply;
+    return send_message(socket, reply);
   }
 }
 
 [[noreturn]] void work(int socket, const Experiment& experiment, const RunTasks& run) {
   for (Bytes message = receive_message(socket); !message.empty(); message = receive_message(socket)) {
     const std::optional<std::vector<Task>> tasks = tasks_from(message);
-    if (!tasks || !send_message(socket, reply_to(*tasks, experiment, run))) {
+    if (!tasks || !reply_to(*tasks, socket, experiment, run)) {
       break;
     }
   }
@@ -67,7 +69,10 @@ WorkerProcess::WorkerProcess(const Experiment& experiment, const RunTasks& run) 
 
 WorkerProcess::~WorkerProcess() { end(); }
 
-void WorkerProcess::send(std::span<const Task> tasks) const { send_message(socket_, to_bytes(tasks)); }
+void WorkerProcess::send(std::span<const Task> tasks) const {
+  // receive() returns Gone if the process has ended.
+  static_cast<void>(send_message(socket_, to_bytes(tasks)));
+}
 
 WorkerProcess::Reply WorkerProcess::receive() const {
   const Bytes reply = receive_message(socket_);

@@ -32,7 +32,8 @@ class WorkerProcess {
   /// Becomes readable when there is a reply or the process has ended.
   [[nodiscard]] int socket() const { return socket_; }
 
-  /// If the process has ended, the tasks are lost and receive() returns Gone.
+  /// If the process has ended, the tasks are lost and receive() returns Gone. Throws std::system_error for more tasks
+  /// than a message takes.
   void send(std::span<const Task> tasks) const;
 
   /// A task threw an exception.

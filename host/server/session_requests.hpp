@@ -38,8 +38,8 @@ class SessionRequests final : public RobotSession {
 
   // For the session's thread.
 
-  /// All STOPs that wait, at most max_pending_stops. If there are any, the operations that wait as well go into `outdated`: what was asked for
-  /// before a STOP has no effect after it.
+  /// All STOPs that wait, at most max_pending_stops. If there are any, the operations that wait as well go into
+  /// `outdated`: what was asked for before a STOP has no effect after it.
   [[nodiscard]] std::vector<Stop> take_stops(std::deque<OperationRequest>& outdated);
   /// Takes the oldest operation; nothing as long as a STOP waits.
   [[nodiscard]] std::optional<OperationRequest> take_operation();

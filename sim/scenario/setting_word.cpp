@@ -1,14 +1,13 @@
-// Takes a `--set` word apart, finds what it names and changes the scenario.
+#include "sim/scenario/setting_word.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
-#include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
 #include "sim/scenario/thesis_names.hpp"
 #include "sim/scenario/tick_word.hpp"
@@ -16,12 +15,9 @@
 namespace proleg::sim {
 namespace {
 
-/// A `--set` word taken apart: [MODULE.]VALUE_NAME[:JOINT]=NUMBER[@TICK] or ...@SECONDSs.
-struct SettingWord {
+/// A word taken apart.
+struct SettingWord : SettingName {
   std::string word;
-  std::optional<std::string> module;
-  std::string name;
-  std::optional<std::string> joint;
   std::string number;
   std::optional<std::string> tick;
 
@@ -31,29 +27,16 @@ struct SettingWord {
 };
 
 SettingWord take_apart(const std::string& text) {
-  SettingWord word;
-  word.word = text;
+  SettingWord word{{}, text, {}, {}};
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos) {
     word.refuse("no '='", "[MODULE.]NAME[:JOINT]=VALUE[@TICK]");
   }
-  word.name = text.substr(0, equals);
+  static_cast<SettingName&>(word) = parse_setting_name(text.substr(0, equals));
   word.number = text.substr(equals + 1);
   if (const std::size_t at = word.number.find('@'); at != std::string::npos) {
     word.tick = word.number.substr(at + 1);
     word.number.resize(at);
-  }
-  std::size_t colon = word.name.find(':');
-  if (colon != std::string::npos && word.name.substr(colon).starts_with(": ")) {  // the thesis's "amplitude: a"
-    colon = word.name.find(':', colon + 1);
-  }
-  if (colon != std::string::npos) {
-    word.joint = std::string(trimmed(std::string_view(word.name).substr(colon + 1)));
-    word.name.resize(colon);
-  }
-  if (const std::size_t dot = word.name.find('.'); dot != std::string::npos) {
-    word.module = word.name.substr(0, dot);
-    word.name.erase(0, dot + 1);
   }
   return word;
 }
@@ -221,7 +204,24 @@ Change& change_at(std::vector<Change>& changes, std::uint32_t tick) {
 
 }  // namespace
 
-void apply_setting(Scenario& scenario, const std::string& text) {
+SettingName parse_setting_name(const std::string& text) {
+  SettingName parts{{}, text, {}};
+  std::size_t colon = text.find(':');
+  if (colon != std::string::npos && text.substr(colon).starts_with(": ")) {  // the thesis's "amplitude: a"
+    colon = text.find(':', colon + 1);
+  }
+  if (colon != std::string::npos) {
+    parts.joint = std::string(trimmed(std::string_view(text).substr(colon + 1)));
+    parts.name.resize(colon);
+  }
+  if (const std::size_t dot = parts.name.find('.'); dot != std::string::npos) {
+    parts.module = parts.name.substr(0, dot);
+    parts.name.erase(0, dot + 1);
+  }
+  return parts;
+}
+
+ParsedSetting parse_setting(const Scenario& scenario, const std::string& text) {
   const SettingWord word = take_apart(text);
   const SettingTarget target = target_of(scenario, word);
   const Declaration& declaration = scenario.kernel.slots[target.slot].algorithm->declaration();
@@ -233,25 +233,57 @@ void apply_setting(Scenario& scenario, const std::string& text) {
   setting.value = target.internal
                       ? parse_internal_value(declaration.internal_values[target.index], word)
                       : parse_parameter(declaration.parameters[target.index], word.number, shortened(word.word), 0);
+  ParsedSetting parsed;
+  parsed.word = shortened(text);
   for (const unsigned joint : target.joints) {
     setting.joint = static_cast<std::uint8_t>(joint);
-    if (target.in_flight) {
-      std::vector<Setting>& settings = change_at(scenario.changes, target.tick).settings;
-      put_setting(settings, setting);
-      const auto of_joint = std::ranges::count(settings, setting.joint, &Setting::joint);
-      if (of_joint > static_cast<std::ptrdiff_t>(max_staged_values)) {
-        word.refuse("more than " + std::to_string(max_staged_values) + " values for joint " +
-                        in_quotes(scenario.robot.joints[joint].name) + " at tick " + std::to_string(target.tick),
-                    "at most " + std::to_string(max_staged_values) + ", the memory of a module");
-      }
-    } else {
-      set_start_value(scenario, setting);
+    parsed.settings.push_back(setting);
+  }
+  if (word.tick) {
+    parsed.tick = target.tick;
+  }
+  return parsed;
+}
+
+void add_settings(const Scenario& scenario, const ParsedSetting& parsed, std::vector<Setting>& together,
+                  const std::string& when) {
+  std::vector<Setting> all = together;
+  for (const Setting& setting : parsed.settings) {
+    put_setting(all, setting);
+    const auto of_joint = std::ranges::count(all, setting.joint, &Setting::joint);
+    if (of_joint > static_cast<std::ptrdiff_t>(max_staged_values)) {
+      throw InputError(parsed.word, 0,
+                       "more than " + std::to_string(max_staged_values) + " values for joint " +
+                           in_quotes(scenario.robot.joints[setting.joint].name) + when,
+                       "at most " + std::to_string(max_staged_values) + ", the memory of a module");
     }
+  }
+  together = std::move(all);
+}
+
+void apply_setting(Scenario& scenario, const std::string& text) {
+  const ParsedSetting parsed = parse_setting(scenario, text);
+  if (parsed.tick || parsed.settings.front().internal) {
+    const std::uint32_t tick = parsed.tick.value_or(0);
+    const auto change = std::ranges::find(scenario.changes, tick, &Change::tick);
+    std::vector<Setting> settings = change == scenario.changes.end() ? std::vector<Setting>() : change->settings;
+    add_settings(scenario, parsed, settings, " at tick " + std::to_string(tick));
+    change_at(scenario.changes, tick).settings = std::move(settings);
+    return;
+  }
+  for (const Setting& setting : parsed.settings) {
+    set_start_value(scenario, setting);
   }
 }
 
 SettingTarget find_target(const Scenario& scenario, const std::string& word) {
   return target_of(scenario, take_apart(word));
+}
+
+SettingTarget find_named_target(const Scenario& scenario, const std::string& name) {
+  SettingWord word{{}, name, {}, {}};
+  static_cast<SettingName&>(word) = parse_setting_name(name);
+  return target_of(scenario, word);
 }
 
 }  // namespace proleg::sim

@@ -11,6 +11,8 @@
 #include "sim/scenario/file_source.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/setting_word.hpp"
+#include "sim/scenario/source_texts.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -147,7 +149,7 @@ std::string unit_text(Unit unit) { return unit == Unit::ratio ? "" : scale_of(un
 
 /// The setting that a quantity replaces; it must be a parameter.
 sim::SettingTarget target_of(const sim::Scenario& scenario, const std::string& name) {
-  return sim::find_target(scenario, name + "=0");
+  return sim::find_named_target(scenario, name);
 }
 
 /// Whether a setting has no effect beside a swept parameter, or the parameter has no effect beside the setting.

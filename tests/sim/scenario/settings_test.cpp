@@ -8,6 +8,7 @@
 #include "memory_files.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
+#include "sim/scenario/setting_word.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::sim {
@@ -278,6 +279,36 @@ TEST(SetOption, AWordThatIsRefusedChangesNothing) {
   EXPECT_THROW(apply_setting(small, "current_phase=x@3"), InputError);
   EXPECT_EQ(small.settings.size(), scenario().settings.size());
   EXPECT_TRUE(small.changes.empty());
+}
+
+TEST(SetOption, AWordWithOneValueTooManyForAJointChangesNothing) {
+  Scenario small = scenario();
+  small.changes.push_back({5, {}});
+  for (std::size_t value = 0; value < max_staged_values; ++value) {
+    Setting setting;
+    setting.slot = 3;
+    setting.joint = 1;
+    setting.index = static_cast<std::uint8_t>(value);
+    small.changes.front().settings.push_back(setting);
+  }
+  EXPECT_THROW(apply_setting(small, "amplitude=20@5"), InputError);
+  EXPECT_EQ(small.changes.front().settings.size(), max_staged_values) << "joint 0 has room, joint 1 has none";
+}
+
+TEST(ParsedSetting, HasATickOnlyIfTheWordHasOne) {
+  const ParsedSetting at_once = parse_setting(scenario(), "amplitude=22.5");
+  EXPECT_FALSE(at_once.tick);
+  ASSERT_EQ(at_once.settings.size(), 2U);
+  EXPECT_EQ(at_once.settings[1].value, degrees("22.5"));
+  EXPECT_EQ(parse_setting(scenario(), "amplitude:J1=3@0").tick, 0U);
+  EXPECT_FALSE(parse_setting(scenario(), "current_phase=90").tick);
+}
+
+TEST(SettingName, IsFoundWithoutAValue) {
+  const SettingTarget named = find_named_target(scenario(), "1.amplitude:J1");
+  EXPECT_TRUE(named.same_value(find_target(scenario(), "1.amplitude:J1=3")));
+  EXPECT_EQ(named.joints.bits(), 0b10U);
+  EXPECT_THROW((void)find_named_target(scenario(), "amplitud"), InputError);
 }
 
 TEST(SettingTarget, IsWhatTheWordChanges) {

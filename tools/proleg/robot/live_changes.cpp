@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/setting_word.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -32,30 +32,23 @@ LiveChanges::LiveChanges(const sim::Scenario& scenario, std::vector<canopen::Cha
 }
 
 bool LiveChanges::add(const std::string& word, std::uint32_t now, std::uint32_t end) {
-  const bool has_tick = word.find('@') != std::string::npos;
-  sim::Scenario scratch = scenario_;
-  scratch.changes.clear();
-  // Any tick: the master decides later.
-  sim::apply_setting(scratch, has_tick ? word : word + "@1");
-  if (scratch.changes.empty()) {
-    throw InputError(word, 0, "no change", "NAME=VALUE or NAME=VALUE@TICK");
-  }
-  const sim::Change& change = scratch.changes.front();
-  if (has_tick && change.tick <= now) {
-    throw InputError(word, 0, "tick " + std::to_string(change.tick), "a later one than " + std::to_string(now));
-  }
-  if (has_tick && change.tick >= end) {
-    throw InputError(word, 0, "tick " + std::to_string(change.tick),
-                     "a tick of this run, which ends at tick " + std::to_string(end));
-  }
-  if (!has_tick) {
-    add(change.settings);
+  const sim::ParsedSetting parsed = sim::parse_setting(scenario_, word);
+  if (!parsed.tick) {
+    add(parsed.settings);
     return true;
   }
-  if (std::ranges::find(planned_, change.tick, &canopen::Change::tick) != planned_.end()) {
-    throw InputError(word, 0, "tick " + std::to_string(change.tick) + ", which has a change already", "another tick");
+  const std::uint32_t tick = *parsed.tick;
+  if (tick <= now) {
+    throw InputError(word, 0, "tick " + std::to_string(tick), "a later one than " + std::to_string(now));
   }
-  const canopen::Change added{change.tick, values_.emplace_back(values_of(change.settings))};
+  if (tick >= end) {
+    throw InputError(word, 0, "tick " + std::to_string(tick),
+                     "a tick of this run, which ends at tick " + std::to_string(end));
+  }
+  if (std::ranges::find(planned_, tick, &canopen::Change::tick) != planned_.end()) {
+    throw InputError(word, 0, "tick " + std::to_string(tick) + ", which has a change already", "another tick");
+  }
+  const canopen::Change added{tick, values_.emplace_back(values_of(parsed.settings))};
   planned_.insert(std::ranges::upper_bound(planned_, added.tick, {}, &canopen::Change::tick), added);
   return release(now);
 }

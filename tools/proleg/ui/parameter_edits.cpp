@@ -5,28 +5,26 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/setting_word.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::tools {
 
 ParameterEdits::ParameterEdits(const sim::Scenario& file, const sim::Scenario& start)
-    : file_(file), scratch_(file), parameters_(file, start) {
-  scratch_.sources.clear();  // they are not needed, and cost time to copy
-}
+    : file_(file), parameters_(file, start) {}
 
-std::vector<sim::Setting> ParameterEdits::read(const std::vector<std::string>& words) {
+std::vector<sim::Setting> ParameterEdits::read(const std::vector<std::string>& words) const {
   if (words.empty()) {
     throw InputError("set", 0, "no word", "NAME=VALUE");
   }
-  scratch_.changes.clear();
+  std::vector<sim::Setting> settings;
   for (const std::string& word : words) {
     if (word.find('@') != std::string::npos) {
       throw InputError(shortened(word), 0, "a tick", "NAME=VALUE, which takes effect at once");
     }
-    sim::apply_setting(scratch_, word + "@1");
+    sim::add_settings(file_, sim::parse_setting(file_, word), settings);
   }
-  return scratch_.changes.front().settings;
+  return settings;
 }
 
 std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& words,
@@ -96,7 +94,7 @@ std::vector<ParameterPlace> ParameterEdits::places_of(const std::optional<std::v
   }
   std::vector<ParameterPlace> places;
   for (const std::string& name : *names) {
-    const sim::SettingTarget target = sim::find_target(file_, name + "=0");
+    const sim::SettingTarget target = sim::find_named_target(file_, name);
     if (target.internal) {
       throw InputError(shortened(name), 0, "an internal value", "a parameter");
     }

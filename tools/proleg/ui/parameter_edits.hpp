@@ -19,7 +19,7 @@ class ParameterEdits {
   ParameterEdits(const sim::Scenario& file, const sim::Scenario& start);
 
   /// What words mean, as for --set, without a tick. Changes nothing. Throws InputError.
-  [[nodiscard]] std::vector<sim::Setting> read(const std::vector<std::string>& words);
+  [[nodiscard]] std::vector<sim::Setting> read(const std::vector<std::string>& words) const;
 
   // Each of these wants other values and returns them.
 
@@ -49,7 +49,6 @@ class ParameterEdits {
   std::vector<sim::Setting> want(const ChangeHistory::Entry& entry, std::int32_t ChangeHistory::Step::*value);
 
   const sim::Scenario& file_;
-  sim::Scenario scratch_;  ///< to read words with
   ParameterTable parameters_;
   ChangeHistory history_;
 };

@@ -6,22 +6,12 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/setting_word.hpp"
 
 namespace proleg::tools {
 namespace {
 
 using nlohmann::json;
-
-/// The text before a separator, which is removed from `rest` with it.
-std::optional<std::string> take_before(std::string& rest, char separator) {
-  const std::size_t place = rest.find(separator);
-  if (place == std::string::npos) {
-    return std::nullopt;
-  }
-  std::string before = rest.substr(0, place);
-  rest.erase(0, place + 1);
-  return before;
-}
 
 std::string number_name(const json& parameter) {
   return std::to_string(parameter.at("slot").get<unsigned>()) + '.' + parameter.at("name").get<std::string>();
@@ -49,11 +39,7 @@ ParameterWords::Parameter ParameterWords::find(const std::string& name, const st
   const auto refuse = [&](const std::string& found, const std::string& expected) {
     throw InputError(where + shortened(name), 0, found, expected);
   };
-  std::string rest = name;
-  const std::optional<std::string> before_joint = take_before(rest, ':');
-  const std::string joint = before_joint ? rest : std::string();
-  std::string parameter_name = before_joint.value_or(name);
-  const std::optional<std::string> module = take_before(parameter_name, '.');
+  const sim::SettingName parts = sim::parse_setting_name(name);
 
   std::vector<const json*> meanings;
   std::vector<std::string> known;
@@ -62,7 +48,7 @@ ParameterWords::Parameter ParameterWords::find(const std::string& name, const st
       continue;
     }
     known.push_back(number_name(parameter));
-    if (parameter.at("name") == parameter_name && (!module || is_module(parameter.at("slot"), *module))) {
+    if (parameter.at("name") == parts.name && (!parts.module || is_module(parameter.at("slot"), *parts.module))) {
       meanings.push_back(&parameter);
     }
   }
@@ -71,14 +57,14 @@ ParameterWords::Parameter ParameterWords::find(const std::string& name, const st
   }
 
   std::size_t place = 0;
-  if (before_joint) {
+  if (parts.joint) {
     const json joints = robot_.value("joints", json::array());
     const auto named =
-        std::ranges::find_if(joints, [&](const json& known_joint) { return known_joint.at("name") == joint; });
+        std::ranges::find_if(joints, [&](const json& known_joint) { return known_joint.at("name") == *parts.joint; });
     const auto index = static_cast<std::size_t>(named - joints.begin());
     std::erase_if(meanings, [&](const json* parameter) { return !place_of(index, *parameter); });
     if (meanings.empty()) {
-      refuse("joint " + in_quotes(joint), "one that the module drives");
+      refuse("joint " + in_quotes(*parts.joint), "one that the module drives");
     }
     place = place_of(index, *meanings.front()).value_or(0);
   }

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/evaluation/scenario_runs.hpp"

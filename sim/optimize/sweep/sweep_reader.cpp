@@ -12,7 +12,6 @@
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/setting_word.hpp"
-#include "sim/scenario/source_texts.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "shipped.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tools/proleg/simulated_transport.hpp"
+#include "tools/proleg/robot/simulated_transport.hpp"
 
 namespace proleg::tools {
 namespace {

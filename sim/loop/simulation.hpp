@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shared/computer/hash/sha256.hpp"
+#include "sim/loop/gait.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/pulse_player.hpp"

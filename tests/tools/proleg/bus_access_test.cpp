@@ -13,7 +13,7 @@
 namespace proleg::test {
 namespace {
 
-constexpr Microseconds second = 1'000'000;
+constexpr Microseconds one_second = 1'000'000;
 
 /// A bus without other nodes, on virtual time.
 class EmptyBus final : public host::Transport {
@@ -54,7 +54,7 @@ class BusAccessAfterALostConnection : public ::testing::Test {
   unsigned frames_after_reconnection() {
     transport->connect();
     const unsigned before = transport->sent();
-    bus.connection().run_for(10 * second);
+    bus.connection().run_for(10 * one_second);
     return transport->sent() - before;
   }
 

@@ -11,8 +11,7 @@
 #include "host/robot/robot_drive.hpp"
 #include "host/robot/setpoint_check.hpp"
 #include "shared/computer/hash/sha256.hpp"
-#include "sim/loop/kernel_chain.hpp"
-#include "sim/loop/servo_pulses.hpp"
+#include "sim/loop/gait.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
 

@@ -13,6 +13,7 @@ const hints = {
   held: 'The joints hold. Move them below, or run the gait.',
   running: 'The joints follow the gait.',
   stopping: 'The joints go to the safe pose, then the servos lose their power.',
+  failed: 'The session has failed: start proleg ui again.',
 } as const;
 
 export function RobotControls({ app }: { app: Stores<'newestTick' | 'operations' | 'state' | 'tickRate'> }) {

@@ -84,14 +84,14 @@ class TestIncludeCircles(unittest.TestCase):
         self.assertIn("tests/cpu/support/rig -> tests/sim/landscape -> tests/sim/log -> tests/cpu/support/rig\n", self.check()[1])
 
     def test_folders_in_a_circle_although_their_units_are_in_none(self):
-        self.write("tools/proleg/run/export.cpp", '#include "tools/proleg/ui/document.hpp"')
+        self.write("tools/proleg/export.cpp", '#include "tools/proleg/ui/document.hpp"')
         self.write("tools/proleg/ui/document.hpp")
-        self.write("tools/proleg/ui/session.cpp", '#include "tools/proleg/hil/bus.hpp"')
-        self.write("tools/proleg/hil/bus.hpp")
+        self.write("tools/proleg/ui/session.cpp", '#include "tools/proleg/bus.hpp"')
+        self.write("tools/proleg/bus.hpp")
         self.expect(
             "tools/proleg/ -> tools/proleg/ui/ -> tools/proleg/",
-            '    tools/proleg/run/export.cpp:1: #include "tools/proleg/ui/document.hpp"',
-            '    tools/proleg/ui/session.cpp:1: #include "tools/proleg/hil/bus.hpp"',
+            '    tools/proleg/export.cpp:1: #include "tools/proleg/ui/document.hpp"',
+            '    tools/proleg/ui/session.cpp:1: #include "tools/proleg/bus.hpp"',
         )
 
     def test_files_of_the_page_also_with_imports_of_types_and_of_chunks(self):

@@ -50,7 +50,7 @@ class BusAccessAfterALostConnection : public ::testing::Test {
  protected:
   BusAccessAfterALostConnection() { transport->lose_connection(); }
 
-  /// Frames that the bus takes after the connection is back, from whoever is still attached.
+  /// Frames that the bus takes after the connection is back, from the users that are still attached.
   unsigned frames_after_reconnection() {
     transport->connect();
     const unsigned before = transport->sent();

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether this process has a child, running or ended, whose status nobody has taken.
+/// Whether this process has a child, running or ended, whose status was not taken.
 bool has_child() {
   siginfo_t ended{};
   return waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 || errno != ECHILD;

@@ -10,7 +10,7 @@
 namespace proleg::sim::reduced {
 namespace {  // each instruction set has its own: see chain_step.hpp
 
-/// The contacts that a search finds, what they were in the step before, and what becomes of them. A lane has only its
+/// The contacts that a search finds, each with its impulse of the step before. A lane has only its
 /// own contacts, one after the other, so that a step costs what the busiest lane needs and not what all need together.
 template <typename Kind, int width>
 class ContactList {

@@ -34,25 +34,22 @@ set(PROLEG_TEST_DATA ${CMAKE_SOURCE_DIR}/sim/scenarios ${CMAKE_SOURCE_DIR}/tests
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 # proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
-#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [REAL_TIME])
+#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [VIRTUAL_TIME])
 #   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them but sources
 #   COMPILES   it compiles from the folders of DATA, so that their sources count too
 #   COST       roughly, where it is many seconds: long tests start first
 #   TIMEOUT    when it hangs: 15 times its cost, and 1200 at least, unless it is given
-#   REAL_TIME  it mostly waits, for example for a robot that moves as on the table, and must get its turn in time. One such
-#              test runs for each two cores, beside others that keep the cores busy. (Others at a lower priority would be
-#              no help: with groups of processes, Linux then holds frames on a pseudo terminal back for up to a second.)
-#   HALF_CORES what it keeps busy: 2 by default, 1 in real time. ctest starts as many as fit (tools/check). A test that
+#   VIRTUAL_TIME  it and all that it starts run in virtual time (tests/support/virtual_time): no wait takes time of the computer,
+#              and none ends earlier or later because the computer is slow or busy. For dynamically linked programs that wait by
+#              poll, select, epoll, sleep, timer descriptors, semaphores or condition variables.
+#   HALF_CORES what it keeps busy: 2 by default. ctest starts as many as fit (tools/check). A test that
 #              needs more comes late, since smaller ones fit first.
 set(PROLEG_HALF_CORES 2)
 set(PROLEG_SHORTEST_TIMEOUT 1200)
-cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
-math(EXPR PROLEG_REAL_TIME_TESTS_AT_ONCE "(${cores} + 1) / 2")
-set_property(GLOBAL PROPERTY proleg_real_time_tests 0)
 function(proleg_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME;COMPILES" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 test "VIRTUAL_TIME;COMPILES" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
   set(inputs)
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
@@ -62,6 +59,10 @@ function(proleg_add_test name)
   endforeach()
   if(test_COMPILES)
     list(APPEND inputs --compiles)
+  endif()
+  if(test_VIRTUAL_TIME)
+    list(PREPEND test_COMMAND $<TARGET_FILE:run_in_virtual_time> $<TARGET_FILE:virtual_time_clock>)
+    list(APPEND inputs --program $<TARGET_FILE:virtual_time_clock>)
   endif()
   set(name ${PROLEG_TEST_PREFIX}${name})
   add_test(NAME ${name}
@@ -84,16 +85,6 @@ function(proleg_add_test name)
   endif()
   if(NOT test_HALF_CORES)
     set(test_HALF_CORES ${PROLEG_HALF_CORES})
-    if(test_REAL_TIME)
-      set(test_HALF_CORES 1)
-    endif()
-  endif()
-  if(test_REAL_TIME)
-    get_property(number GLOBAL PROPERTY proleg_real_time_tests)
-    math(EXPR lane "${number} % ${PROLEG_REAL_TIME_TESTS_AT_ONCE}")
-    math(EXPR number "${number} + 1")
-    set_property(GLOBAL PROPERTY proleg_real_time_tests ${number})
-    set_tests_properties(${name} PROPERTIES RESOURCE_LOCK real_time_${lane})
   endif()
   set_tests_properties(${name} PROPERTIES PROCESSORS ${test_HALF_CORES})
   foreach(property IN ITEMS COST LABELS ENVIRONMENT)
@@ -110,7 +101,7 @@ endfunction()
 #   ROBOTS   a GoogleTest filter of cases that simulate whole robots. Under the sanitizers they take ten times as long:
 #            there they are slow tests. They run as built for users in every suite, also without PROLEG_UNIT_TESTS.
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -124,9 +115,6 @@ function(proleg_test path)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
       COST ${test_COST} HALF_CORES ${test_HALF_CORES})
-  if(test_REAL_TIME)
-    list(APPEND options REAL_TIME)
-  endif()
   set(command $<TARGET_FILE:${name}_test> --gtest_brief=1)
   if(test_ROBOTS AND PROLEG_SANITIZE)
     proleg_add_test(${path}.robots COMMAND ${command} --gtest_filter=${test_ROBOTS} PROGRAMS ${test_PROGRAMS} DATA ${test_DATA}

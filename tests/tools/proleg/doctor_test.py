@@ -19,7 +19,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, RealTimeTest, proleg, start_drive, wait_for_drives, wait_until
+from robot_on_the_table_test import Bus, LONGEST, proleg, start_drive, wait_for_drives
 
 
 def examine(bus, **options):
@@ -33,33 +33,6 @@ def examine(bus, **options):
 
 def codes(report):
     return [finding["code"] for finding in report["findings"]]
-
-
-def examine_until(bus, *expected):
-    """The first report with these findings. An answer that takes longer than 60 ms, as on a busy computer, is none: the tests of
-    the examination say what is found when, in the time of a simulated bus."""
-    report = {}
-
-    def is_found():
-        nonlocal report
-        status, report = examine(bus)
-        return (status, codes(report)) == (1 if expected else 0, list(expected))
-
-    wait_until(is_found, lambda: f"found {report}, expected {expected}")
-    return report
-
-
-def wait_for_text(bus, status, line):
-    """What it says to a person, once it has this line."""
-    finished = None
-
-    def says_so():
-        nonlocal finished
-        finished = proleg("doctor", "--bus", bus)
-        return finished.returncode == status and line in finished.stdout
-
-    wait_until(says_so, lambda: finished.stdout)
-    return finished.stdout
 
 
 class Adapter:
@@ -93,17 +66,23 @@ class Adapter:
         os.close(self.end)
 
 
-class Doctor(RealTimeTest):
+class Doctor(unittest.TestCase):
     def test_a_healthy_robot_that_waits_and_that_moves_has_no_fault(self):
         with Bus() as bus:
             for address in (bus.pty, bus.tcp):
-                report = examine_until(address)
+                status, report = examine(address)
+                self.assertEqual(codes(report), [], report)
+                self.assertEqual(status, 0)
                 self.assertEqual([node["node"] for node in report["observations"]["nodes"]], [1, 2, 3, 4, 5])
-            text = wait_for_text(bus.pty, 0, "no fault found")
-            self.assertIn("nodes 1, 2, 3, 4, 5", text)
+            text = proleg("doctor", "--bus", bus.pty)
+            self.assertEqual(text.returncode, 0, text.stdout)
+            self.assertIn("no fault found", text.stdout)
+            self.assertIn("nodes 1, 2, 3, 4, 5", text.stdout)
             drive = start_drive(bus.tcp)
             wait_for_drives(bus.pty, "operation enabled")
-            self.assertGreater(examine_until(bus.pty)["observations"]["syncs"], 0)
+            status, report = examine(bus.pty)
+            self.assertEqual(codes(report), [], report)
+            self.assertGreater(report["observations"]["syncs"], 10)
             drive.send_signal(signal.SIGINT)
             result = json.loads(drive.communicate(timeout=LONGEST)[0])
             self.assertEqual(drive.returncode, 0)
@@ -111,19 +90,22 @@ class Doctor(RealTimeTest):
 
     def test_a_module_without_a_node_id_and_a_robot_whose_host_died(self):
         with Bus("--fresh", "3") as bus:
-            examine_until(bus.tcp, "module_without_node_id")
-            text = wait_for_text(bus.tcp, 1, "1. There are modules without a node id")
-            self.assertIn("To do: ", text)
+            status, report = examine(bus.tcp)
+            self.assertEqual((status, codes(report)), (1, ["module_without_node_id"]))
+            text = proleg("doctor", "--bus", bus.tcp)
+            self.assertEqual(text.returncode, 1)
+            self.assertIn("1. There are modules without a node id", text.stdout)
+            self.assertIn("To do: ", text.stdout)
         with Bus() as bus:
             drive = start_drive(bus.tcp)
             wait_for_drives(bus.pty, "operation enabled")
             drive.kill()
             drive.communicate(timeout=LONGEST)
             wait_for_drives(bus.pty, "quick stop")
-            examine_until(bus.pty, "quick_stop")
+            self.assertEqual(codes(examine(bus.pty)[1]), ["quick_stop"])
 
     def test_a_simulated_bus_of_ones_own(self):
-        examine_until(f"sim:{table.SOURCE / table.SCENARIO}")
+        self.assertEqual(codes(examine(f"sim:{table.SOURCE / table.SCENARIO}")[1]), [])
 
     def test_there_is_no_such_bus(self):
         with socket.socket() as nobody:
@@ -153,7 +135,8 @@ class Doctor(RealTimeTest):
                              (lambda command: b"AT+ERROR\r\n\xff\x00garbage\r", "adapter_not_slcan"),
                              (refuse_bit_rate, "adapter_refuses")):
             with Adapter(answer) as adapter:
-                report = examine_until(f"serial:{adapter.path}", code)
+                status, report = examine(f"serial:{adapter.path}")
+                self.assertEqual((status, codes(report)), (1, [code]), report)
                 self.assertIn(adapter.path, report["findings"][0]["what"])
 
     def test_an_adapter_behind_which_nobody_is(self):
@@ -164,7 +147,8 @@ class Doctor(RealTimeTest):
             return b"V1013\r" if command == b"V" else b"NA123\r" if command == b"N" else b"\r"
 
         with Adapter(alone) as adapter:
-            examine_until(f"serial:{adapter.path}", "no_acknowledgement")
+            status, report = examine(f"serial:{adapter.path}")
+            self.assertEqual((status, codes(report)), (1, ["no_acknowledgement"]), report)
 
     def test_another_program_uses_the_adapter(self):
         with Adapter(lambda command: b"\r") as adapter:

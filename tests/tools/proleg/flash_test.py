@@ -6,7 +6,6 @@ Usage: flash_test.py SOURCE_FOLDER PROGRAM_FOLDER
 
 import json
 import os
-import re
 import signal
 import struct
 import subprocess
@@ -19,7 +18,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, Listener, RealTimeTest, proleg, start_drive, wait_until
+from robot_on_the_table_test import Bus, LONGEST, Listener, proleg, start_drive, wait_until
 
 SLOT = 0x08020200
 ALL = [1, 2, 3, 4, 5]
@@ -31,7 +30,7 @@ def program(seed, size=14_000):
     return struct.pack(f"<{len(words)}I", *words)
 
 
-class Flash(RealTimeTest):
+class Flash(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -71,20 +70,10 @@ class Flash(RealTimeTest):
         return process
 
     def flash(self, bus, version, *options, status=0):
-        """The JSON object of a run with this exit status. Where it must succeed, it is repeated if a module did not answer in time:
-        on a busy computer the modules may be late."""
-        out = ""
-
-        def is_over():
-            nonlocal out
-            process = self.start(bus, version, *options)
-            out, self.errors = process.communicate(timeout=LONGEST)
-            is_late = status == 0 and process.returncode == 1 and re.search("answers no|no answer|no joint module", out + self.errors)
-            if not is_late:
-                self.assertEqual(process.returncode, status, self.errors + out)
-            return not is_late
-
-        wait_until(is_over, lambda: self.errors + out)
+        """The JSON object of a run with this exit status."""
+        process = self.start(bus, version, *options)
+        out, self.errors = process.communicate(timeout=LONGEST)
+        self.assertEqual(process.returncode, status, self.errors + out)
         return json.loads(out) if out else {}
 
     def assert_all_run(self, report, version, nodes=ALL):

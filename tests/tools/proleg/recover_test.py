@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, RealTimeTest, proleg, start_drive, wait_for_drives
+from robot_on_the_table_test import Bus, LONGEST, proleg, start_drive, wait_for_drives
 
 SEED = 7
 ADDRESS = 0x08020200
@@ -36,7 +36,7 @@ def codes(report, member):
     return [[fault["code"] for fault in module[member]] for module in report["modules"]]
 
 
-class Recover(RealTimeTest):
+class Recover(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)

@@ -4,7 +4,6 @@
 Usage: robot_on_the_table_test.py SOURCE_FOLDER PROGRAM_FOLDER
 """
 
-import functools
 import json
 import os
 import re
@@ -15,7 +14,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import tty
 import unittest
 from pathlib import Path
@@ -30,8 +28,6 @@ SCENARIO = "sim/scenarios/travelling_wave/uniform.simulation.xml"
 
 class Bus:
     """'proleg bus', until the end of a test."""
-
-    was_late = False  # any of them: this computer was too busy for a robot in real time
 
     def __init__(self, *options, scenario=SCENARIO):
         self.process = subprocess.Popen([PROGRAMS / "proleg-bus", SOURCE / scenario, "--pty", "--tcp", "0", *options],
@@ -61,58 +57,7 @@ class Bus:
 
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
-        _, errors = self.process.communicate(timeout=LONGEST)
-        Bus.was_late = Bus.was_late or "the clock of the robot stood still" in errors
-
-
-class Turns:
-    """Whether this process got its turn in time, and so probably a host beside it."""
-
-    longest_s = 0.1
-
-    def __init__(self):
-        self.were_late = False
-        self.have_ended = False
-        threading.Thread(target=self.watch, daemon=True).start()
-
-    def watch(self):
-        while not self.have_ended:
-            begin = time.monotonic()
-            time.sleep(0.01)
-            if time.monotonic() - begin > self.longest_s:
-                self.were_late = True
-
-
-def repeated_if_late(test):
-    @functools.wraps(test)
-    def run(self):
-        turns = Turns()
-        end = time.monotonic() + 2 * LONGEST
-        while True:
-            Bus.was_late = turns.were_late = False
-            try:
-                test(self)
-                turns.have_ended = True
-                return
-            except Exception as failure:
-                was_late = Bus.was_late or turns.were_late
-                if not was_late or isinstance(failure, unittest.SkipTest) or time.monotonic() > end:
-                    turns.have_ended = True
-                    raise
-                print(f"{test.__name__} is repeated, since this computer was too busy: {failure}", file=sys.stderr)
-            self.setUp()
-    return run
-
-
-class RealTimeTest(unittest.TestCase):
-    """Tests with hosts and a robot in real time. A host that gets no turn for a second loses its robot, as it must. Therefore a
-    test that fails is repeated if 'proleg bus' has said that this computer was too busy, or if the test itself has waited a tenth of
-    a second for its turn; otherwise its first failure counts."""
-
-    def __init_subclass__(cls):
-        for name, test in list(vars(cls).items()):
-            if name.startswith("test_"):
-                setattr(cls, name, repeated_if_late(test))
+        self.process.communicate(timeout=LONGEST)
 
 
 class Listener:
@@ -209,7 +154,7 @@ def simulated(*options):
     return proleg_json("simulate", SOURCE / SCENARIO, "--json", *options)
 
 
-class RobotOnTheTable(RealTimeTest):
+class RobotOnTheTable(unittest.TestCase):
     def test_any_program_reaches_the_modules(self):
         """The examples of docs/protocol.md, by hand over TCP."""
         with Bus() as bus:
@@ -265,7 +210,7 @@ class RobotOnTheTable(RealTimeTest):
                 output, errors = drive.communicate(timeout=LONGEST)
             self.assertEqual(drive.returncode, 1, errors)
             self.assertIn("node 4 (J2) does not follow the gait any more: no power", errors)
-            self.assertLess(json.loads(output)["ticks"], 100 * int(ENDLESS))
+            self.assertLess(json.loads(output)["ticks"], 6000)
             wait_for_drives(bus.tcp, "no power")
 
     def test_drive_computes_what_simulate_computes(self):
@@ -532,29 +477,23 @@ class RobotOnTheTable(RealTimeTest):
             drive = start_drive(bus.tcp)
             wait_for_drives(bus.pty, "operation enabled")
 
-            def seconds_that_are_whole():
-                """On a busy computer a second may have no heartbeat of the host or of a module."""
-                lines = proleg("monitor", "--bus", bus.pty, "--seconds", "5", "--json").stdout.splitlines()
-                return [second for second in map(json.loads, lines[:-1]) if second["host"] and len(second["nodes"]) == 5 and
-                        all(node["drive"] == "operation enabled" for node in second["nodes"])]
-
-            last = wait_until(seconds_that_are_whole, "a second in which the host and every module were heard")[-1]
-            self.assertGreater(last["syncs"], 0)
-            self.assertTrue(0 < last["bus_load"] < 0.2, last["bus_load"])
+            lines = proleg("monitor", "--bus", bus.pty, "--seconds", "5", "--json").stdout.splitlines()
+            seconds = [json.loads(line) for line in lines[:-1]]
+            self.assertGreaterEqual(len(seconds), 4)
+            for second in seconds[1:]:
+                self.assertTrue(second["host"])
+                self.assertEqual(second["syncs"], 100)
+                self.assertTrue(0.01 < second["bus_load"] < 0.2, second["bus_load"])
+            last = seconds[-1]
             self.assertEqual([node["node"] for node in last["nodes"]], [1, 2, 3, 4, 5])
             for node in last["nodes"]:
                 self.assertEqual(node["drive"], "operation enabled")
                 self.assertLessEqual(abs(node["setpoint_deg"]), 40.01, "the amplitude")
                 self.assertGreaterEqual(node["current_ma"], 0)
                 self.assertEqual(node["fault"], "")
-            table = ""
-
-            def names_the_host():
-                nonlocal table
-                table = proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout
-                return "driven by a host" in table and "no host drives" not in table
-
-            wait_until(names_the_host, lambda: f"the monitor says {table}")
+            table = proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout
+            self.assertIn("driven by a host", table)
+            self.assertNotIn("no host drives", table)
             info = proleg("info", "3", "--bus", bus.pty).stdout
             self.assertIn("(PatternGenerator_sinusoidal)", info)
             self.assertIn("amplitude: slot 1 = 40 deg", info)

@@ -1,0 +1,394 @@
+// run_in_virtual_time LIBRARY PROGRAM [ARGUMENT]...: runs a program, and all that it starts, in virtual time. LIBRARY
+// is that of clock.cpp. Time stands still while any thread of these programs runs or can run. When all of them wait, it
+// becomes the end of the wait that ends first.
+//
+// Linux says whether a thread waits (proc(5)): its state, and how often it was given a processor. Two readings of all
+// threads, one after the other, that are the same and find all threads asleep mean that none ran between them, so that
+// none can wake another.
+//
+// Exit status: that of the program; 1 if all threads wait and no wait has an end. Processes that it leaves behind are
+// killed.
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <linux/futex.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tests/support/virtual_time/shared_clock.hpp"
+
+namespace {
+
+using namespace proleg::virtual_time;
+
+/// A descriptor that is closed at the end.
+class File {
+ public:
+  explicit File(const std::string& path) : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~File() {
+    if (descriptor_ >= 0) {
+      close(descriptor_);
+    }
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  /// What the file contains now, up to a kilobyte; empty if it cannot be read.
+  [[nodiscard]] std::string_view read(std::array<char, 1024>& buffer) const {
+    const ssize_t length = descriptor_ < 0 ? -1 : pread(descriptor_, buffer.data(), buffer.size(), 0);
+    return {buffer.data(), length < 0 ? 0 : static_cast<std::size_t>(length)};
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// What /proc says of a thread.
+struct Reading {
+  bool is_asleep = false;  ///< or stopped, or has ended
+  std::string turns;       ///< time on and in front of the processors, number of turns
+  bool operator==(const Reading&) const = default;
+};
+
+class Thread {
+ public:
+  Thread(int process, int thread)
+      : folder_(path(process, thread)), stat_(folder_ + "/stat"), schedstat_(folder_ + "/schedstat") {}
+
+  static std::string path(int process, int thread) {
+    return "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread);
+  }
+  [[nodiscard]] Reading read() const {
+    std::array<char, 1024> buffer{};
+    Reading reading;
+    const std::string_view stat = stat_.read(buffer);
+    const std::size_t name_end = stat.rfind(')');
+    reading.is_asleep = name_end == std::string_view::npos || std::strchr("SZTXI", stat[name_end + 2]) != nullptr;
+    reading.turns = schedstat_.read(buffer);
+    return reading;
+  }
+
+ private:
+  std::string folder_;
+  File stat_;
+  File schedstat_;
+};
+
+std::vector<int> numbers_in(std::string_view text) {
+  std::vector<int> numbers;
+  int number = 0;
+  for (const char c : text) {
+    if (c == ' ') {
+      numbers.push_back(number);
+      number = 0;
+    } else {
+      number = number * 10 + (c - '0');
+    }
+  }
+  return numbers;
+}
+
+/// All threads of the descendants of this process.
+class Family {
+ public:
+  /// Looks for new threads, if the system has started any since the last time.
+  void refresh() {
+    std::array<char, 1024> buffer{};
+    const std::string_view load = load_.read(buffer);
+    const std::string last(load.substr(load.rfind(' ') + 1));
+    if (last == last_started_ && !last.empty()) {
+      return;
+    }
+    last_started_ = last;
+    std::map<int, std::unique_ptr<Thread>> threads;
+    add(getpid(), threads);
+    threads_.swap(threads);
+  }
+  /// Ends all threads.
+  void kill_all() {
+    last_started_.clear();
+    refresh();
+    for (const auto& [number, thread] : threads_) {
+      kill(number, SIGKILL);  // of a thread: its process
+    }
+  }
+  [[nodiscard]] bool has(int thread) const { return threads_.contains(thread); }
+  /// Readings of all threads, by thread; nothing if one of them runs.
+  [[nodiscard]] std::optional<std::map<int, Reading>> read_sleepers() {
+    // The one that ran a moment ago is the one that most probably runs.
+    if (const auto last = threads_.find(runner_); last != threads_.end() && !last->second->read().is_asleep) {
+      return std::nullopt;
+    }
+    std::map<int, Reading> readings;
+    for (const auto& [number, thread] : threads_) {
+      Reading reading = thread->read();
+      if (!reading.is_asleep) {
+        runner_ = number;
+        return std::nullopt;
+      }
+      readings.emplace_hint(readings.end(), number, std::move(reading));
+    }
+    return readings;
+  }
+
+ private:
+  /// Adds the children of a process, which are listed by the thread that started them.
+  void add(int process, std::map<int, std::unique_ptr<Thread>>& threads) {
+    const std::string folder = "/proc/" + std::to_string(process) + "/task";
+    DIR* tasks = opendir(folder.c_str());
+    if (tasks == nullptr) {
+      return;  // it has ended
+    }
+    while (const dirent* entry = readdir(tasks)) {
+      const int thread = std::atoi(entry->d_name);
+      if (thread == 0) {
+        continue;
+      }
+      if (process != getpid()) {
+        const auto known = threads_.find(thread);
+        threads[thread] =
+            known != threads_.end() ? std::move(known->second) : std::make_unique<Thread>(process, thread);
+      }
+      std::array<char, 1024> buffer{};
+      for (const int child : numbers_in(File(folder + "/" + entry->d_name + "/children").read(buffer))) {
+        add(child, threads);
+      }
+    }
+    closedir(tasks);
+  }
+
+  File load_{"/proc/loadavg"};  // its last word is the number of the last thread that was started
+  std::string last_started_;
+  std::map<int, std::unique_ptr<Thread>> threads_;
+  int runner_ = 0;  ///< thread that was seen running last
+};
+
+/// The waits with an end, by their numbers.
+std::map<const Wait*, std::uint32_t> pending(const SharedClock& clock) {
+  std::map<const Wait*, std::uint32_t> waits;
+  for (const Wait& wait : clock.wait) {
+    if (wait.thread.load() != 0 && wait.end_ns.load() != never) {
+      waits.emplace(&wait, wait.number.load());
+    }
+  }
+  return waits;
+}
+
+class Keeper {
+ public:
+  explicit Keeper(SharedClock& clock) : clock_(clock) {}
+
+  /// Lets time pass if all threads wait; otherwise it waits a little itself. False if all threads wait without an end.
+  [[nodiscard]] bool look() {
+    const std::uint32_t waits = clock_.waits.load();
+    const bool is_quiet = all_wait();
+    if (is_quiet && (hand_on_terminal_writes() || pass_time())) {
+      pause_ns_ = shortest_pause_ns;
+      endless_looks_ = 0;
+      return true;
+    }
+    endless_looks_ = is_quiet ? endless_looks_ + 1 : 0;
+    const timespec pause{0, pause_ns_};
+    pause_ns_ = std::min(2 * pause_ns_, longest_pause_ns);
+    syscall(SYS_futex, &clock_.waits, FUTEX_WAIT, waits, &pause, nullptr, 0);
+    return endless_looks_ < most_endless_looks;
+  }
+
+  void kill_all() { family_.kill_all(); }
+
+ private:
+  static constexpr long shortest_pause_ns = 5'000;
+  static constexpr long longest_pause_ns = 200'000;
+  static constexpr int most_endless_looks = 20'000;
+
+  bool all_wait() {
+    family_.refresh();
+    const auto waits = pending(clock_);
+    auto before = family_.read_sleepers();
+    if (!before) {
+      return false;
+    }
+    family_.refresh();
+    auto after = family_.read_sleepers();
+    if (!after || pending(clock_) != waits) {
+      return false;
+    }
+    for (const auto& [wait, number] : waits) {
+      if (wait->looks_again.load()) {  // it may have looked at the time, but waits as before
+        const auto first = before->find(wait->thread.load());
+        const auto second = after->find(wait->thread.load());
+        if (first == before->end() || second == after->end()) {
+          return false;
+        }
+        first->second.turns = second->second.turns;
+      }
+    }
+    return before == after;
+  }
+
+  /// Has all processes with terminals poll them if any was written to since the last time; false if none was.
+  bool hand_on_terminal_writes() {
+    const std::uint32_t writes = clock_.terminal_writes.load();
+    if (writes == handed_on_) {
+      return false;
+    }
+    handed_on_ = writes;
+    std::set<int> processes;
+    for (Terminal& terminal : clock_.terminal) {
+      int process = terminal.process.load();
+      if (process != 0 && !family_.has(process)) {
+        terminal.process.compare_exchange_strong(process, 0);
+      } else if (process != 0) {
+        processes.insert(process);
+      }
+    }
+    ++clock_.polls_wanted;
+    std::uint32_t wanted = clock_.polls_made.load();
+    for (const int process : processes) {
+      wanted += kill(process, wake_signal) == 0 ? 1U : 0U;
+    }
+    // A process that is stopped, or ends, does not poll.
+    constexpr int longest_waits = 1'000;
+    constexpr timespec longest_wait{0, 1'000'000};
+    for (int waits = 0; waits < longest_waits; ++waits) {
+      const std::uint32_t made = clock_.polls_made.load();
+      if (made == wanted) {
+        break;
+      }
+      syscall(SYS_futex, &clock_.polls_made, FUTEX_WAIT, made, &longest_wait, nullptr, 0);
+    }
+    return true;
+  }
+
+  /// False if no wait has an end.
+  bool pass_time() {
+    std::int64_t next = never;
+    for (Wait& wait : clock_.wait) {
+      const int thread = wait.thread.load();
+      if (thread > 0 && wait.end_ns.load() != never) {
+        if (!family_.has(thread)) {
+          wait.thread = 0;  // it was killed
+        } else {
+          next = std::min(next, wait.end_ns.load());
+        }
+      }
+    }
+    if (next == never) {
+      return false;
+    }
+    clock_.now_ns = std::max(next, clock_.now_ns.load());
+    for (Wait& wait : clock_.wait) {
+      if (wait.thread.load() > 0 && wait.end_ns.load() <= next && !wait.looks_again.load()) {
+        syscall(SYS_tgkill, wait.process.load(), wait.thread.load(), wake_signal);
+      }
+    }
+    return true;
+  }
+
+  SharedClock& clock_;
+  Family family_;
+  long pause_ns_ = shortest_pause_ns;
+  int endless_looks_ = 0;        ///< number of looks, one after the other, at which all threads waited without an end
+  std::uint32_t handed_on_ = 0;  ///< number of writes to terminals that have been handed on
+};
+
+std::int64_t read_clock(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+/// The shared memory, in a file without a name.
+SharedClock& make_clock(std::string& path) {
+  const int file = memfd_create("virtual_time", 0);
+  void* memory = file < 0 || ftruncate(file, sizeof(SharedClock)) != 0
+                     ? MAP_FAILED
+                     : mmap(nullptr, sizeof(SharedClock), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (memory == MAP_FAILED) {
+    std::perror("run_in_virtual_time: shared memory");
+    std::exit(1);
+  }
+  path = "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file);
+  auto& clock = *new (memory) SharedClock;
+  clock.now_ns = read_clock(CLOCK_MONOTONIC) / 1'000 * 1'000;
+  clock.calendar_offset_ns = read_clock(CLOCK_REALTIME) / 1'000 * 1'000 - clock.now_ns;
+  return clock;
+}
+
+volatile std::sig_atomic_t is_ended = 0;
+
+void end(int) { is_ended = 1; }
+
+/// Starts the program with the library and the clock. Its process id.
+int start(const char* library, const std::string& clock, char** command) {
+  const int program = fork();
+  if (program == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    setenv(file_variable, clock.c_str(), 1);
+    setenv("LD_PRELOAD", library, 1);
+    execvp(command[0], command);
+    std::perror(command[0]);
+    _exit(127);
+  }
+  return program;
+}
+
+/// Lets time pass until the program ends. Its exit status.
+int keep_time(Keeper& keeper, int program) {
+  while (is_ended == 0) {
+    if (!keeper.look()) {
+      std::fputs("run_in_virtual_time: all threads wait, and no wait has an end\n", stderr);
+      return 1;
+    }
+    int status = 0;
+    const int ended = waitpid(-1, &status, WNOHANG);
+    if (ended == program) {
+      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
+    if (ended < 0 && errno == ECHILD) {
+      break;
+    }
+  }
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fputs("run_in_virtual_time: found no program, expected LIBRARY PROGRAM [ARGUMENT]...\n", stderr);
+    return 2;
+  }
+  std::string path;
+  SharedClock& clock = make_clock(path);
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // processes whose parent ends become children of this one
+  prctl(PR_SET_TIMERSLACK, 1);
+  std::signal(SIGTERM, end);
+  std::signal(SIGINT, end);
+  Keeper keeper(clock);
+  const int program = start(argv[1], path, argv + 2);
+  const int status = keep_time(keeper, program);
+  keeper.kill_all();
+  return status;
+}

@@ -79,20 +79,25 @@ class Thread {
   static std::string path(int process, int thread) {
     return "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread);
   }
-  [[nodiscard]] Reading read() const {
+  [[nodiscard]] Reading read() {
     std::array<char, 1024> buffer{};
     Reading reading;
     const std::string_view stat = stat_.read(buffer);
     const std::size_t name_end = stat.rfind(')');
-    reading.is_asleep = name_end == std::string_view::npos || std::strchr("SZTXI", stat[name_end + 2]) != nullptr;
+    const char state = name_end == std::string_view::npos ? 'X' : stat[name_end + 2];
+    has_ended_ = state == 'Z' || state == 'X';
+    reading.is_asleep = has_ended_ || std::strchr("STI", state) != nullptr;
     reading.turns = schedstat_.read(buffer);
     return reading;
   }
+  /// At the last reading. Such a thread can remain until its parent asks for its status.
+  [[nodiscard]] bool has_ended() const { return has_ended_; }
 
  private:
   std::string folder_;
   File stat_;
   File schedstat_;
+  bool has_ended_ = false;
 };
 
 std::vector<int> numbers_in(std::string_view text) {
@@ -133,7 +138,10 @@ class Family {
       kill(number, SIGKILL);  // of a thread: its process
     }
   }
-  [[nodiscard]] bool has(int thread) const { return threads_.contains(thread); }
+  [[nodiscard]] bool has_living(int thread) const {
+    const auto found = threads_.find(thread);
+    return found != threads_.end() && !found->second->has_ended();
+  }
   /// Readings of all threads, by thread; nothing if one of them runs.
   [[nodiscard]] std::optional<std::map<int, Reading>> read_sleepers() {
     // The one that ran a moment ago is the one that most probably runs.
@@ -257,7 +265,7 @@ class Keeper {
     std::set<int> processes;
     for (Terminal& terminal : clock_.terminal) {
       int process = terminal.process.load();
-      if (process != 0 && !family_.has(process)) {
+      if (process != 0 && !family_.has_living(process)) {
         terminal.process.compare_exchange_strong(process, 0);
       } else if (process != 0) {
         processes.insert(process);
@@ -287,7 +295,7 @@ class Keeper {
     for (Wait& wait : clock_.wait) {
       const int thread = wait.thread.load();
       if (thread > 0 && wait.end_ns.load() != never) {
-        if (!family_.has(thread)) {
+        if (!family_.has_living(thread)) {
           wait.thread = 0;  // it was killed
         } else {
           next = std::min(next, wait.end_ns.load());

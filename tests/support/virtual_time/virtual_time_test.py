@@ -140,6 +140,7 @@ class VirtualTime(unittest.TestCase):
             program = python("time.sleep(1000)")
             time.sleep(0.1)
             program.kill()
+            self.assertEqual(microseconds(time.sleep, 5), 5_000_000, "nobody has asked for its status yet")
             program.wait()
             self.assertEqual(microseconds(time.sleep, 5), 5_000_000)
 

@@ -14,6 +14,7 @@
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/hil/hil_report.hpp"
 
 namespace proleg::tools {
 namespace {

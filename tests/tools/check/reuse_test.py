@@ -3,6 +3,8 @@
 Builds a small program as the tree is built, and changes one input after the other.
 """
 
+import importlib.machinery
+import importlib.util
 import json
 import os
 import shutil
@@ -168,97 +170,156 @@ class TestResults(Folder):
         self.assertEqual(audit().returncode, 1)
 
 
-class TidyResults(Folder):
-    CHECKS = "Checks: '-*,modernize-use-nullptr'\nWarningsAsErrors: '*'\n"
+class TidySources(Folder):
+    CHECKS = "Checks: '-*,modernize-use-nullptr,misc-unused-using-decls,misc-unused-alias-decls'\nWarningsAsErrors: '*'\n"
     CHECKS += "HeaderFilterRegex: '.*'\n"
+    FINDING = "inline int* pointer() { return 0; }"
 
     def setUp(self):
         super().setUp()
         self.write(".clang-tidy", self.CHECKS)
+        self.write(".gitignore", "/build/\n/bin/\n")
         self.write("shared/pointer.hpp", "inline int* pointer() { return nullptr; }\n")
         self.write("shared/one.cpp", '#include "pointer.hpp"\nint one() { return *pointer(); }\n')
         self.write("shared/two.cpp", '#include "pointer.hpp"\nint two() { return *pointer(); }\n')
         self.configure()
+        self.git("init", "--quiet", "--initial-branch", "main")
+        self.commit()
 
     def configure(self, flag="-DLIMIT=1"):
         commands = [{"directory": str(self.folder), "file": str(self.folder / "shared" / f"{name}.cpp"),
-                     "command": f"/usr/bin/c++ {flag} -std=c++20 -o CMakeFiles/room.dir/{name}.o -c {name}.cpp"}
+                     "command": f"/usr/bin/c++ {flag} -std=c++20 -o CMakeFiles/room.dir/{name}.o -c shared/{name}.cpp"}
                     for name in ("one", "two")]
         self.write("build/compile_commands.json", json.dumps(commands))
 
-    def tidy(self, tool="clang-tidy"):
-        finished = subprocess.run([TOOLS / "tidy", "--build", "build", "--source", ".", "--clang-tidy", tool],
+    def git(self, *arguments):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=b", *arguments], cwd=self.folder, check=True)
+
+    def commit(self):
+        self.git("add", ".")
+        self.git("commit", "--quiet", "--allow-empty", "--message", "commit")
+
+    def tidy(self, *options, **environment):
+        finished = subprocess.run([TOOLS / "tidy", "--build", "build", *options],
                                   cwd=self.folder, capture_output=True, text=True, check=False,
-                                  env={**os.environ, "PROLEG_REUSE_RESULTS": "1"})
+                                  env={**os.environ, "PROLEG_REUSE_RESULTS": "1", **environment})
         return finished.returncode, finished.stdout
 
-    def expect_read(self, reused):
-        self.assertEqual(self.tidy(), (0, f"2 files, {reused} of them unchanged since they were clean\n"))
+    def expect_clean(self, *options, read, reused):
+        self.assertEqual(self.tidy(*options),
+                         (0, f"{read} of 2 sources, {reused} of them unchanged since they were clean\n"))
+
+    def expect_finding(self, place, *options):
+        status, out = self.tidy(*options)
+        self.assertEqual(status, 1)
+        self.assertIn(place, out)
+        return out
+
+
+class TidyResults(TidySources):
+    def expect_all_read(self, reused):
+        self.expect_clean("--all", read=2, reused=reused)
 
     def test_the_same_inputs_are_not_read_twice(self):
-        self.expect_read(reused=0)
-        self.expect_read(reused=2)
+        self.expect_all_read(reused=0)
+        self.expect_all_read(reused=2)
 
-    def test_a_changed_header_is_read(self):
-        self.expect_read(reused=0)
-        self.write("shared/pointer.hpp", "inline int* pointer() { return 0; }\n")
-        status, out = self.tidy()
-        self.assertEqual(status, 1)
-        self.assertIn("pointer.hpp:1", out)
-        self.assertEqual(self.tidy()[0], 1)  # and again: what was found is not kept as clean
+    def test_what_was_found_is_not_kept_as_clean(self):
+        self.expect_all_read(reused=0)
+        self.write("shared/pointer.hpp", self.FINDING)
+        self.expect_finding("pointer.hpp:1", "--all")
+        self.expect_finding("pointer.hpp:1", "--all")
 
     def test_a_comment_that_silences_clang_tidy_counts(self):
-        self.write("shared/pointer.hpp", "inline int* pointer() { return 0; }  // NOLINT\n")
-        self.expect_read(reused=0)
-        self.write("shared/pointer.hpp", "inline int* pointer() { return 0; }  // why\n")
-        self.assertEqual(self.tidy()[0], 1)
+        self.write("shared/pointer.hpp", f"{self.FINDING}  // NOLINT\n")
+        self.expect_all_read(reused=0)
+        self.write("shared/pointer.hpp", f"{self.FINDING}  // why\n")
+        self.expect_finding("pointer.hpp:1", "--all")
 
     def test_a_changed_flag_is_read(self):
-        self.expect_read(reused=0)
+        self.expect_all_read(reused=0)
         self.configure("-DLIMIT=2")
-        self.expect_read(reused=0)
+        self.expect_all_read(reused=0)
 
     def test_changed_checks_are_read(self):
-        self.expect_read(reused=0)
+        self.expect_all_read(reused=0)
         self.write(".clang-tidy", self.CHECKS.replace("use-nullptr", "use-override"))
-        self.expect_read(reused=0)
+        self.expect_all_read(reused=0)
 
     def test_another_version_of_clang_tidy_reads(self):
-        self.expect_read(reused=0)
-        tool = self.write("other-tidy", f'#!/bin/sh\nexec {shutil.which("clang-tidy")} "$@"\n')
-        tool.chmod(0o755)
-        self.assertIn("0 of them", self.tidy(str(tool))[1])
+        self.expect_all_read(reused=0)
+        real = shutil.which("clang-tidy-14") or shutil.which("clang-tidy")
+        self.write("bin/clang-tidy-14", f'#!/bin/sh\nexec {real} "$@"\n').chmod(0o755)
+        out = self.tidy("--all", PATH=f"{self.folder}/bin:{os.environ['PATH']}")[1]
+        self.assertIn("0 of them", out)
 
-    def test_sources_that_do_not_compile_as_one_are_read_apart(self):
-        for name in ("one", "two"):
-            self.write(f"shared/{name}.cpp", f"namespace {{ struct Same {{ int {name}; }}; }}\n"
-                                             f"int* {name}(Same) {{ return 0; }}\n")
-        status, out = self.tidy()
-        self.assertEqual(status, 1)
-        for name in ("one", "two"):
-            self.assertIn(f"{name}.cpp:2", out)
-
-    def test_the_sources_of_a_text_that_cmake_has_made_are_read(self):
-        text = self.write("build/CMakeFiles/room.dir/Unity/unity_0_cxx.cxx", "/* generated by CMake */\n\n" + "".join(
-            f'#include "{self.folder / "shared" / name}.cpp"\n\n' for name in ("one", "two")))
-        commands = [{"directory": str(self.folder), "file": str(text),
-                     "command": f"/usr/bin/c++ -std=c++20 -o CMakeFiles/room.dir/{text.name}.o -c {text}"}]
-        self.write("build/compile_commands.json", json.dumps(commands))
-        self.expect_read(reused=0)
-        self.write("shared/two.cpp", "int* two() { return 0; }\n")
-        status, out = self.tidy()
-        self.assertEqual(status, 1)
-        self.assertIn("two.cpp:1", out)
-
-    def test_a_using_declaration_is_unused_although_the_next_file_uses_the_name(self):
-        self.write("shared/pointer.hpp", "#pragma once\nnamespace room { struct Thing {}; }\n")
+    def test_a_name_is_unused_although_the_next_file_uses_it(self):
+        self.write("shared/pointer.hpp", "#pragma once\nnamespace room { namespace inner { struct Thing {}; } }\n")
         include = '#include "pointer.hpp"\n'
-        self.write("shared/one.cpp", f"{include}using room::Thing;  // a Thing\n")
-        self.write("shared/two.cpp", f"{include}using room::Thing;\nint two(Thing*);\n")
-        status, out = self.tidy()
-        self.assertEqual(status, 1)
-        self.assertIn("one.cpp:2", out)
+        for declaration, name in (("using room::inner::Thing;", "Thing"), ("namespace short_name = room::inner;", "short_name::Thing")):
+            self.write("shared/one.cpp", f"{include}{declaration}  // a Thing\n")
+            self.write("shared/two.cpp", f"{include}{declaration}\nint two({name}*);\n")
+            out = self.expect_finding("one.cpp:2", "--all")
+            self.assertNotIn("two.cpp", out)
+
+
+class TidyChanges(TidySources):
+    """Without --all what changed is read. A finding in two.cpp that is older than the last 20 commits is not."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("shared/two.cpp", "int* two() { return 0; }\n")
+        self.commit()
+        for _ in range(20):
+            self.commit()
+
+    def test_a_file_that_did_not_change_is_left_to_the_slow_suite(self):
+        self.expect_clean(read=0, reused=0)
+        self.expect_finding("two.cpp:1", "--all")
+
+    def test_an_edit_is_read(self):
+        self.write("shared/one.cpp", "int* one() { return 0; }\n")
+        out = self.expect_finding("one.cpp:1")
         self.assertNotIn("two.cpp", out)
+
+    def test_sources_that_include_an_edited_header_are_read(self):
+        self.write("shared/pointer.hpp", self.FINDING)
+        out = self.expect_finding("pointer.hpp:1")
+        self.assertIn("1 of 2 sources", out)
+
+    def test_a_new_file_is_read(self):
+        self.write("shared/new.hpp", "inline int* new_one() { return 0; }\n")
+        self.write("shared/one.cpp", '#include "new.hpp"\n')
+        self.commit()
+        self.expect_finding("new.hpp:1")
+
+    def test_commits_that_the_upstream_branch_lacks_are_read(self):
+        self.git("branch", "upstream")
+        self.git("branch", "--quiet", "--set-upstream-to", "upstream")
+        self.write("shared/one.cpp", "int* one() { return 0; }\n")
+        for _ in range(30):
+            self.commit()
+        self.expect_finding("one.cpp:1")
+
+    def test_a_fresh_clone_reads_its_last_commits(self):
+        self.write("shared/one.cpp", "int* one() { return 0; }\n")
+        self.commit()
+        self.git("branch", "upstream")
+        self.git("branch", "--quiet", "--set-upstream-to", "upstream")
+        self.expect_finding("one.cpp:1")
+
+    def test_a_source_that_does_not_compile_is_read(self):
+        (self.folder / "shared/pointer.hpp").unlink()
+        self.expect_finding("'pointer.hpp' file not found")
+
+    def test_the_files_that_changed_are_read_first(self):
+        loader = importlib.machinery.SourceFileLoader("tidy", str(TOOLS / "tidy"))
+        tidy = importlib.util.module_from_spec(importlib.util.spec_from_loader("tidy", loader))
+        loader.exec_module(tidy)
+        reads = {"a.cpp": {"a.cpp", "x.hpp", "y.hpp"}, "b.cpp": {"b.cpp", "y.hpp"}, "x.cpp": {"x.cpp", "x.hpp"},
+                 "z.cpp": {"z.cpp"}}
+        self.assertEqual(tidy.sources_to_read(reads, ["x.hpp", "b.cpp", "y.hpp"]), ["b.cpp", "x.cpp", "a.cpp"])
+        self.assertEqual(tidy.sources_to_read(reads, ["z.cpp", "y.hpp"]), ["z.cpp", "a.cpp", "b.cpp"])
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ class ContentHash:
 
 
 def machine():
-    """What a program can find out about the processor, in one text."""
+    """What a program can find out about the processor, as one string."""
     model = ""
     try:
         with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as info:

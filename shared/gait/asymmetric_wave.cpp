@@ -5,7 +5,6 @@
 #include "shared/gait/smooth_wave.hpp"
 
 namespace proleg {
-namespace asymmetric_wave {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, phase_shift, offset, rising_fraction, rate, noise };
@@ -65,8 +64,7 @@ class AsymmetricWave final : public SmoothWave {
 constexpr AsymmetricWave instance;
 
 }  // namespace
-}  // namespace asymmetric_wave
 
-const ActuationModule& pattern_generator_asymmetric_wave() { return asymmetric_wave::instance; }
+const ActuationModule& pattern_generator_asymmetric_wave() { return instance; }
 
 }  // namespace proleg

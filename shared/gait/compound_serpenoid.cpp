@@ -6,7 +6,6 @@
 #include "shared/gait/smooth_wave.hpp"
 
 namespace proleg {
-namespace compound_serpenoid {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -114,8 +113,7 @@ class CompoundSerpenoid final : public SmoothWave {
 constexpr CompoundSerpenoid instance;
 
 }  // namespace
-}  // namespace compound_serpenoid
 
-const ActuationModule& pattern_generator_compound_serpenoid() { return compound_serpenoid::instance; }
+const ActuationModule& pattern_generator_compound_serpenoid() { return instance; }
 
 }  // namespace proleg

@@ -6,7 +6,6 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
-namespace coupled_oscillator {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, offset, coupling, rate, noise };
@@ -111,8 +110,7 @@ class CoupledOscillator final : public PatternGenerator {
 constexpr CoupledOscillator instance;
 
 }  // namespace
-}  // namespace coupled_oscillator
 
-const ActuationModule& pattern_generator_coupled_oscillator() { return coupled_oscillator::instance; }
+const ActuationModule& pattern_generator_coupled_oscillator() { return instance; }
 
 }  // namespace proleg

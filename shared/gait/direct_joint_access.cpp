@@ -1,7 +1,6 @@
 #include "shared/gait/algorithms.hpp"
 
 namespace proleg {
-namespace direct_access {
 namespace {
 
 enum Parameters : std::uint8_t { angle };
@@ -26,8 +25,7 @@ class DirectJointAccess final : public ActuationModule {
 constexpr DirectJointAccess instance;
 
 }  // namespace
-}  // namespace direct_access
 
-const ActuationModule& direct_joint_access() { return direct_access::instance; }
+const ActuationModule& direct_joint_access() { return instance; }
 
 }  // namespace proleg

@@ -5,7 +5,6 @@
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
-namespace global_adaptive_touch {
 namespace {
 
 /// Number of constants of the thesis: first four that raise, then four that lower. In each four, the touch of the links
@@ -163,8 +162,7 @@ class GlobalAdaptiveTouch final : public SensingModule {
 constexpr GlobalAdaptiveTouch instance;
 
 }  // namespace
-}  // namespace global_adaptive_touch
 
-const ActuationModule& sensing_module_global_adaptive_touch() { return global_adaptive_touch::instance; }
+const ActuationModule& sensing_module_global_adaptive_touch() { return instance; }
 
 }  // namespace proleg

@@ -9,7 +9,6 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
-namespace half_centre {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, offset, fatigue, coupling, rate, noise };
@@ -183,8 +182,7 @@ class HalfCentre final : public PatternGenerator {
 constexpr HalfCentre instance;
 
 }  // namespace
-}  // namespace half_centre
 
-const ActuationModule& pattern_generator_half_centre() { return half_centre::instance; }
+const ActuationModule& pattern_generator_half_centre() { return instance; }
 
 }  // namespace proleg

@@ -7,7 +7,6 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
-namespace head_stimulus {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, phase_shift, offset, retreat, sensor };
@@ -110,8 +109,7 @@ class HeadStimulus final : public PatternGenerator {
 constexpr HeadStimulus instance;
 
 }  // namespace
-}  // namespace head_stimulus
 
-const ActuationModule& pattern_generator_head_stimulus() { return head_stimulus::instance; }
+const ActuationModule& pattern_generator_head_stimulus() { return instance; }
 
 }  // namespace proleg

@@ -10,7 +10,6 @@
 #include "shared/gait/phase_warp.hpp"
 
 namespace proleg {
-namespace hopf {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -204,8 +203,7 @@ class Hopf final : public PatternGenerator {
 constexpr Hopf instance;
 
 }  // namespace
-}  // namespace hopf
 
-const ActuationModule& pattern_generator_hopf() { return hopf::instance; }
+const ActuationModule& pattern_generator_hopf() { return instance; }
 
 }  // namespace proleg

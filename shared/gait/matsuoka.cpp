@@ -10,7 +10,6 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
-namespace matsuoka {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -174,8 +173,7 @@ class Matsuoka final : public PatternGenerator {
 constexpr Matsuoka instance;
 
 }  // namespace
-}  // namespace matsuoka
 
-const ActuationModule& pattern_generator_matsuoka() { return matsuoka::instance; }
+const ActuationModule& pattern_generator_matsuoka() { return instance; }
 
 }  // namespace proleg

@@ -9,7 +9,6 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
-namespace mtran {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -210,8 +209,7 @@ class Mtran final : public PatternGenerator {
 constexpr Mtran instance;
 
 }  // namespace
-}  // namespace mtran
 
-const ActuationModule& pattern_generator_mtran() { return mtran::instance; }
+const ActuationModule& pattern_generator_mtran() { return instance; }
 
 }  // namespace proleg

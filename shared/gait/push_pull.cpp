@@ -12,7 +12,6 @@
 #include "shared/gait/rulkov_neuron.hpp"
 
 namespace proleg {
-namespace push_pull {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -347,8 +346,7 @@ class PushPull final : public PatternGenerator {
 constexpr PushPull instance;
 
 }  // namespace
-}  // namespace push_pull
 
-const ActuationModule& pattern_generator_push_pull() { return push_pull::instance; }
+const ActuationModule& pattern_generator_push_pull() { return instance; }
 
 }  // namespace proleg

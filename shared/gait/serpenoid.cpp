@@ -7,7 +7,6 @@
 #include "shared/gait/smooth_wave.hpp"
 
 namespace proleg {
-namespace serpenoid {
 namespace {
 
 enum Parameters : std::uint8_t { winding_angle, frequency, waves, turn, rate, noise };
@@ -69,8 +68,7 @@ class Serpenoid final : public SmoothWave {
 constexpr Serpenoid instance;
 
 }  // namespace
-}  // namespace serpenoid
 
-const ActuationModule& pattern_generator_serpenoid() { return serpenoid::instance; }
+const ActuationModule& pattern_generator_serpenoid() { return instance; }
 
 }  // namespace proleg

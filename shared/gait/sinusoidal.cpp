@@ -5,7 +5,6 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
-namespace sinusoidal {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, phase_shift, offset };
@@ -68,8 +67,7 @@ class Sinusoidal final : public PatternGenerator {
 constexpr Sinusoidal instance;
 
 }  // namespace
-}  // namespace sinusoidal
 
-const ActuationModule& pattern_generator_sinusoidal() { return sinusoidal::instance; }
+const ActuationModule& pattern_generator_sinusoidal() { return instance; }
 
 }  // namespace proleg

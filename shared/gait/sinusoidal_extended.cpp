@@ -4,7 +4,6 @@
 #include "shared/gait/smooth_wave.hpp"
 
 namespace proleg {
-namespace sinusoidal_extended {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, phase_shift, offset, harmonic, rate, noise };
@@ -58,8 +57,7 @@ class SinusoidalExtended final : public SmoothWave {
 constexpr SinusoidalExtended instance;
 
 }  // namespace
-}  // namespace sinusoidal_extended
 
-const ActuationModule& pattern_generator_sinusoidal_extended() { return sinusoidal_extended::instance; }
+const ActuationModule& pattern_generator_sinusoidal_extended() { return instance; }
 
 }  // namespace proleg

@@ -5,7 +5,6 @@
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
-namespace uneven_ground_reflex {
 namespace {
 
 enum Parameters : std::uint8_t { raise, reach, confirm, hold, rise_rate, fall_rate };
@@ -93,8 +92,7 @@ class UnevenGroundReflex final : public SensingModule {
 constexpr UnevenGroundReflex instance;
 
 }  // namespace
-}  // namespace uneven_ground_reflex
 
-const ActuationModule& sensing_module_uneven_ground_reflex() { return uneven_ground_reflex::instance; }
+const ActuationModule& sensing_module_uneven_ground_reflex() { return instance; }
 
 }  // namespace proleg

@@ -27,6 +27,16 @@ add_compile_options(
   # Binaries contain no paths of the build computer.
   -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
 
+# tools/check makes unity builds: CMake compiles each target as one source, so templates that several of its sources use are
+# compiled once. The build after a change of one file takes longer.
+if(CMAKE_UNITY_BUILD)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 0)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC takes sources that are included for headers, whose anonymous namespaces would be in several sources.
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  endif()
+endif()
+
 # The core and the firmware are built without exceptions and run-time type information.
 set(PROLEG_CORE_OPTIONS -fno-exceptions -fno-rtti)
 

@@ -32,7 +32,7 @@ function(proleg_link_closure target out)
   set(${out} ${closure} PARENT_SCOPE)
 endfunction()
 
-# Options without the folders of this computer, as one text.
+# Options without the folders of this computer, as one string.
 function(proleg_options_text options out)
   list(FILTER options EXCLUDE REGEX "^-ffile-prefix-map=|NOTFOUND$")
   list(JOIN options " " text)

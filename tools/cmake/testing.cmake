@@ -21,8 +21,8 @@ if(PROLEG_SANITIZE)
 endif()
 
 # Headers that nearly every test includes, compiled once.
-if(PROLEG_PRELUDES)
-  proleg_prelude(tests_prelude
+if(PROLEG_PRECOMPILED_HEADERS)
+  proleg_precompiled_headers(test_headers
     LIBRARIES GTest::gtest Eigen3::Eigen
     OPTIONS ${PROLEG_TEST_OPTIONS}
     HEADERS <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional>
@@ -110,8 +110,8 @@ function(proleg_test path)
   endforeach()
   target_link_libraries(${name}_test PRIVATE ${test_LIBRARIES} proleg::tests_support GTest::gtest GTest::gtest_main)
   target_compile_options(${name}_test PRIVATE ${PROLEG_TEST_OPTIONS})
-  if(TARGET tests_prelude)
-    target_precompile_headers(${name}_test REUSE_FROM tests_prelude)
+  if(TARGET test_headers)
+    target_precompile_headers(${name}_test REUSE_FROM test_headers)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
       COST ${test_COST} HALF_CORES ${test_HALF_CORES})

@@ -48,16 +48,6 @@ ${text}" @ONLY)
   set(${out} ${file} PARENT_SCOPE)
 endfunction()
 
-# proleg_compile_as_one_text(<target>)
-#   Compiles the core in a third of the time. The user's own sources stay apart: what they name is theirs.
-function(proleg_compile_as_one_text target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC takes the sources of such a text for headers: their anonymous namespaces would be in several texts.
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
-  endif()
-endfunction()
-
 # proleg_user_algorithm_sources(<out>)
 #   For shared/gait: sets `out` to the sources to compile for the algorithms in the folders PROLEG_USER_ALGORITHMS, in
 #   place of gait/registry.cpp. Sets it to gait/registry.cpp if there are none.
@@ -94,7 +84,6 @@ ${declarations}}  // namespace proleg::user
 " @ONLY)
   list(JOIN names ", " listed)
   message(STATUS "Algorithms of users: ${listed}")
-  set_source_files_properties(${files} ${registry} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set(${out} ${registry} ${files} PARENT_SCOPE)
 endfunction()
 
@@ -121,7 +110,6 @@ macro(proleg_algorithm_project)
   # The library exports its interface and nothing else: the core in it is not that of the program.
   set_target_properties(proleg_core PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_compile_options(proleg_core PRIVATE -fno-exceptions -fno-rtti)
-  proleg_compile_as_one_text(proleg_core)
 
   proleg_write_user_source(algorithm ${CMAKE_CURRENT_BINARY_DIR} "
 #include \"shared/computer/algorithm_library/algorithm_interface.hpp\"

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import unittest
 
-NOT_LINKED = pathlib.Path("tools/cmake/prelude.cpp")  # an empty source, with which the precompiled headers are made
+NOT_LINKED = pathlib.Path("tools/cmake/precompiled_headers.cpp")  # an empty source, with which the precompiled headers are made
 
 
 class ResultKey(unittest.TestCase):

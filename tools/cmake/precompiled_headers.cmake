@@ -1,16 +1,16 @@
 # Headers that nearly every source includes, compiled once: most of the compile time goes into Eigen and the standard
 # library. A source that lacks an include may compile with them, so tools/check --slow builds the preset host without.
-option(PROLEG_PRELUDES "Precompile the headers that most sources include" ON)
+option(PROLEG_PRECOMPILED_HEADERS "Precompile the headers that most sources include" ON)
 
-# proleg_prelude(<name> HEADERS <header>... LIBRARIES target... [OPTIONS compiler options...])
+# proleg_precompiled_headers(<name> HEADERS <header>... LIBRARIES target... [OPTIONS compiler options...])
 #   A target whose precompiled headers others use again: target_precompile_headers(<target> REUSE_FROM <name>). Its options
 #   are those with which the headers are compiled; those of the other targets must be the same.
-function(proleg_prelude name)
-  cmake_parse_arguments(PARSE_ARGV 1 prelude "" "" "HEADERS;LIBRARIES;OPTIONS")
-  add_library(${name} OBJECT ${CMAKE_SOURCE_DIR}/tools/cmake/prelude.cpp)
-  target_link_libraries(${name} PRIVATE ${prelude_LIBRARIES})
-  target_compile_options(${name} PRIVATE ${prelude_OPTIONS})
-  target_precompile_headers(${name} PRIVATE ${prelude_HEADERS})
+function(proleg_precompiled_headers name)
+  cmake_parse_arguments(PARSE_ARGV 1 precompiled "" "" "HEADERS;LIBRARIES;OPTIONS")
+  add_library(${name} OBJECT ${CMAKE_SOURCE_DIR}/tools/cmake/precompiled_headers.cpp)
+  target_link_libraries(${name} PRIVATE ${precompiled_LIBRARIES})
+  target_compile_options(${name} PRIVATE ${precompiled_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${precompiled_HEADERS})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     target_compile_options(${name} PRIVATE -Xclang -fno-pch-timestamp)  # otherwise ccache finds no match
   endif()
@@ -25,23 +25,23 @@ else()
   set(PROLEG_LIGHT_OPTION -O1)
 endif()
 
-if(PROLEG_PRELUDES AND NOT CMAKE_CROSSCOMPILING)
+if(PROLEG_PRECOMPILED_HEADERS AND NOT CMAKE_CROSSCOMPILING)
   find_package(Eigen3 REQUIRED NO_MODULE)
   set(program_headers <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory>
       <optional> <span> <sstream> <string> <string_view> <vector>)
-  proleg_prelude(programs_prelude LIBRARIES Eigen3::Eigen HEADERS ${program_headers})
-  proleg_prelude(light_prelude LIBRARIES Eigen3::Eigen HEADERS ${program_headers} OPTIONS ${PROLEG_LIGHT_OPTION})
+  proleg_precompiled_headers(program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers})
+  proleg_precompiled_headers(light_program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers} OPTIONS ${PROLEG_LIGHT_OPTION})
 endif()
 
 # proleg_compile_program_code(<target> <path>)
 #   How the sources of a target that is no test are compiled: path is that of their folder below the top level.
 function(proleg_compile_program_code target path)
-  set(prelude programs_prelude)
+  set(headers program_headers)
   if(path MATCHES "${PROLEG_LIGHT_ROOMS}")
-    set(prelude light_prelude)
+    set(headers light_program_headers)
     target_compile_options(${target} PRIVATE ${PROLEG_LIGHT_OPTION})
   endif()
-  if(TARGET ${prelude})
-    target_precompile_headers(${target} REUSE_FROM ${prelude})
+  if(TARGET ${headers})
+    target_precompile_headers(${target} REUSE_FROM ${headers})
   endif()
 endfunction()

@@ -28,12 +28,12 @@ std::uint16_t Drive::statusword() const {
   return servo_.has_ramped_in() ? static_cast<std::uint16_t>(word | canopen::target_reached) : word;
 }
 
-std::int32_t Drive::wanted_setpoint(const Kernel& kernel, const canopen::AngleLimits& limits) const {
+std::int32_t Drive::wanted_setpoint(const Kernel& kernel, const AngleLimits& limits) const {
   return mode_ == canopen::mode_gait ? kernel.setpoint(kernel.first_joint())
                                      : std::clamp(target_, limits.lower, limits.upper);
 }
 
-void Drive::start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits) {
+void Drive::start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const AngleLimits& limits) {
   const unsigned joint = kernel.first_joint();
   const bool gait = mode_ == canopen::mode_gait;
   // Between two ticks of the gait the servo follows the kernel's line, which the simulator computes, too.

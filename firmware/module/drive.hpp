@@ -5,8 +5,8 @@
 #include "firmware/module/servo_driver.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
-#include "shared/canopen/robot_configuration.hpp"
 #include "shared/kernel/kernel.hpp"
+#include "shared/kernel/setting.hpp"
 
 namespace proleg::firmware {
 
@@ -51,13 +51,13 @@ class Drive {
   [[nodiscard]] bool is_ramping_in() const { return servo_.is_ramping_in(); }
 
   /// Must be called at SYNC `tick`, after the kernel has computed it.
-  void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits);
+  void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const AngleLimits& limits);
 
   /// The inputs of a joint that ramps in.
   struct StartPose {
     std::optional<std::int32_t> measured;  ///< measured angle; nothing if there is no new reading
     const Kernel& kernel;                  ///< the kernel, in state 0
-    canopen::AngleLimits limits;
+    AngleLimits limits;
   };
   /// Must be called after each event: switches the servo's pulses on or off. operational: NMT state; synchronised:
   /// whether the set-point is that of the robot's tick; start: null unless the robot waits for SYNC 0. A servo that
@@ -68,7 +68,7 @@ class Drive {
   [[nodiscard]] Microseconds next_deadline() const { return servo_.next_deadline(); }
 
  private:
-  [[nodiscard]] std::int32_t wanted_setpoint(const Kernel& kernel, const canopen::AngleLimits& limits) const;
+  [[nodiscard]] std::int32_t wanted_setpoint(const Kernel& kernel, const AngleLimits& limits) const;
   void ramp_in(Microseconds now, const StartPose& start);
 
   ServoDriver servo_;

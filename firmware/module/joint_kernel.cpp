@@ -33,7 +33,7 @@ bool JointKernel::has_algorithm(unsigned slot, std::uint8_t id) const {
   return found != nullptr && found->declaration().id == id;
 }
 
-Status JointKernel::set_limits(const canopen::AngleLimits& limits) {
+Status JointKernel::set_limits(const AngleLimits& limits) {
   const Status status = kernel_.set_limits(joint(), limits.lower, limits.upper);
   if (status == Status::ok) {
     limits_ = limits;

@@ -3,6 +3,7 @@
 #include "firmware/module/module_settings.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
+#include "shared/kernel/setting.hpp"
 
 namespace proleg::firmware {
 
@@ -16,7 +17,7 @@ class JointKernel {
   /// Whether the joint is configured.
   [[nodiscard]] bool active() const { return active_; }
   /// Limits of the joint, +-90 degrees until they are set.
-  [[nodiscard]] const canopen::AngleLimits& limits() const { return limits_; }
+  [[nodiscard]] const AngleLimits& limits() const { return limits_; }
 
   /// The last status with which the kernel has rejected a request (object 0x2001:8); ok: it has rejected none.
   [[nodiscard]] Status last_refusal() const { return last_refusal_; }
@@ -35,7 +36,7 @@ class JointKernel {
   [[nodiscard]] bool has_algorithm(unsigned slot, std::uint8_t id) const;
 
   // Settings before the start: state 0 follows from limits and parameters at restart().
-  Status set_limits(const canopen::AngleLimits& limits);
+  Status set_limits(const AngleLimits& limits);
   Status set_parameter(unsigned slot, unsigned number, std::int32_t value);
   /// Returns to state 0. Staged values stay.
   void restart();
@@ -67,7 +68,7 @@ class JointKernel {
   [[nodiscard]] const SetpointChecksum& checksum() const { return checksum_; }
 
  private:
-  static constexpr canopen::AngleLimits full_range{-quarter_turn, quarter_turn};
+  static constexpr AngleLimits full_range{-quarter_turn, quarter_turn};
 
   void set_flags(unsigned flags);
   void compute_tick();
@@ -83,7 +84,7 @@ class JointKernel {
   std::uint16_t robot_id_ = 0;
   std::uint32_t crc_ = 0;
   std::uint32_t monitoring_period_ = 0;
-  canopen::AngleLimits limits_ = full_range;
+  AngleLimits limits_ = full_range;
 };
 
 }  // namespace proleg::firmware

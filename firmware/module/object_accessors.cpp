@@ -6,6 +6,7 @@
 #include "firmware/module/board_control.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"
+#include "shared/kernel/setting.hpp"
 
 namespace proleg::firmware {
 namespace {
@@ -139,7 +140,7 @@ constexpr ObjectAccessor state_frame_identifier() {
 }
 
 /// Sets both limits. limit: the one of them that was written.
-[[gnu::noinline]] AbortCode set_limits(Parts& parts, const canopen::AngleLimits& limits, std::int32_t limit) {
+[[gnu::noinline]] AbortCode set_limits(Parts& parts, const AngleLimits& limits, std::int32_t limit) {
   if (limit < parts.board.in_force.lowest_angle) {
     return AbortCode::below_minimum;
   }

@@ -19,8 +19,8 @@ canopen::SdoTransferOptions transfer_options() {
 
 const ActuationModule& sine() { return *find_algorithm("PatternGenerator_sinusoidal"); }
 
-canopen::StartValue start_value(std::string_view parameter, std::int32_t value) {
-  return {0, 0, static_cast<std::uint8_t>(find_parameter(sine().declaration(), parameter)), value};
+Setting start_value(std::string_view parameter, std::int32_t value) {
+  return {0, 0, static_cast<std::uint8_t>(find_parameter(sine().declaration(), parameter)), false, value};
 }
 
 }  // namespace

@@ -10,13 +10,14 @@
 #include "host/robot/bus_user.hpp"
 #include "host/robot/sdo_queue.hpp"
 #include "shared/computer/master/master.hpp"
+#include "shared/kernel/setting.hpp"
 
 namespace proleg::host {
 
 struct JointMotionOptions {
   std::int32_t amplitude = raw(Unit::degree, 5);  ///< 90 degrees = 2^30; above 0
   /// Angles that are safe for every joint. The limits of the joint itself (0x607D) apply as well.
-  canopen::AngleLimits limits{-(1 << 30), 1 << 30};
+  AngleLimits limits;
 };
 
 class JointMotion final : public BusUser {
@@ -74,8 +75,8 @@ class JointMotion final : public BusUser {
 
   std::int32_t center_ = 0;
   std::int32_t amplitude_ = 0;
-  std::array<canopen::AngleLimits, 1> limits_{};
-  std::array<canopen::StartValue, 3> start_values_{};
+  std::array<AngleLimits, 1> limits_{};
+  std::array<Setting, 3> start_values_{};
   canopen::RobotSetup setup_;
   std::optional<canopen::Master> master_;
 };

@@ -19,7 +19,7 @@ std::uint8_t channels_of(const KernelConfiguration& kernel, unsigned joint) {
 }  // namespace
 
 RobotDrive::RobotDrive(CanPort& port, const canopen::RobotSetup& setup, const canopen::MasterOptions& options,
-                       std::span<canopen::Change> changes)
+                       std::span<Change> changes)
     : master_(port, setup, options, changes),
       nodes_(setup.nodes.begin(), setup.nodes.end()),
       ring_(kept),

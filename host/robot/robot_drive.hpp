@@ -35,7 +35,7 @@ class RobotDrive final : public BusUser {
 
   /// port: must outlive this, like all objects that the master refers to.
   RobotDrive(CanPort& port, const canopen::RobotSetup& setup, const canopen::MasterOptions& options,
-             std::span<canopen::Change> changes);
+             std::span<Change> changes);
   RobotDrive(const RobotDrive&) = delete;
   RobotDrive& operator=(const RobotDrive&) = delete;
 

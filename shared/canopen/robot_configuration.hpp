@@ -7,11 +7,6 @@
 
 namespace proleg::canopen {
 
-struct AngleLimits {
-  std::int32_t lower;  ///< 90 degrees = 2^30
-  std::int32_t upper;
-};
-
 /// The configuration that all modules of a robot must agree on.
 struct RobotConfiguration {
   KernelConfiguration kernel;

@@ -6,33 +6,18 @@ namespace proleg::sim {
 
 static_assert(max_module_node == canopen::max_node_id);
 
-MasterInput::MasterInput(const Scenario& scenario) {
+MasterInput::MasterInput(const Scenario& scenario) : changes(scenario.changes) {
   require_sensors(scenario, sensors_of_modules, "a module");
   for (const ModulePlace& module : scenario.modules) {
     nodes_.push_back(module.node);
     serials.push_back(module.serial.value_or(0));
   }
-  for (const JointLimits& limits : scenario.joint_limits) {
-    limits_.push_back({limits.lower, limits.upper});
-  }
-  for (const Setting& setting : scenario.settings) {
-    start_values_.push_back({setting.slot, setting.joint, setting.index, setting.value});
-  }
-  for (const Change& change : scenario.changes) {
-    std::vector<canopen::ChangedValue>& values = changed_values_.emplace_back();
-    for (const Setting& setting : change.settings) {
-      values.push_back({setting.slot, setting.joint, setting.index, setting.internal, setting.value});
-    }
-  }
-  for (std::size_t i = 0; i < scenario.changes.size(); ++i) {
-    changes.push_back({scenario.changes[i].tick, changed_values_[i]});
-  }
   setup.kernel = scenario.kernel;
   setup.servo_period_us = scenario.robot.servo.period_us;
   setup.command_speed = scenario.robot.servo.command_speed;
   setup.nodes = nodes_;
-  setup.limits = limits_;
-  setup.start_values = start_values_;
+  setup.limits = scenario.joint_limits;
+  setup.start_values = scenario.settings;
 }
 
 std::string name_of_node(const Scenario& scenario, std::uint8_t node) {

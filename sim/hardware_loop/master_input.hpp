@@ -12,20 +12,18 @@ namespace proleg::sim {
 /// A scenario in the form that the master takes. Simulated and real robots are set up with it.
 class MasterInput {
  public:
-  /// scenario: must outlive this. Throws InputError if an algorithm reads a sensor that modules do not have.
+  /// scenario: must outlive this, and its settings and limits must not change. Throws InputError if an algorithm reads
+  /// a sensor that modules do not have.
   explicit MasterInput(const Scenario& scenario);
   MasterInput(const MasterInput&) = delete;
   MasterInput& operator=(const MasterInput&) = delete;
 
   canopen::RobotSetup setup;
-  std::vector<canopen::Change> changes;
+  std::vector<Change> changes;         ///< those of the scenario; the master decides and drops them
   std::vector<std::uint32_t> serials;  ///< from the robot's file; 0: any
 
  private:
   std::vector<std::uint8_t> nodes_;
-  std::vector<canopen::AngleLimits> limits_;
-  std::vector<canopen::StartValue> start_values_;
-  std::vector<std::vector<canopen::ChangedValue>> changed_values_;
 };
 
 /// "node 3 (J3)", or "node 3" if the scenario does not have it: for messages.

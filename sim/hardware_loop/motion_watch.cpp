@@ -75,7 +75,7 @@ MotionWatch::MotionWatch(const Scenario& scenario)
   max_change_ = counts_per_s * scenario.robot.servo.period_us * 1e-6;
   counts_per_ns_ = counts_per_s * 1e-9 * guard_and_crystal;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const JointLimits& limits = scenario.joint_limits[i];
+    const AngleLimits& limits = scenario.joint_limits[i];
     joints_[i].node = scenario.modules[i].node;
     joints_[i].lower = servo_command(limits.lower);
     joints_[i].upper = servo_command(limits.upper);

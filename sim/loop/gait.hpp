@@ -20,7 +20,7 @@ class Gait {
   /// What determines a gait, beside its contacts and readings.
   struct Parts {
     const KernelConfiguration& kernel;
-    std::span<const JointLimits> limits;
+    std::span<const AngleLimits> limits;
     std::span<const Setting> settings;
     /// By ascending tick. They must outlive the gait; those of coming ticks may still be replaced, and others added.
     const std::vector<Change>& changes;

@@ -15,7 +15,7 @@ void expect_ok(Status status) {
 
 }  // namespace
 
-KernelChain::KernelChain(const KernelConfiguration& configuration, std::span<const JointLimits> limits,
+KernelChain::KernelChain(const KernelConfiguration& configuration, std::span<const AngleLimits> limits,
                          std::span<const Setting> settings)
     : configuration_(configuration),
       limits_(limits.begin(), limits.end()),
@@ -39,7 +39,7 @@ void KernelChain::configure(unsigned joint) {
   expect_ok(kernel.set_limits(joint, limits_[joint].lower, limits_[joint].upper));
   for (const Setting& setting : settings_) {
     if (setting.joint == joint) {
-      expect_ok(kernel.set_parameter(setting.slot, joint, setting.index, setting.value));
+      expect_ok(kernel.set_parameter(setting.slot, joint, setting.number, setting.value));
     }
   }
   kernel.reset();
@@ -51,9 +51,8 @@ std::uint16_t KernelChain::next_transaction() {
 }
 
 void KernelChain::keep(const Setting& setting) {
-  const auto same = std::ranges::find_if(settings_, [&setting](const Setting& kept) {
-    return kept.slot == setting.slot && kept.joint == setting.joint && kept.index == setting.index;
-  });
+  const auto same =
+      std::ranges::find_if(settings_, [&setting](const Setting& kept) { return kept.has_same_place(setting); });
   if (same == settings_.end()) {
     settings_.push_back(setting);
   } else {
@@ -75,8 +74,8 @@ void KernelChain::apply(const Change& change) {
     if (running_.contains(setting.joint)) {
       Kernel& kernel = *kernels_[setting.joint];
       expect_ok(setting.internal
-                    ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.index, setting.value)
-                    : kernel.stage(transaction, setting.slot, setting.joint, setting.index, setting.value));
+                    ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.number, setting.value)
+                    : kernel.stage(transaction, setting.slot, setting.joint, setting.number, setting.value));
     }
   }
   for (unsigned joint = 0; joint < joint_count(); ++joint) {

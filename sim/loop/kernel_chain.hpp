@@ -25,7 +25,7 @@ class KernelRefusal : public std::logic_error {
 class KernelChain {
  public:
   /// Copies the arguments. Throws KernelRefusal, as apply() does.
-  KernelChain(const KernelConfiguration& configuration, std::span<const JointLimits> limits,
+  KernelChain(const KernelConfiguration& configuration, std::span<const AngleLimits> limits,
               std::span<const Setting> settings);
 
   /// Withholds state frames from now on. losses: must outlive the chain; null for none.
@@ -78,7 +78,7 @@ class KernelChain {
   void exchange_frames();
 
   KernelConfiguration configuration_;
-  std::vector<JointLimits> limits_;
+  std::vector<AngleLimits> limits_;
   std::vector<Setting> settings_;
   std::uint16_t transaction_ = 0;  ///< of the last change; 0 before the first one
   std::vector<std::unique_ptr<KernelOf<1>>> kernels_;

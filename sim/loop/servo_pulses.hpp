@@ -17,7 +17,7 @@ namespace proleg::sim {
 class ServoPulses {
  public:
   /// limits: of each joint. command_speed: the greatest, in degrees a second.
-  ServoPulses(const ServoSchedule& schedule, std::span<const JointLimits> limits, std::uint32_t command_speed)
+  ServoPulses(const ServoSchedule& schedule, std::span<const AngleLimits> limits, std::uint32_t command_speed)
       : schedule_(schedule), limiters_(limits.size()) {
     const std::int32_t step = MotionLimiter::step_of(command_speed, schedule.servo_period_us());
     for (std::size_t joint = 0; joint < limits.size(); ++joint) {

@@ -57,7 +57,7 @@ class RecordedGait {
   KernelConfiguration configuration;
   std::uint32_t servo_period_us = 0;
   std::uint32_t command_speed = 0;
-  std::vector<JointLimits> limits;
+  std::vector<AngleLimits> limits;
   std::vector<Setting> settings;
   std::vector<Change> changes;  ///< by ascending tick
 

@@ -74,7 +74,7 @@ class Recorder::Storage {
       if (setting.internal) {
         write_distortion(change.tick, setting);
       } else {
-        parameters_.add(change.tick, "commit", setting.slot, setting.joint, setting.index, setting.value);
+        parameters_.add(change.tick, "commit", setting.slot, setting.joint, setting.number, setting.value);
       }
     }
   }
@@ -193,7 +193,7 @@ class Recorder::Storage {
 
   void write_distortion(std::uint32_t tick, const Setting& setting) {
     const InternalValue& value =
-        scenario_.kernel.slots[setting.slot].algorithm->declaration().internal_values[setting.index];
+        scenario_.kernel.slots[setting.slot].algorithm->declaration().internal_values[setting.number];
     insert_distortion_.run(tick, std::uint32_t{setting.slot}, std::uint32_t{setting.joint}, value.name,
                            std::string_view(scale_of(value.unit).symbol), setting.value,
                            format_decimal(setting.value, value.unit).view());

@@ -69,7 +69,7 @@ void write_run(Database& database, const Scenario& scenario, const std::string& 
 void write_robot(Database& database, const Scenario& scenario) {
   Statement joint(database, "INSERT INTO joint VALUES(?1, ?2, ?3, ?4, ?5)");
   for (std::size_t i = 0; i < scenario.robot.joints.size(); ++i) {
-    const JointLimits& limits = scenario.joint_limits[i];
+    const AngleLimits& limits = scenario.joint_limits[i];
     joint.run(i, std::string_view(scenario.robot.joints[i].name), scenario.robot.joints[i].file_index, limits.lower,
               limits.upper);
   }

@@ -100,61 +100,60 @@ class Editor {
     const XmlDocument document(file_.actuation_file, std::string(text_), nullptr);
     const std::vector<XmlElement> modules = actuation_modules(document);
     for (unsigned slot = 0; slot < modules.size(); ++slot) {
-      edit_module(slot, read_parameter_entries(modules[slot], file_, slot));
+      edit_module(slot, read_parameter_tags(modules[slot], file_, slot));
     }
     return std::move(edits_);
   }
 
  private:
-  [[nodiscard]] std::int32_t wanted(unsigned slot, unsigned joint, unsigned index) const {
-    return start_value(wanted_, slot, joint, index);
+  [[nodiscard]] std::int32_t wanted(unsigned slot, unsigned joint, unsigned number) const {
+    return start_value(wanted_, slot, joint, number);
   }
-  [[nodiscard]] bool want_one_value(unsigned slot, JointMask joints, unsigned index) const {
+  [[nodiscard]] bool want_one_value(unsigned slot, JointMask joints, unsigned number) const {
     for (const unsigned joint : joints) {
-      if (wanted(slot, joint, index) != wanted(slot, joints.front(), index)) {
+      if (wanted(slot, joint, number) != wanted(slot, joints.front(), number)) {
         return false;
       }
     }
     return true;
   }
-  [[nodiscard]] const Parameter& parameter(unsigned slot, unsigned index) const {
-    return file_.kernel.slots[slot].algorithm->declaration().parameters[index];
+  [[nodiscard]] const Parameter& parameter(unsigned slot, unsigned number) const {
+    return file_.kernel.slots[slot].algorithm->declaration().parameters[number];
   }
-  [[nodiscard]] std::string value_text(unsigned slot, unsigned joint, unsigned index) const {
-    return std::string(format_decimal(wanted(slot, joint, index), parameter(slot, index).unit).view());
+  [[nodiscard]] std::string value_text(unsigned slot, unsigned joint, unsigned number) const {
+    return std::string(format_decimal(wanted(slot, joint, number), parameter(slot, number).unit).view());
   }
 
-  void edit_module(unsigned slot, const std::vector<ParameterEntry>& entries) {
+  void edit_module(unsigned slot, const std::vector<ParameterTag>& tags) {
     const std::size_t count = file_.kernel.slots[slot].algorithm->declaration().parameters.size();
-    for (unsigned index = 0; index < count; ++index) {
-      edit_parameter(slot, index, entries);
+    for (unsigned number = 0; number < count; ++number) {
+      edit_parameter(slot, number, tags);
     }
   }
 
-  void edit_parameter(unsigned slot, unsigned index, const std::vector<ParameterEntry>& entries) {
+  void edit_parameter(unsigned slot, unsigned number, const std::vector<ParameterTag>& tags) {
     const ModuleText& module = modules_[slot];
     JointMask common = file_.kernel.slots[slot].group;  // joints without a tag of their own
     const TextElement* for_all = nullptr;
     const TextElement* anchor = module.parameters.empty() ? &module.joint_configuration : &module.parameters.back();
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const ParameterEntry& entry = entries[i];
-      if (entry.index != index) {
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      const Setting& setting = tags[i].setting;
+      if (setting.number != number) {
         continue;
       }
       anchor = &module.parameters[i];
-      if (entry.joint < 0) {
+      if (tags[i].is_for_all) {
         for_all = anchor;
         continue;
       }
-      const auto joint = static_cast<unsigned>(entry.joint);
-      common.erase(joint);
-      if (entry.value != wanted(slot, joint, index)) {
-        replace_value(slot, index, JointMask::of(joint), *anchor);
+      common.erase(setting.joint);
+      if (setting.value != wanted(slot, setting.joint, number)) {
+        replace_value(slot, number, JointMask::of(setting.joint), *anchor);
       }
     }
     JointMask changed;
     for (const unsigned joint : common) {
-      if (wanted(slot, joint, index) != start_value(file_, slot, joint, index)) {
+      if (wanted(slot, joint, number) != start_value(file_, slot, joint, number)) {
         changed.insert(joint);
       }
     }
@@ -162,38 +161,38 @@ class Editor {
       return;
     }
     const bool has_own_tags = common != file_.kernel.slots[slot].group;
-    const bool is_uniform = changed == common && want_one_value(slot, common, index);
+    const bool is_uniform = changed == common && want_one_value(slot, common, number);
     if (is_uniform && for_all != nullptr) {
-      replace_value(slot, index, common, *for_all);
+      replace_value(slot, number, common, *for_all);
     } else if (is_uniform && !has_own_tags) {
-      add_tag(slot, index, common, {}, *anchor);
+      add_tag(slot, number, common, {}, *anchor);
     } else {
       for (const unsigned joint : changed) {
-        add_tag(slot, index, JointMask::of(joint), " joint=\"" + escaped(file_.robot.joints[joint].name) + '"',
+        add_tag(slot, number, JointMask::of(joint), " joint=\"" + escaped(file_.robot.joints[joint].name) + '"',
                 *anchor);
       }
     }
   }
 
-  void replace_value(unsigned slot, unsigned index, JointMask joints, const TextElement& element) {
+  void replace_value(unsigned slot, unsigned number, JointMask joints, const TextElement& element) {
     const TextRange value = find_attribute(text_, element.tag, "value").value();  // the reader has read it
     ActuationEdit edit{
-        slot, index, joints, value.begin, value.end - value.begin, value_text(slot, joints.front(), index)};
+        slot, number, joints, value.begin, value.end - value.begin, value_text(slot, joints.front(), number)};
     show_changed_line(edit);
     edits_.push_back(std::move(edit));
   }
 
   /// Below the line of the element, or behind the element if its line has more than that.
-  void add_tag(unsigned slot, unsigned index, JointMask joints, const std::string& joint_attribute,
+  void add_tag(unsigned slot, unsigned number, JointMask joints, const std::string& joint_attribute,
                const TextElement& behind) {
-    const std::string unit = shown_unit(parameter(slot, index).unit);
-    const std::string tag = "<parameter name=\"" + std::string(parameter(slot, index).name) + "\" value=\"" +
-                            value_text(slot, joints.front(), index) + '"' +
+    const std::string unit = shown_unit(parameter(slot, number).unit);
+    const std::string tag = "<parameter name=\"" + std::string(parameter(slot, number).name) + "\" value=\"" +
+                            value_text(slot, joints.front(), number) + '"' +
                             (unit.empty() ? "" : " unit=\"" + unit + '"') + joint_attribute + "/>";
     const TextRange first_line = line_around(text_, behind.tag.begin);
     const TextRange last_line = line_around(text_, behind.end);
     const std::string_view indentation = text_.substr(first_line.begin, behind.tag.begin - first_line.begin);
-    ActuationEdit edit{slot, index, joints, behind.end, 0, tag};
+    ActuationEdit edit{slot, number, joints, behind.end, 0, tag};
     if (trimmed(indentation).empty() && is_blank_or_comment(text_.substr(behind.end, last_line.end - behind.end))) {
       edit.position = last_line.end;
       edit.text = (text_.substr(last_line.end).starts_with('\r') ? "\r\n" : "\n") + std::string(indentation) + tag;

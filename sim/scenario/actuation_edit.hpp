@@ -17,8 +17,8 @@ namespace proleg::sim {
 /// A change of one line. Edits do not depend on each other.
 struct ActuationEdit {
   unsigned slot = 0;
-  unsigned index = 0;  ///< of the parameter in the declaration
-  JointMask joints;    ///< whose start value it changes; kernel order
+  unsigned number = 0;  ///< of the parameter in the declaration
+  JointMask joints;     ///< whose start value it changes; kernel order
   std::size_t position = 0;
   std::size_t removed = 0;  ///< bytes from the position on that the text replaces
   std::string text = {};

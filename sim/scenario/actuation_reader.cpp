@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
@@ -49,58 +47,58 @@ JointMask read_group(const XmlElement& module, const RobotModel& robot) {
   return group;
 }
 
-ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenario, const Slot& slot) {
+ParameterTag read_parameter_tag(const XmlElement& element, const Scenario& scenario, unsigned slot_number) {
   element.allow({"name", "value", "unit", "joint"}, {});
+  const Slot& slot = scenario.kernel.slots[slot_number];
   const Declaration& declaration = slot.algorithm->declaration();
-  ParameterEntry entry;
   const std::string name = element.required_attribute("name");
-  int index = find_named_parameter(declaration, name);
-  if (index < 0 && !element.attribute("joint")) {
-    entry.joint = find_joint_of_thesis(scenario.robot, name);
-    index = entry.joint < 0 ? -1 : find_parameter(declaration, "angle");
+  int joint = -1;
+  int number = find_named_parameter(declaration, name);
+  if (number < 0 && !element.attribute("joint")) {
+    joint = find_joint_of_thesis(scenario.robot, name);
+    number = joint < 0 ? -1 : find_parameter(declaration, "angle");
   }
-  if (index < 0) {
+  if (number < 0) {
     const std::vector<std::string> known = parameter_names(declaration);
     element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
                    "one of " + listed(known) + hint_on_thesis_name(scenario.robot, known, name));
   }
-  entry.index = static_cast<unsigned>(index);
-  const Parameter& parameter = declaration.parameters[entry.index];
+  const Parameter& parameter = declaration.parameters[static_cast<unsigned>(number)];
   const std::string symbol = scale_of(parameter.unit).symbol;
   if (const auto unit = element.attribute("unit"); unit && *unit != symbol) {
     element.refuse("unit " + in_quotes(*unit) + " for parameter " + in_quotes(name), "unit '" + symbol + "'");
   }
-  entry.value =
+  const std::int32_t value =
       parse_parameter(parameter, element.required_attribute("value"), element.document().name(), element.line());
-  if (const auto joint = element.attribute("joint")) {
-    entry.joint = find_joint(scenario.robot, *joint);
-    if (entry.joint < 0) {
-      element.refuse("unknown joint " + in_quotes(*joint), "one of " + listed(joint_names(scenario.robot, slot.group)));
+  if (const auto joint_name = element.attribute("joint")) {
+    joint = find_joint(scenario.robot, *joint_name);
+    if (joint < 0) {
+      element.refuse("unknown joint " + in_quotes(*joint_name),
+                     "one of " + listed(joint_names(scenario.robot, slot.group)));
     }
   }
-  if (entry.joint >= 0 && !slot.group.contains(static_cast<unsigned>(entry.joint))) {
+  if (joint >= 0 && !slot.group.contains(static_cast<unsigned>(joint))) {
     element.refuse("a joint that this module does not drive, " +
-                       in_quotes(scenario.robot.joints[static_cast<std::size_t>(entry.joint)].name),
+                       in_quotes(scenario.robot.joints[static_cast<std::size_t>(joint)].name),
                    "one of " + listed(joint_names(scenario.robot, slot.group)));
   }
-  return entry;
+  return {.setting = {.slot = static_cast<std::uint8_t>(slot_number),
+                      .joint = static_cast<std::uint8_t>(std::max(joint, 0)),
+                      .number = static_cast<std::uint8_t>(number),
+                      .value = value},
+          .is_for_all = joint < 0};
 }
 
 void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& scenario) {
   const Slot& slot = scenario.kernel.slots[slot_number];
-  std::vector<ParameterEntry> entries = read_parameter_entries(module, scenario, slot_number);
+  std::vector<ParameterTag> tags = read_parameter_tags(module, scenario, slot_number);
   // Values for all joints first, in any order of the file.
-  std::stable_partition(entries.begin(), entries.end(), [](const ParameterEntry& entry) { return entry.joint < 0; });
-  for (const ParameterEntry& entry : entries) {
-    for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
-      if (slot.group.contains(j) && (entry.joint < 0 || static_cast<unsigned>(entry.joint) == j)) {
-        Setting setting;
-        setting.slot = static_cast<std::uint8_t>(slot_number);
-        setting.joint = static_cast<std::uint8_t>(j);
-        setting.index = static_cast<std::uint8_t>(entry.index);
-        setting.value = entry.value;
-        set_start_value(scenario, setting);
-      }
+  std::ranges::stable_partition(tags, &ParameterTag::is_for_all);
+  for (const ParameterTag& tag : tags) {
+    Setting setting = tag.setting;
+    for (const unsigned joint : tag.is_for_all ? slot.group : JointMask::of(setting.joint)) {
+      setting.joint = static_cast<std::uint8_t>(joint);
+      set_start_value(scenario, setting);
     }
   }
 }
@@ -162,25 +160,27 @@ std::vector<XmlElement> actuation_modules(const XmlDocument& document) {
   return modules;
 }
 
-std::vector<ParameterEntry> read_parameter_entries(const XmlElement& module, const Scenario& scenario, unsigned slot) {
-  std::vector<ParameterEntry> entries;
-  std::set<std::pair<unsigned, int>> seen;
+std::vector<ParameterTag> read_parameter_tags(const XmlElement& module, const Scenario& scenario, unsigned slot) {
+  std::vector<ParameterTag> tags;
   for (const XmlElement& child : module.children()) {
     if (!child.is("parameter")) {
       continue;
     }
-    const ParameterEntry& entry = entries.emplace_back(read_parameter(child, scenario, scenario.kernel.slots[slot]));
-    if (!seen.insert({entry.index, entry.joint}).second) {
+    const ParameterTag tag = read_parameter_tag(child, scenario, slot);
+    if (std::ranges::any_of(tags, [&tag](const ParameterTag& earlier) {
+          return earlier.is_for_all == tag.is_for_all && earlier.setting.has_same_place(tag.setting);
+        })) {
       const std::string name = child.required_attribute("name");
       const std::string_view own_name =
-          scenario.kernel.slots[slot].algorithm->declaration().parameters[entry.index].name;
+          scenario.kernel.slots[slot].algorithm->declaration().parameters[tag.setting.number].name;
       child.refuse("parameter " + in_quotes(name) +
                        (lower_case(name) == lower_case(own_name) ? "" : ", which is " + std::string(own_name) + ",") +
                        " twice for the same joints",
                    "it once");
     }
+    tags.push_back(tag);
   }
-  return entries;
+  return tags;
 }
 
 }  // namespace proleg::sim

@@ -1,18 +1,17 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "shared/kernel/setting.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {
 
-/// A <parameter>: a value for one joint of the slot, or for all of them (-1).
-struct ParameterEntry {
-  unsigned index = 0;  ///< in the declaration
-  int joint = -1;      ///< kernel order
-  std::int32_t value = 0;
+/// A <parameter> tag: a setting for one joint, or for all joints of the slot.
+struct ParameterTag {
+  Setting setting;
+  bool is_for_all = true;  ///< the joint of the setting is then not used
 };
 
 /// Reads an actuation file into the kernel configuration and the settings of a scenario, which must have its robot:
@@ -34,7 +33,7 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
 
 /// The <parameter> tags of a module in the order of the file. The scenario has its robot, and its slot the algorithm
 /// and the group.
-[[nodiscard]] std::vector<ParameterEntry> read_parameter_entries(const XmlElement& module, const Scenario& scenario,
-                                                                 unsigned slot);
+[[nodiscard]] std::vector<ParameterTag> read_parameter_tags(const XmlElement& module, const Scenario& scenario,
+                                                            unsigned slot);
 
 }  // namespace proleg::sim

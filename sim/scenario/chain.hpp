@@ -12,7 +12,7 @@ namespace proleg::sim {
 struct Chain {
   std::vector<Link> links;
   std::vector<Joint> joints;
-  std::vector<JointLimits> kernel_limits;
+  std::vector<AngleLimits> kernel_limits;
   std::vector<Origin> link_origins;
   std::vector<Origin> joint_origins;
   std::vector<bool> headward_first;  ///< of each joint: its file lists the link towards the head first

@@ -50,7 +50,7 @@ void read_limits(const XmlElement& element, JointDescription& description) {
                   "limits that include 0, because every joint starts at angle 0");
   }
   Joint& joint = description.joint;
-  JointLimits& kernel = description.kernel_limits;
+  AngleLimits& kernel = description.kernel_limits;
   if (degrees) {
     constexpr double radians_per_degree = std::numbers::pi / 180.0;
     joint.lower_limit = numbers[0] * radians_per_degree;

@@ -16,7 +16,7 @@ struct JointDescription {
   Joint joint;  ///< anchor and axis in the frame of `offset_from`
   std::array<std::string, 2> bodies;
   std::optional<std::string> offset_from;
-  JointLimits kernel_limits;
+  AngleLimits kernel_limits;
 };
 
 /// Reads a <Joint type="hinge">: two <body>, <axis>, <anchor> (0 0 0 by default), <offsetfrom>, <limitsdeg> or <limits>

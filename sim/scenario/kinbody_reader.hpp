@@ -31,7 +31,7 @@ struct JointEntry {
   Joint joint;  ///< anchor and axis in the robot's frame, as the file gives them
   /// Names of bodies. The angle is the rotation of the second relative to the first about the axis.
   std::array<std::string, 2> bodies;
-  JointLimits kernel_limits;
+  AngleLimits kernel_limits;
 };
 
 /// The contents of a file, in its order.

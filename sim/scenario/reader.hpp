@@ -46,14 +46,14 @@ void apply_setting(Scenario& scenario, const std::string& word);
 struct SettingTarget {
   unsigned slot = 0;
   bool internal = false;
-  unsigned index = 0;      ///< of the parameter or internal value in the declaration
+  unsigned number = 0;     ///< of the parameter or internal value in the declaration
   JointMask joints;        ///< kernel order, at least one
   bool in_flight = false;  ///< as a change at the tick; otherwise a start value
   std::uint32_t tick = 0;  ///< of the change; 0 for a start value
   Unit unit = Unit::count;
 
   [[nodiscard]] bool same_value(const SettingTarget& other) const {
-    return slot == other.slot && internal == other.internal && index == other.index;
+    return slot == other.slot && internal == other.internal && number == other.number;
   }
 };
 

@@ -14,7 +14,7 @@ namespace proleg::sim {
 
 struct RobotDescription {
   RobotModel model;
-  std::vector<JointLimits> kernel_limits;          ///< kernel order
+  std::vector<AngleLimits> kernel_limits;          ///< kernel order
   std::vector<ModulePlace> modules;                ///< kernel order
   std::optional<RobotControlEntry> robot_control;  ///< the plug-in of a robot without modules
   std::vector<std::string> warnings;               ///< what is probably not meant

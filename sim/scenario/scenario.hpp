@@ -11,7 +11,9 @@
 
 #include <Eigen/Core>
 
+#include "shared/computer/change/change.hpp"
 #include "shared/kernel/kernel.hpp"
+#include "shared/kernel/setting.hpp"
 #include "sim/environment/environment_model.hpp"
 #include "sim/robot/module_place.hpp"
 #include "sim/robot/robot_control_entry.hpp"
@@ -26,31 +28,10 @@ enum class Solver : std::uint8_t {
   iterative,  ///< approximate, in time proportional to the number of links
 };
 
-/// A value for a parameter (or, from `--set`, an internal value) of one joint.
-struct Setting {
-  std::uint8_t slot = 0;
-  std::uint8_t joint = 0;  ///< kernel order
-  std::uint8_t index = 0;  ///< of the parameter or internal value in the declaration
-  bool internal = false;   ///< an internal value: a distortion
-  std::int32_t value = 0;
-};
-
-/// Settings that take effect together at a tick.
-struct Change {
-  std::uint32_t tick = 0;
-  std::vector<Setting> settings;
-};
-
 /// A file as it was read, kept for the recording.
 struct SourceFile {
   std::string path;
   std::string text;
-};
-
-/// The kernel limits the set-points of a joint to this range: 90 degrees = 2^30, within +-90 degrees.
-struct JointLimits {
-  std::int32_t lower = -(1 << 30);
-  std::int32_t upper = 1 << 30;
 };
 
 /// The robot is put elsewhere, as a hand does it: at a tick, as a rigid body, and at rest.
@@ -66,8 +47,8 @@ struct Scenario {
   EnvironmentModel environment;
 
   KernelConfiguration kernel;
-  std::vector<JointLimits> joint_limits;           ///< kernel order, one for each joint
-  std::vector<ModulePlace> modules;                ///< kernel order, one for each joint, no node id twice
+  std::vector<AngleLimits> joint_limits;  ///< of set-points, within +-90 degrees; kernel order, one for each joint
+  std::vector<ModulePlace> modules;       ///< kernel order, one for each joint, no node id twice
   std::optional<RobotControlEntry> robot_control;  ///< plug-in of a robot without modules; no effect in a simulation
   std::vector<Setting> settings;                   ///< start values that differ from the defaults
   std::vector<Change> changes;                     ///< in flight, by ascending tick

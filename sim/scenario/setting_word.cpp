@@ -18,7 +18,7 @@ namespace {
 /// A word taken apart.
 struct SettingWord : SettingName {
   std::string word;
-  std::string number;
+  std::string value;
   std::optional<std::string> tick;
 
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
@@ -33,10 +33,10 @@ SettingWord take_apart(const std::string& text) {
     word.refuse("no '='", "[MODULE.]NAME[:JOINT]=VALUE[@TICK]");
   }
   static_cast<SettingName&>(word) = parse_setting_name(text.substr(0, equals));
-  word.number = text.substr(equals + 1);
-  if (const std::size_t at = word.number.find('@'); at != std::string::npos) {
-    word.tick = word.number.substr(at + 1);
-    word.number.resize(at);
+  word.value = text.substr(equals + 1);
+  if (const std::size_t at = word.value.find('@'); at != std::string::npos) {
+    word.tick = word.value.substr(at + 1);
+    word.value.resize(at);
   }
   return word;
 }
@@ -45,7 +45,7 @@ SettingWord take_apart(const std::string& text) {
 struct Meaning {
   unsigned slot;
   bool internal;
-  unsigned index;
+  unsigned number;
 };
 
 class Resolver {
@@ -113,10 +113,10 @@ class Resolver {
   [[nodiscard]] std::vector<Meaning> find(const std::vector<unsigned>& slots, bool internal) const {
     std::vector<Meaning> meanings;
     for (const unsigned slot : slots) {
-      const int index = internal ? find_internal_value(declaration(slot), word_->name)
-                                 : find_named_parameter(declaration(slot), word_->name);
-      if (index >= 0) {
-        meanings.push_back({slot, internal, static_cast<unsigned>(index)});
+      const int number = internal ? find_internal_value(declaration(slot), word_->name)
+                                  : find_named_parameter(declaration(slot), word_->name);
+      if (number >= 0) {
+        meanings.push_back({slot, internal, static_cast<unsigned>(number)});
       }
     }
     return meanings;
@@ -149,9 +149,9 @@ class Resolver {
 };
 
 std::int32_t parse_internal_value(const InternalValue& internal, const SettingWord& word) {
-  const DecimalResult result = parse_decimal(word.number, internal.unit);
+  const DecimalResult result = parse_decimal(word.value, internal.unit);
   if (result.error != DecimalError::none) {
-    word.refuse(in_quotes(word.number) + " for " + in_quotes(internal.name), unit_range_text(internal.unit));
+    word.refuse(in_quotes(word.value) + " for " + in_quotes(internal.name), unit_range_text(internal.unit));
   }
   return result.raw;
 }
@@ -181,7 +181,7 @@ SettingTarget target_of(const Scenario& scenario, const SettingWord& given) {
   SettingTarget target;
   target.slot = meaning.slot;
   target.internal = meaning.internal;
-  target.index = meaning.index;
+  target.number = meaning.number;
   for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
     if (slot.group.contains(j) && (joint < 0 || j == static_cast<unsigned>(joint))) {
       target.joints.insert(j);
@@ -190,7 +190,7 @@ SettingTarget target_of(const Scenario& scenario, const SettingWord& given) {
   target.in_flight = meaning.internal || word.tick.has_value();
   target.tick = word.tick ? read_tick(word.word, *word.tick, scenario.kernel.tick_period_us) : 0;
   target.unit =
-      meaning.internal ? declaration.internal_values[meaning.index].unit : declaration.parameters[meaning.index].unit;
+      meaning.internal ? declaration.internal_values[meaning.number].unit : declaration.parameters[meaning.number].unit;
   return target;
 }
 
@@ -228,11 +228,11 @@ ParsedSetting parse_setting(const Scenario& scenario, const std::string& text) {
 
   Setting setting;
   setting.slot = static_cast<std::uint8_t>(target.slot);
-  setting.index = static_cast<std::uint8_t>(target.index);
+  setting.number = static_cast<std::uint8_t>(target.number);
   setting.internal = target.internal;
   setting.value = target.internal
-                      ? parse_internal_value(declaration.internal_values[target.index], word)
-                      : parse_parameter(declaration.parameters[target.index], word.number, shortened(word.word), 0);
+                      ? parse_internal_value(declaration.internal_values[target.number], word)
+                      : parse_parameter(declaration.parameters[target.number], word.value, shortened(word.word), 0);
   ParsedSetting parsed;
   parsed.word = shortened(text);
   for (const unsigned joint : target.joints) {

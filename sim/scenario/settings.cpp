@@ -11,7 +11,9 @@
 namespace proleg::sim {
 namespace {
 
-auto key_of(const Setting& setting) { return std::tuple(setting.slot, setting.joint, setting.internal, setting.index); }
+auto key_of(const Setting& setting) {
+  return std::tuple(setting.slot, setting.joint, setting.internal, setting.number);
+}
 
 /// Whether a parameter takes every value of its unit, which wraps.
 bool takes_any_angle(const Parameter& parameter) {
@@ -60,7 +62,7 @@ void put_setting(std::vector<Setting>& settings, const Setting& setting) {
 
 void set_start_value(Scenario& scenario, const Setting& setting) {
   const Declaration& declaration = scenario.kernel.slots[setting.slot].algorithm->declaration();
-  if (setting.value == declaration.parameters[setting.index].default_value) {
+  if (setting.value == declaration.parameters[setting.number].default_value) {
     std::erase_if(scenario.settings, [&](const Setting& other) { return key_of(other) == key_of(setting); });
   } else {
     put_setting(scenario.settings, setting);

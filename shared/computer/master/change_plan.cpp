@@ -18,25 +18,25 @@ ChangePlan::ChangePlan(const KernelConfiguration& kernel, std::span<Change> chan
   }
 }
 
-bool ChangePlan::exists(const ChangedValue& value) const {
-  if (value.slot >= max_slots || value.joint >= kernel_.joint_count) {
+bool ChangePlan::exists(const Setting& setting) const {
+  if (setting.slot >= max_slots || setting.joint >= kernel_.joint_count) {
     return false;
   }
-  const Slot& slot = kernel_.slots[value.slot];
-  if (slot.algorithm == nullptr || !slot.group.contains(value.joint)) {
+  const Slot& slot = kernel_.slots[setting.slot];
+  if (slot.algorithm == nullptr || !slot.group.contains(setting.joint)) {
     return false;
   }
   const Declaration& declaration = slot.algorithm->declaration();
-  return value.number < (value.internal ? declaration.internal_values.size() : declaration.parameters.size());
+  return setting.number < (setting.internal ? declaration.internal_values.size() : declaration.parameters.size());
 }
 
 bool ChangePlan::fits(const Change& change) const {
   std::array<std::uint8_t, max_joints> count{};
-  for (const ChangedValue& value : change.values) {
-    if (!exists(value) || count[value.joint] == max_staged_values) {
+  for (const Setting& setting : change.settings) {
+    if (!exists(setting) || count[setting.joint] == max_staged_values) {
       return false;
     }
-    ++count[value.joint];
+    ++count[setting.joint];
   }
   return true;
 }
@@ -59,9 +59,9 @@ bool ChangePlan::can_stage() const {
   std::array<std::uint16_t, max_joints> count{};
   const auto add = [&count](const Change& change) {
     bool room = true;
-    for (const ChangedValue& value : change.values) {
-      ++count[value.joint];
-      room = room && count[value.joint] <= max_staged_values;
+    for (const Setting& setting : change.settings) {
+      ++count[setting.joint];
+      room = room && count[setting.joint] <= max_staged_values;
     }
     return room;
   };
@@ -99,11 +99,11 @@ std::optional<SdoWrite> ChangePlan::staging(std::size_t change, unsigned joint, 
   if (n == 0) {
     return SdoWrite{object::transaction.address, size_of(object::transaction.type), transaction(change)};
   }
-  for (const ChangedValue& value : changes_[change].values) {
-    if (value.joint == joint && --n == 0) {
-      const ValueKind kind = value.internal ? ValueKind::internal_value : ValueKind::staged_parameter;
-      return SdoWrite{address_of({kind, kernel_.slots[value.slot].algorithm_id(), value.number, value.slot}),
-                      value_size, static_cast<std::uint32_t>(value.value)};
+  for (const Setting& setting : changes_[change].settings) {
+    if (setting.joint == joint && --n == 0) {
+      const ValueKind kind = setting.internal ? ValueKind::internal_value : ValueKind::staged_parameter;
+      return SdoWrite{address_of({kind, kernel_.slots[setting.slot].algorithm_id(), setting.number, setting.slot}),
+                      value_size, static_cast<std::uint32_t>(setting.value)};
     }
   }
   return std::nullopt;
@@ -116,9 +116,9 @@ std::optional<std::int32_t> ChangePlan::parameter_before(std::size_t end, unsign
       continue;
     }
     std::optional<std::int32_t> last;
-    for (const ChangedValue& value : changes_[i].values) {
-      if (!value.internal && value.joint == joint && value.slot == slot && value.number == parameter) {
-        last = value.value;
+    for (const Setting& setting : changes_[i].settings) {
+      if (!setting.internal && setting.joint == joint && setting.slot == slot && setting.number == parameter) {
+        last = setting.value;
       }
     }
     if (last) {

@@ -8,29 +8,10 @@
 #include <optional>
 #include <span>
 
+#include "shared/computer/change/change.hpp"
 #include "shared/computer/master/setup_list.hpp"
 
 namespace proleg::canopen {
-
-/// A parameter, or an internal value (a distortion), of a joint.
-struct ChangedValue {
-  std::uint8_t slot = 0;
-  std::uint8_t joint = 0;   ///< kernel order
-  std::uint8_t number = 0;  ///< number of the parameter or internal value
-  bool internal = false;
-  std::int32_t value = 0;
-};
-
-/// Values that take effect together, at most max_staged_values of one joint.
-struct Change {
-  /// Value of `tick`: the master chooses the tick when all modules have the values. So a slow connection delays the
-  /// change.
-  static constexpr std::uint32_t soon = 0xFFFF'FFFF;
-
-  std::uint32_t tick = 0;
-  std::span<const ChangedValue> values;
-  bool dropped = false;  ///< set by the master: the change was not made (see Problem)
-};
 
 /// Change n is sent as transaction n + 1 (modulo 65535), which is opened in every module.
 class ChangePlan {
@@ -74,7 +55,7 @@ class ChangePlan {
   [[nodiscard]] std::optional<SdoWrite> parameter_write(std::size_t end, unsigned joint, std::size_t n) const;
 
  private:
-  [[nodiscard]] bool exists(const ChangedValue& value) const;
+  [[nodiscard]] bool exists(const Setting& setting) const;
   [[nodiscard]] bool fits(const Change& change) const;
   [[nodiscard]] std::optional<std::int32_t> parameter_before(std::size_t end, unsigned joint, unsigned slot,
                                                              unsigned parameter) const;

@@ -48,18 +48,18 @@ SdoWrite SetupList::at(std::size_t position) const {
 }
 
 void SetupList::collect_start_values() {
-  for (const StartValue& start : setup_.start_values) {
+  for (const Setting& start : setup_.start_values) {
     if (start.joint != joint_ || start.slot >= max_slots) {
       continue;
     }
     const Slot& slot = setup_.kernel.slots[start.slot];
     if (slot.algorithm == nullptr || !slot.group.contains(joint_) ||
-        start.parameter >= slot.algorithm->declaration().parameters.size()) {
+        start.number >= slot.algorithm->declaration().parameters.size()) {
       continue;
     }
-    const bool differs = start.value != slot.algorithm->declaration().parameters[start.parameter].default_value;
-    const std::uint32_t bit = 1U << start.parameter;
-    start_values_[start.slot][start.parameter] = start.value;
+    const bool differs = start.value != slot.algorithm->declaration().parameters[start.number].default_value;
+    const std::uint32_t bit = 1U << start.number;
+    start_values_[start.slot][start.number] = start.value;
     to_write_[start.slot] = (to_write_[start.slot] & ~bit) | (differs ? bit : 0);
   }
 }

@@ -11,6 +11,7 @@
 #include "shared/canopen/object.hpp"
 #include "shared/canopen/robot_configuration.hpp"
 #include "shared/kernel/motion_limiter.hpp"
+#include "shared/kernel/setting.hpp"
 
 namespace proleg::canopen {
 
@@ -19,19 +20,11 @@ inline constexpr std::uint32_t host_timeout_ms = 500;
 /// Period of a module's heartbeat.
 inline constexpr std::uint32_t heartbeat_period_ms = 100;
 
-/// A parameter of a joint with a value that differs from its default.
-struct StartValue {
-  std::uint8_t slot;
-  std::uint8_t joint;
-  std::uint8_t parameter;
-  std::int32_t value;
-};
-
 /// The set-up of a robot on a bus.
 struct RobotSetup : RobotConfiguration {
   std::uint32_t command_speed = default_command_speed;  ///< the greatest speed of commanded angles, degrees a second
   std::span<const AngleLimits> limits;                  ///< limits of each joint, in kernel order
-  std::span<const StartValue> start_values;             ///< if an address occurs several times, the last value counts
+  std::span<const Setting> start_values;  ///< of parameters; if one occurs several times, the last value counts
 };
 
 struct SdoWrite {

@@ -157,8 +157,8 @@ class CanonicalText {
   std::string text_;
 };
 
-void add_setting(CanonicalText& text, const sim::Setting& setting) {
-  text.add_all(setting.slot, setting.joint, setting.index, setting.internal, setting.value);
+void add_setting(CanonicalText& text, const Setting& setting) {
+  text.add_all(setting.slot, setting.joint, setting.number, setting.internal, setting.value);
 }
 
 /// Adds the texts of the files, and the settings that the command line may change.
@@ -175,12 +175,12 @@ void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
       text.add(slot.algorithm->declaration().sources);
     }
   }
-  for (const sim::Setting& setting : scenario.settings) {
+  for (const Setting& setting : scenario.settings) {
     add_setting(text, setting);
   }
-  for (const sim::Change& change : scenario.changes) {
+  for (const Change& change : scenario.changes) {
     text.add_all(change.tick, change.settings.size());
-    for (const sim::Setting& setting : change.settings) {
+    for (const Setting& setting : change.settings) {
       add_setting(text, setting);
     }
   }

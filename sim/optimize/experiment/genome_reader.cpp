@@ -235,10 +235,10 @@ class SpaceBuilder {
     dimension.values = std::move(values);
     std::ranges::sort(joints);
     for (const unsigned joint : joints) {
-      sim::Setting target;
+      Setting target;
       target.slot = static_cast<std::uint8_t>(registration.slot);
       target.joint = static_cast<std::uint8_t>(joint);
-      target.index = static_cast<std::uint8_t>(registration.index);
+      target.number = static_cast<std::uint8_t>(registration.index);
       dimension.targets.push_back(target);
     }
     space_.dimensions.push_back(std::move(dimension));

@@ -32,7 +32,7 @@ double SearchSpace::size() const {
 
 void SearchSpace::apply(const Candidate& candidate, sim::Scenario& scenario) const {
   for (std::size_t d = 0; d < dimensions.size(); ++d) {
-    for (sim::Setting setting : dimensions[d].targets) {
+    for (Setting setting : dimensions[d].targets) {
       setting.value = dimensions[d].values[candidate[d]];
       set_start_value(scenario, setting);
     }
@@ -43,8 +43,8 @@ Candidate SearchSpace::nearest(const sim::Scenario& scenario) const {
   Candidate candidate;
   candidate.reserve(dimensions.size());
   for (const Dimension& dimension : dimensions) {
-    const sim::Setting& first = dimension.targets.front();
-    const std::int32_t own = start_value(scenario, first.slot, first.joint, first.index);
+    const Setting& first = dimension.targets.front();
+    const std::int32_t own = start_value(scenario, first.slot, first.joint, first.number);
     const auto nearest = std::ranges::min_element(
         dimension.values, {}, [&](std::int32_t value) { return distance_between(value, own, dimension.unit); });
     candidate.push_back(static_cast<std::uint32_t>(nearest - dimension.values.begin()));

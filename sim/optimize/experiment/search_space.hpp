@@ -15,8 +15,8 @@ using Candidate = std::vector<std::uint32_t>;
 
 /// One number that an optimiser chooses: a parameter of an actuation module, on one joint or the same on several.
 struct Dimension {
-  std::string name;                   ///< unique; as in `--set`: "amplitude:J5", "amplitude", "1.amplitude:J5"
-  std::vector<sim::Setting> targets;  ///< settings that it sets (at least one); their values are not used
+  std::string name;              ///< unique; as in `--set`: "amplitude:J5", "amplitude", "1.amplitude:J5"
+  std::vector<Setting> targets;  ///< settings that it sets (at least one); their values are not used
   Unit unit = Unit::count;
   /// Raw values for the module, at least one, none twice, ascending. The values of a phase ascend from the smallest
   /// number of the file, so that 170, 180 and -170 degrees follow each other.

@@ -23,8 +23,8 @@ bool goes_around(const Dimension& dimension) {
   return distance(dimension.values.back(), dimension.values.front()) <= longest_step;
 }
 
-const Parameter& parameter_of(const sim::Scenario& scenario, const sim::Setting& target) {
-  return scenario.kernel.slots[target.slot].algorithm->declaration().parameters[target.index];
+const Parameter& parameter_of(const sim::Scenario& scenario, const Setting& target) {
+  return scenario.kernel.slots[target.slot].algorithm->declaration().parameters[target.number];
 }
 
 /// Whether the parameter may have values beyond the bound of its set.
@@ -59,8 +59,8 @@ std::vector<MovedValue> values_outside_space(const Experiment& experiment) {
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
     const Dimension& dimension = experiment.space.dimensions[i];
     const std::int32_t value = dimension.values[nearest[i]];
-    for (const sim::Setting& target : dimension.targets) {
-      const std::int32_t own = start_value(experiment.scenario, target.slot, target.joint, target.index);
+    for (const Setting& target : dimension.targets) {
+      const std::int32_t own = start_value(experiment.scenario, target.slot, target.joint, target.number);
       if (own != value) {
         moved.push_back({dimension.name, text_of(own, dimension.unit), text_of(value, dimension.unit),
                          sim::shown_unit(dimension.unit)});

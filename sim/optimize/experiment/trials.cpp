@@ -43,10 +43,10 @@ void perturb_friction(sim::Scenario& scenario, double factor) {
 }
 
 /// The dimension that sets a parameter of a joint, or null.
-const Dimension* find_dimension(const SearchSpace& space, const sim::Setting& place) {
+const Dimension* find_dimension(const SearchSpace& space, const Setting& place) {
   for (const Dimension& dimension : space.dimensions) {
-    for (const sim::Setting& target : dimension.targets) {
-      if (target.slot == place.slot && target.joint == place.joint && target.index == place.index) {
+    for (const Setting& target : dimension.targets) {
+      if (target.has_same_place(place)) {
         return &dimension;
       }
     }
@@ -68,13 +68,13 @@ bool starts_with_noise(const sim::Scenario& scenario, const SearchSpace& space, 
     if (!slot.group.contains(joint)) {
       continue;
     }
-    sim::Setting place;
+    Setting place;
     place.slot = static_cast<std::uint8_t>(slot_number);
     place.joint = static_cast<std::uint8_t>(joint);
-    place.index = static_cast<std::uint8_t>(noise);
+    place.number = static_cast<std::uint8_t>(noise);
     const Dimension* const dimension = find_dimension(space, place);
     if (dimension != nullptr ? std::ranges::any_of(dimension->values, [](std::int32_t value) { return value != 0; })
-                             : start_value(scenario, place.slot, place.joint, place.index) != 0) {
+                             : start_value(scenario, place.slot, place.joint, place.number) != 0) {
       return true;
     }
   }

@@ -237,9 +237,9 @@ class StartValues {
     for (std::size_t p = 0; p < declaration.parameters.size(); ++p) {
       values_[p].fill(declaration.parameters[p].default_value);
     }
-    for (const sim::Setting& setting : scenario.settings) {
+    for (const Setting& setting : scenario.settings) {
       if (setting.slot == slot && !setting.internal) {
-        values_[setting.index][setting.joint] = setting.value;
+        values_[setting.number][setting.joint] = setting.value;
       }
     }
   }

@@ -46,7 +46,7 @@ class Pair {
 
   void start_value(std::uint8_t slot, unsigned joint, std::string_view name, std::int32_t value) {
     const auto parameter = static_cast<std::uint8_t>(test::parameter_index(chain[joint], slot, name));
-    values_.push_back({slot, static_cast<std::uint8_t>(joint), parameter, value});
+    values_.push_back({slot, static_cast<std::uint8_t>(joint), parameter, false, value});
     test::set(chain[joint], slot, joint, name, value);
   }
   void limit(unsigned joint, std::int32_t lower, std::int32_t upper) {
@@ -134,7 +134,7 @@ class Pair {
   }
 
   std::vector<ContactDebouncer> debouncers_;
-  std::vector<canopen::StartValue> values_;
+  std::vector<Setting> values_;
   std::uint16_t transaction_ = 0;
   std::mt19937 random_{1};
 };

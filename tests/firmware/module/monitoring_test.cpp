@@ -51,7 +51,7 @@ class Measuring {
 
  private:
   std::array<std::uint8_t, 1> nodes_{node};
-  std::array<canopen::AngleLimits, 1> limits_{{{-quarter_turn, quarter_turn}}};
+  std::array<AngleLimits, 1> limits_{{{-quarter_turn, quarter_turn}}};
 };
 
 TEST(Monitored, IsTheDocumentedFrame) {

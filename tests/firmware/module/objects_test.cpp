@@ -120,7 +120,7 @@ TEST(Objects, ABlockDoesNotFillTheQueue) {
 
 TEST(Objects, ReadBackWhatTheSetUpWrites) {
   test::TestModule robot(two_slots());
-  const canopen::StartValue values[] = {{0, 0, 1, test::degrees(12)}, {2, 0, 2, test::hertz(0.25)}};
+  const Setting values[] = {{0, 0, 1, false, test::degrees(12)}, {2, 0, 2, false, test::hertz(0.25)}};
   robot.setup.start_values = values;
   robot.limit(0, test::degrees(-20), test::degrees(50));
   robot.boot();
@@ -242,7 +242,7 @@ TEST(Objects, ActivateZeroLeavesTheModuleUnconfigured) {
 
 TEST(Objects, TheConfigurationOfTheRobotIsWritableInPreOperationalOnly) {
   test::TestModule robot(two_slots());
-  const canopen::StartValue values[] = {{0, 0, 1, test::degrees(12)}};
+  const Setting values[] = {{0, 0, 1, false, test::degrees(12)}};
   robot.setup.start_values = values;
   robot.set_up_and_start();
   const canopen::SetupList list(robot.setup, 0);

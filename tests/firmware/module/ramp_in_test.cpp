@@ -39,7 +39,7 @@ class RampIn : public testing::Test {
   }
   void set(std::string_view name, int degrees) {
     const auto number = find_parameter(robot.setup.kernel.slots[0].algorithm->declaration(), name);
-    values.push_back({0, 0, static_cast<std::uint8_t>(number), raw(Unit::degree, degrees)});
+    values.push_back({0, 0, static_cast<std::uint8_t>(number), false, raw(Unit::degree, degrees)});
   }
   void measure(int degrees) { robot.it().meters.readings.angle = raw(Unit::degree, degrees); }
   void write(const canopen::Object& entry, std::uint32_t value) {
@@ -81,7 +81,7 @@ class RampIn : public testing::Test {
     EXPECT_GT(moves, 10U) << "it must have moved";
   }
 
-  std::vector<canopen::StartValue> values;
+  std::vector<Setting> values;
   test::TestModule robot{test::one_slot(test::algorithm(test::sinusoidal), 1), servo_us};
 };
 

@@ -65,11 +65,11 @@ TEST(RobotDrive, ChangesOfTheUserTakeEffectTogetherAndSoon) {
   DrivingHost host(bus, scenario);
   ASSERT_TRUE(host.start());
   ASSERT_TRUE(host.run_to_tick(100));
-  std::vector<canopen::ChangedValue> values;
+  std::vector<Setting> values;
   for (std::uint8_t joint = 0; joint < 5; ++joint) {
     values.push_back({0, joint, 0, false, raw(Unit::degree, 10)});
   }
-  std::vector<canopen::Change> changes{{canopen::Change::soon, values}};
+  std::vector<Change> changes{{Change::soon, values}};
   ASSERT_TRUE(host.drive.master().extend_changes(bus.now(), changes));
   ASSERT_TRUE(host.run_to_tick(160));
   ASSERT_FALSE(changes.front().dropped);
@@ -80,11 +80,7 @@ TEST(RobotDrive, ChangesOfTheUserTakeEffectTogetherAndSoon) {
   const std::vector<std::uint8_t> no_contacts(5);
   while (const auto frames = host.drive.take_tick()) {
     if (frames->tick == tick) {
-      sim::Change change{tick, {}};
-      for (const canopen::ChangedValue& value : values) {
-        change.settings.push_back({value.slot, value.joint, value.number, value.internal, value.value});
-      }
-      chain.apply(change);
+      chain.apply({tick, values});
     }
     chain.advance(no_contacts);
     for (unsigned joint = 0; joint < 5; ++joint) {
@@ -102,8 +98,8 @@ TEST(RobotDrive, RefusesAChangeThatIsNotPossible) {
   DrivingHost host(bus, scenario);
   ASSERT_TRUE(host.start());
   ASSERT_TRUE(host.run_to_tick(50));
-  const std::vector<canopen::ChangedValue> values{{0, 9, 0, false, 0}};
-  std::vector<canopen::Change> changes{{canopen::Change::soon, values}};
+  const std::vector<Setting> values{{0, 9, 0, false, 0}};
+  std::vector<Change> changes{{Change::soon, values}};
   EXPECT_FALSE(host.drive.master().extend_changes(bus.now(), changes)) << "there is no joint 9";
   ASSERT_TRUE(host.run_to_tick(100));
   EXPECT_EQ(host.drive.master().state(), MasterState::running);

@@ -122,7 +122,7 @@ CanFrame random_frame(std::mt19937_64& random) {
 
 TEST(RobotAmongRandomFrames, EveryPulseIsWithinTheLimits) {
   sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
-  for (sim::JointLimits& limits : scenario.joint_limits) {
+  for (AngleLimits& limits : scenario.joint_limits) {
     limits = {raw(Unit::degree, -30), raw(Unit::degree, 30)};
   }
   constexpr std::int32_t limit = 30 * 12'000 / 90;

@@ -52,7 +52,7 @@ TEST(Retreat, WithoutTheStimulusTheRobotStaysAtTheWall) {
   Scenario scenario = shipped("retreat/wall");
   const auto& declaration = scenario.kernel.slots[0].algorithm->declaration();
   for (Setting& setting : scenario.settings) {
-    if (setting.index == find_parameter(declaration, "retreat")) {
+    if (setting.number == find_parameter(declaration, "retreat")) {
       setting.value = 0;
     }
   }

@@ -104,8 +104,8 @@ Change change_of(const Scenario& scenario, std::uint32_t tick, unsigned slot, co
       Setting setting;
       setting.slot = static_cast<std::uint8_t>(slot);
       setting.joint = static_cast<std::uint8_t>(joint);
-      setting.index = static_cast<std::uint8_t>(find_parameter(declaration, name));
-      setting.value = parse_decimal(std::to_string(value), declaration.parameters[setting.index].unit).raw;
+      setting.number = static_cast<std::uint8_t>(find_parameter(declaration, name));
+      setting.value = parse_decimal(std::to_string(value), declaration.parameters[setting.number].unit).raw;
       change.settings.push_back(setting);
     }
   }

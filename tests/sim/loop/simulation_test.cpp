@@ -162,7 +162,7 @@ TEST(Simulation, ItsSetpointsAreThoseOfOneKernelOfAllJoints) {
               Status::ok);
   }
   for (const Setting& setting : scenario.settings) {
-    ASSERT_EQ(whole.set_parameter(setting.slot, setting.joint, setting.index, setting.value), Status::ok);
+    ASSERT_EQ(whole.set_parameter(setting.slot, setting.joint, setting.number, setting.value), Status::ok);
   }
   whole.reset();
   for (int tick = 0; tick < 1000; ++tick) {

@@ -140,15 +140,15 @@ Scenario with_random_values(const Scenario& file, std::mt19937& random) {
   Scenario wanted = file;
   for (const unsigned slot : used_slots(file)) {
     const Declaration& declaration = file.kernel.slots[slot].algorithm->declaration();
-    for (unsigned index = 0; index < declaration.parameters.size(); ++index) {
-      const Parameter& parameter = declaration.parameters[index];
+    for (unsigned number = 0; number < declaration.parameters.size(); ++number) {
+      const Parameter& parameter = declaration.parameters[number];
       std::uniform_int_distribution<std::int32_t> values(parameter.minimum, parameter.maximum);
       const std::int32_t common = values(random);
       const unsigned kind = random() % 4;  // 0, 1: none, 2: one value for all, 3: some joints
       for (const unsigned joint : file.kernel.slots[slot].group) {
         if (kind == 2 || (kind == 3 && random() % 2 == 0)) {
           set_start_value(wanted, {static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint),
-                                   static_cast<std::uint8_t>(index), false, kind == 2 ? common : values(random)});
+                                   static_cast<std::uint8_t>(number), false, kind == 2 ? common : values(random)});
         }
       }
     }
@@ -194,12 +194,13 @@ TEST_P(ShippedActuation, WrittenAndReadAgainGivesTheChosenRawValuesAndKeepsAllOt
     expect_only_values_and_new_tags(actuation_source(file).text, text);
     const Scenario again = with_actuation_text(file, text);
     for (const unsigned slot : used_slots(file)) {
-      for (unsigned index = 0; index < file.kernel.slots[slot].algorithm->declaration().parameters.size(); ++index) {
+      for (unsigned number = 0; number < file.kernel.slots[slot].algorithm->declaration().parameters.size(); ++number) {
         for (const unsigned joint : file.kernel.slots[slot].group) {
           const bool is_chosen = std::ranges::any_of(edits, [&](const ActuationEdit& edit) {
-            return edit.slot == slot && edit.index == index && edit.joints.contains(joint);
+            return edit.slot == slot && edit.number == number && edit.joints.contains(joint);
           });
-          EXPECT_EQ(start_value(again, slot, joint, index), start_value(is_chosen ? wanted : file, slot, joint, index));
+          EXPECT_EQ(start_value(again, slot, joint, number),
+                    start_value(is_chosen ? wanted : file, slot, joint, number));
         }
       }
     }

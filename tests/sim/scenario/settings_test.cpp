@@ -26,8 +26,8 @@ std::optional<std::int32_t> find(const std::vector<Setting>& settings, unsigned 
     if (setting.slot != slot || setting.joint != joint) {
       continue;
     }
-    const std::string_view found =
-        setting.internal ? declaration.internal_values[setting.index].name : declaration.parameters[setting.index].name;
+    const std::string_view found = setting.internal ? declaration.internal_values[setting.number].name
+                                                    : declaration.parameters[setting.number].name;
     if (found == name) {
       return setting.value;
     }
@@ -288,7 +288,7 @@ TEST(SetOption, AWordWithOneValueTooManyForAJointChangesNothing) {
     Setting setting;
     setting.slot = 3;
     setting.joint = 1;
-    setting.index = static_cast<std::uint8_t>(value);
+    setting.number = static_cast<std::uint8_t>(value);
     small.changes.front().settings.push_back(setting);
   }
   EXPECT_THROW(apply_setting(small, "amplitude=20@5"), InputError);

@@ -10,7 +10,7 @@
 namespace proleg::tools {
 namespace {
 
-constexpr std::uint32_t soon = canopen::Change::soon;
+constexpr std::uint32_t soon = Change::soon;
 constexpr std::uint32_t run_end = 10'000;
 
 /// The changes of a robot with a tick of 10 ms: 3 s are 300 ticks.
@@ -25,7 +25,7 @@ class LiveChangesTest : public ::testing::Test {
   }
   static std::vector<std::uint32_t> ticks(LiveChanges& changes) {
     std::vector<std::uint32_t> ticks;
-    for (const canopen::Change& change : changes.span()) {
+    for (const Change& change : changes.span()) {
       ticks.push_back(change.tick);
     }
     return ticks;

@@ -177,7 +177,7 @@ void print_warning_on_clipping(const std::string& program, const sim::Scenario& 
   }
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(clipped_ticks) - clipped_ticks.begin());
   const auto in_degrees = [](std::int32_t limit) { return number_text(limit * 45.0 / (1U << 29U)); };
-  const sim::JointLimits& limits = scenario.joint_limits[worst];
+  const AngleLimits& limits = scenario.joint_limits[worst];
   std::string text = "the limits of " + scenario.robot.joints[worst].name + ", " + in_degrees(limits.lower) + " to " +
                      in_degrees(limits.upper) + " degrees, clip its set-points in " +
                      std::to_string(std::lround(100.0 * share(clipped_ticks[worst]))) + " % of the ticks";

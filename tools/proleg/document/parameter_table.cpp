@@ -10,15 +10,15 @@ ParameterTable::ParameterTable(const sim::Scenario& file, const sim::Scenario& s
   for (const unsigned slot : sim::used_slots(file)) {
     const Slot& used = file.kernel.slots[slot];
     const std::size_t parameters = used.algorithm->declaration().parameters.size();
-    for (unsigned index = 0; index < parameters; ++index) {
+    for (unsigned number = 0; number < parameters; ++number) {
       for (unsigned joint = 0; joint < joints_; ++joint) {
         if (!used.group.contains(joint)) {
           continue;
         }
         const ParameterPlace place{static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint),
-                                   static_cast<std::uint8_t>(index)};
+                                   static_cast<std::uint8_t>(number)};
         places_.push_back(place);
-        const std::int32_t value = sim::start_value(start, slot, joint, index);
+        const std::int32_t value = sim::start_value(start, slot, joint, number);
         values_[position(place)] = {0, value, value, 0};
       }
     }
@@ -47,12 +47,12 @@ void ParameterTable::want_file_values() {
 
 void ParameterTable::set_file(const sim::Scenario& file) {
   for (const ParameterPlace& place : places_) {
-    values_[position(place)].file = sim::start_value(file, place.slot, place.joint, place.index);
+    values_[position(place)].file = sim::start_value(file, place.slot, place.joint, place.number);
   }
 }
 
 std::size_t ParameterTable::position(const ParameterPlace& place) const {
-  return (std::size_t{place.slot} * max_parameters + place.index) * joints_ + place.joint;
+  return (std::size_t{place.slot} * max_parameters + place.number) * joints_ + place.joint;
 }
 
 }  // namespace proleg::tools

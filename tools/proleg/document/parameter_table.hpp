@@ -10,20 +10,18 @@ namespace proleg::tools {
 /// A parameter of one joint.
 struct ParameterPlace {
   std::uint8_t slot;
-  std::uint8_t joint;  ///< in kernel order
-  std::uint8_t index;  ///< in the declaration
+  std::uint8_t joint;   ///< in kernel order
+  std::uint8_t number;  ///< in the declaration
 
-  [[nodiscard]] bool operator==(const ParameterPlace& other) const {
-    return slot == other.slot && joint == other.joint && index == other.index;
-  }
+  friend bool operator==(const ParameterPlace&, const ParameterPlace&) = default;
 };
 
 /// Place of a setting, which must be no internal value.
-[[nodiscard]] inline ParameterPlace place_of(const sim::Setting& setting) {
-  return {setting.slot, setting.joint, setting.index};
+[[nodiscard]] inline ParameterPlace place_of(const Setting& setting) {
+  return {setting.slot, setting.joint, setting.number};
 }
-[[nodiscard]] inline sim::Setting setting_of(const ParameterPlace& place, std::int32_t value) {
-  return {place.slot, place.joint, place.index, false, value};
+[[nodiscard]] inline Setting setting_of(const ParameterPlace& place, std::int32_t value) {
+  return {place.slot, place.joint, place.number, false, value};
 }
 
 /// The parameters of a robot that moves. Each has three raw values (shared/fixed/unit.hpp): that of the file, the one

@@ -67,7 +67,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   std::size_t recorded_events = 0;
   const auto start = std::chrono::steady_clock::now();
   while (loop.tick() < run.ticks && !interrupted()) {
-    const sim::Change* change = loop.advance();
+    const Change* change = loop.advance();
     const std::uint32_t tick = loop.tick() - 1;
     for (const auto& event : loop.restart_events()) {
       note_restart(run, tick, event, result.restarts);

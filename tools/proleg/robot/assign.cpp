@@ -52,7 +52,7 @@ std::int32_t parse_amplitude(const std::string& word) {
 }
 
 /// Angles that every joint of the robot may have. Throws InputError if there is none.
-canopen::AngleLimits common_limits(const sim::Scenario& scenario) {
+AngleLimits common_limits(const sim::Scenario& scenario) {
   unsigned lowest = 0;
   unsigned highest = 0;
   const auto& limits = scenario.joint_limits;

@@ -144,7 +144,7 @@ class Drive {
 
   void take_ticks(bool at_end) {
     gait_.take_ticks(
-        at_end, {.tick = [this](const sim::Change* change) { record(change); },
+        at_end, {.tick = [this](const Change* change) { record(change); },
                  .measured =
                      [this](const host::Measurement& measured) {
                        if (recorders_.mirror != nullptr && measured.values.angle != canopen::Monitoring::not_measured) {
@@ -154,7 +154,7 @@ class Drive {
   }
 
   /// The last tick that was followed.
-  void record(const sim::Change* change) {
+  void record(const Change* change) {
     if (recorders_.recorder == nullptr && recorders_.mirror == nullptr) {
       return;
     }
@@ -164,7 +164,7 @@ class Drive {
       record_into(recorders_.mirror_recorder, change, recorders_.mirror->follow(sample));
     }
   }
-  static void record_into(sim::Recorder* recorder, const sim::Change* change, const sim::TickSample& sample) {
+  static void record_into(sim::Recorder* recorder, const Change* change, const sim::TickSample& sample) {
     if (recorder == nullptr) {
       return;
     }

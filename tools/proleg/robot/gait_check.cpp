@@ -59,9 +59,9 @@ GaitCheck::GaitCheck(const sim::Scenario& scenario)
   }
 }
 
-void GaitCheck::add_change(const sim::Change& change) {
+void GaitCheck::add_change(const Change& change) {
   const auto first = changes_.begin() + static_cast<std::ptrdiff_t>(gait_.next_change());
-  const auto place = std::ranges::upper_bound(first, changes_.end(), change.tick, {}, &sim::Change::tick);
+  const auto place = std::ranges::upper_bound(first, changes_.end(), change.tick, {}, &Change::tick);
   changes_.insert(place, change);
 }
 
@@ -105,8 +105,8 @@ void GaitCheck::compare_setpoints(unsigned joint, const canopen::Master::Setpoin
 }
 
 /// Computes the next tick with the contacts of the modules.
-const sim::Change* GaitCheck::advance(const host::TickFrames& tick) {
-  const sim::Change* const change = gait_.apply_due_changes();
+const Change* GaitCheck::advance(const host::TickFrames& tick) {
+  const Change* const change = gait_.apply_due_changes();
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
     if (const auto& frame = tick.frames[joint][0]) {
       contacts_[joint] = static_cast<std::uint8_t>(frame->flags() & StateFrame::contact_bits);
@@ -120,11 +120,11 @@ const sim::Change* GaitCheck::advance(const host::TickFrames& tick) {
   return change;
 }
 
-const sim::Change* GaitCheck::follow(const host::TickFrames& tick) {
+const Change* GaitCheck::follow(const host::TickFrames& tick) {
   if (const std::string* joint = unknown_contacts(tick)) {
     end_comparison("a state frame of " + *joint + " was not received, and the gait depends on its contacts");
   }
-  const sim::Change* change = advance(tick);
+  const Change* change = advance(tick);
   ++ticks_;
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
     for (unsigned channel = 0; channel < gait_.chain().kernel(joint).channel_count(joint); ++channel) {

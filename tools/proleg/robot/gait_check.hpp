@@ -28,10 +28,10 @@ class GaitCheck {
   GaitCheck& operator=(const GaitCheck&) = delete;
 
   /// A change, which takes effect at its tick. Call this before the tick is followed.
-  void add_change(const sim::Change& change);
+  void add_change(const Change& change);
 
   /// Computes the next tick and compares it. Returns the change that took effect, if any.
-  const sim::Change* follow(const host::TickFrames& tick);
+  const Change* follow(const host::TickFrames& tick);
   /// The same for a tick while the robot stops: only the set-points count, for compare_setpoints().
   void follow_stopping(const host::TickFrames& tick);
   /// Compares all bits of the set-points of a joint, if the comparison has not ended. To be called when the ticks up to
@@ -64,14 +64,14 @@ class GaitCheck {
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
 
  private:
-  const sim::Change* advance(const host::TickFrames& tick);
+  const Change* advance(const host::TickFrames& tick);
   /// The joint whose contacts are needed and were not received; null: none.
   [[nodiscard]] const std::string* unknown_contacts(const host::TickFrames& tick) const;
   void compare(unsigned joint, unsigned channel, const std::optional<StateFrame>& found);
   [[nodiscard]] std::string name_of(unsigned joint) const;
 
   const sim::Scenario& scenario_;
-  std::vector<sim::Change> changes_;  ///< by tick
+  std::vector<Change> changes_;  ///< by tick
   sim::Gait gait_;
   std::uint32_t ticks_ = 0;
   host::SetpointCheck setpoint_check_;

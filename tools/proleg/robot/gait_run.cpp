@@ -104,7 +104,7 @@ void GaitRun::take_ticks(bool at_end, const Observer& observer) {
   }
   is_following_ = false;  // an observer that fails does not work for the rest either
   while (auto tick = drive_.take_tick(at_end)) {
-    for (const sim::Change& change : changes_.take_decided(tick->tick)) {
+    for (const Change& change : changes_.take_decided(tick->tick)) {
       check_.add_change(change);
       observer.changed(change);
     }
@@ -112,7 +112,7 @@ void GaitRun::take_ticks(bool at_end, const Observer& observer) {
       check_.follow_stopping(*tick);
       continue;
     }
-    const sim::Change* change = check_.follow(*tick);
+    const Change* change = check_.follow(*tick);
     observer.tick(change);
   }
   while (const auto measured = drive_.take_measurement()) {
@@ -127,14 +127,14 @@ void GaitRun::add_change(const std::string& word) {
   }
 }
 
-void GaitRun::add_change(const std::vector<sim::Setting>& settings) {
+void GaitRun::add_change(const std::vector<Setting>& settings) {
   changes_.add(settings);
   give_new_change("a change");
 }
 
 void GaitRun::give_new_change(const std::string& what) {
-  const std::span<canopen::Change> changes = changes_.span();
-  if (changes.back().tick == canopen::Change::soon) {
+  const std::span<Change> changes = changes_.span();
+  if (changes.back().tick == Change::soon) {
     change_times_.accepted(changes.size() - 1, bus_.now(), drive_.master().tick().value_or(0));
   }
   give_changes(what);

@@ -52,10 +52,10 @@ class GaitRun {
 
   struct Observer {
     /// The last tick of check(), and the change that took effect at it, or null. Not called while the robot stops.
-    std::function<void(const sim::Change* change)> tick;
+    std::function<void(const Change* change)> tick;
     std::function<void(const host::Measurement& measurement)> measured = [](const host::Measurement&) {};
     /// A change that the master has made.
-    std::function<void(const sim::Change& change)> changed = [](const sim::Change&) {};
+    std::function<void(const Change& change)> changed = [](const Change&) {};
   };
   /// The ticks whose frames have come. at_end: no more frames come. What an observer throws goes through, and then
   /// nothing is followed any more.
@@ -64,7 +64,7 @@ class GaitRun {
   /// A change as for --set while the robot moves. Throws InputError.
   void add_change(const std::string& word);
   /// Values that take effect together, as soon as all modules have them. Throws InputError.
-  void add_change(const std::vector<sim::Setting>& settings);
+  void add_change(const std::vector<Setting>& settings);
   /// The changes of the scenario whose time has come.
   void release_changes();
   [[nodiscard]] const LiveChanges& changes() const { return changes_; }

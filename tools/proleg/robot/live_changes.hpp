@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/computer/master/change_plan.hpp"
+#include "shared/computer/change/change.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {
@@ -19,7 +19,7 @@ class LiveChanges {
   static constexpr std::uint32_t lead_us = 3'000'000;
 
   /// scenario: must outlive this. planned: its changes, by ascending tick. span() has the first of them.
-  LiveChanges(const sim::Scenario& scenario, std::vector<canopen::Change> planned);
+  LiveChanges(const sim::Scenario& scenario, std::vector<Change> planned);
   LiveChanges(const LiveChanges&) = delete;
   LiveChanges& operator=(const LiveChanges&) = delete;
 
@@ -27,16 +27,16 @@ class LiveChanges {
   /// end: the first one that is not part of the run. Throws InputError. True: the master must get the new span() now.
   bool add(const std::string& word, std::uint32_t now, std::uint32_t end);
   /// Values that take effect together, as soon as all modules have them. The master must get the new span() now.
-  void add(const std::vector<sim::Setting>& settings);
+  void add(const std::vector<Setting>& settings);
   /// Puts the next planned change behind span(), if it is time. True: the master must get the new span() now.
   bool release(std::uint32_t now);
   /// The master has refused the last one of span().
   void remove_last();
   /// What the master has, or must get.
-  [[nodiscard]] std::span<canopen::Change> span() { return changes_; }
+  [[nodiscard]] std::span<Change> span() { return changes_; }
 
   /// The changes for this tick and earlier ones that have not been taken and that the master did not drop.
-  [[nodiscard]] std::vector<sim::Change> take_decided(std::uint32_t tick);
+  [[nodiscard]] std::vector<Change> take_decided(std::uint32_t tick);
   /// Changes that the master has dropped, or never got in time.
   [[nodiscard]] std::uint64_t dropped() const;
   /// Changes without a tick that were added and have not been taken, nor dropped: the run has ended before.
@@ -45,10 +45,9 @@ class LiveChanges {
  private:
   const sim::Scenario& scenario_;
   std::uint32_t lead_ticks_;
-  std::vector<canopen::Change> planned_;  ///< by ascending tick; the master does not have them yet
-  std::vector<canopen::Change> changes_;
-  std::vector<std::vector<canopen::ChangedValue>> values_;  ///< of the changes that were added
-  std::vector<std::size_t> without_tick_;                   ///< positions in changes_ of those that were added
+  std::vector<Change> planned_;  ///< by ascending tick; the master does not have them yet
+  std::vector<Change> changes_;
+  std::vector<std::size_t> without_tick_;  ///< positions in changes_ of those that were added
   std::size_t taken_ = 0;
   std::uint64_t too_late_ = 0;  ///< planned changes that the master never got
 };

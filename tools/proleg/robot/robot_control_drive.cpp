@@ -59,7 +59,7 @@ host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario) {
   setup.line = entry.line;
   setup.tick_us = scenario.kernel.tick_period_us;
   for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {
-    const sim::JointLimits& limits = scenario.joint_limits[joint];
+    const AngleLimits& limits = scenario.joint_limits[joint];
     setup.joints.push_back({scenario.robot.joints[joint].name, degrees(limits.lower), degrees(limits.upper),
                             scenario.robot.joints[joint].max_speed * 180.0 / std::numbers::pi});
   }
@@ -72,7 +72,7 @@ host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario) {
 
 host::DriveLimits drive_limits(const sim::Scenario& scenario) {
   host::DriveLimits limits;
-  for (const sim::JointLimits& joint : scenario.joint_limits) {
+  for (const AngleLimits& joint : scenario.joint_limits) {
     limits.lower.push_back(joint.lower);
     limits.upper.push_back(joint.upper);
   }

@@ -25,7 +25,7 @@ class ScenarioGait final : public host::SetpointSource {
   [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return chain().setpoints(); }
   void advance(std::span<const std::uint8_t> contacts) override;
   /// A change for the coming tick, beside those of the scenario.
-  void apply(const sim::Change& change) { gait_.chain().apply(change); }
+  void apply(const Change& change) { gait_.chain().apply(change); }
   [[nodiscard]] const sim::KernelChain& chain() const { return gait_.chain(); }
 
  private:

@@ -45,7 +45,7 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
   std::uint64_t receptions = 0;
   const auto start = std::chrono::steady_clock::now();
   while (simulation.tick() < setup.ticks && !interrupted()) {
-    const sim::Change* change = simulation.advance();
+    const Change* change = simulation.advance();
     lost_frames += simulation.chain().lost().size();
     receptions += simulation.chain().receptions();
     if (recorder != nullptr) {

@@ -29,7 +29,7 @@ json entries_json(const sim::Scenario& file, std::span<const sim::ActuationEdit>
                        {"old", edit.old_line ? json(*edit.old_line) : json()},
                        {"new", edit.new_line},
                        {"slot", edit.slot + 1},
-                       {"name", declaration.parameters[edit.index].name},
+                       {"name", declaration.parameters[edit.number].name},
                        {"joints", std::move(joints)}});
   }
   return entries;

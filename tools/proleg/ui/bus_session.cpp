@@ -270,8 +270,8 @@ json BusSession::pose(const json& arguments) {
 json BusSession::set(const json& arguments) {
   const auto words = argument<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  std::vector<sim::Setting> internal_values = edits_.read(words.value_or(std::vector<std::string>{}));
-  std::erase_if(internal_values, [](const sim::Setting& setting) { return !setting.internal; });
+  std::vector<Setting> internal_values = edits_.read(words.value_or(std::vector<std::string>{}));
+  std::erase_if(internal_values, [](const Setting& setting) { return !setting.internal; });
   if (!internal_values.empty()) {
     static_cast<void>(powered());
   }
@@ -346,7 +346,7 @@ void BusSession::start_robot(bool holds) {
           [this](const sim::TickSample& sample, std::span<const double> angles, const std::vector<bool>& measured) {
             output_.add_row(rows_.run_of(sample.tick), sample.tick, rows_.fill(sample, angles, measured));
           },
-          [this](const sim::Change& change) {
+          [this](const Change& change) {
             delivery_.confirm(change);
             are_parameters_new_ = true;
           },
@@ -418,7 +418,7 @@ void BusSession::give_changes() {
     are_parameters_new_ = true;
     output_.notice(host::NoticeLevel::error, "a change had no effect: not all modules have got it in time");
   }
-  if (const std::vector<sim::Setting> settings = delivery_.next(); !settings.empty()) {
+  if (const std::vector<Setting> settings = delivery_.next(); !settings.empty()) {
     robot_->change(settings);
   }
 }

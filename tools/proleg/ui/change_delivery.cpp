@@ -13,16 +13,16 @@ void ChangeDelivery::begin_run() {
   internal_values_.clear();
 }
 
-void ChangeDelivery::add(const std::vector<sim::Setting>& internal_values) {
+void ChangeDelivery::add(const std::vector<Setting>& internal_values) {
   internal_values_.insert(internal_values_.end(), internal_values.begin(), internal_values.end());
 }
 
-std::vector<sim::Setting> ChangeDelivery::next() {
-  std::vector<sim::Setting> settings;
+std::vector<Setting> ChangeDelivery::next() {
+  std::vector<Setting> settings;
   const auto has_room = [&](unsigned joint) {
-    return std::ranges::count(settings, joint, &sim::Setting::joint) < static_cast<std::ptrdiff_t>(max_staged_values);
+    return std::ranges::count(settings, joint, &Setting::joint) < static_cast<std::ptrdiff_t>(max_staged_values);
   };
-  std::erase_if(internal_values_, [&](const sim::Setting& setting) {
+  std::erase_if(internal_values_, [&](const Setting& setting) {
     const bool fits = has_room(setting.joint);
     if (fits) {
       settings.push_back(setting);
@@ -41,10 +41,10 @@ std::vector<sim::Setting> ChangeDelivery::next() {
   return settings;
 }
 
-void ChangeDelivery::confirm(const sim::Change& change) {
+void ChangeDelivery::confirm(const Change& change) {
   ParameterTable& table = edits_.parameters();
   const std::vector<ParameterPlace>& places = table.places();
-  for (const sim::Setting& setting : change.settings) {
+  for (const Setting& setting : change.settings) {
     if (setting.internal) {
       continue;
     }

@@ -18,19 +18,19 @@ class ChangeDelivery {
   /// The modules have started with what is wanted.
   void begin_run();
   /// Internal values that the modules are to get once.
-  void add(const std::vector<sim::Setting>& internal_values);
+  void add(const std::vector<Setting>& internal_values);
   /// The next change for the modules: all that is wanted and not given, but at most max_staged_values of a joint.
   /// Empty: there is none.
-  [[nodiscard]] std::vector<sim::Setting> next();
+  [[nodiscard]] std::vector<Setting> next();
   /// The modules have made a change.
-  void confirm(const sim::Change& change);
+  void confirm(const Change& change);
   /// A change had no effect: what was given and not confirmed is not wanted any more.
   void give_up();
 
  private:
   ParameterEdits& edits_;
-  std::vector<std::int32_t> given_;            ///< of each place of the table, what the modules were given last
-  std::vector<sim::Setting> internal_values_;  ///< not given yet
+  std::vector<std::int32_t> given_;       ///< of each place of the table, what the modules were given last
+  std::vector<Setting> internal_values_;  ///< not given yet
 };
 
 }  // namespace proleg::tools

@@ -60,8 +60,8 @@ void DrivenRobot::poll() {
   }
   try {
     gait_.take_ticks(gait_.state() == canopen::MasterState::stopped,
-                     {.tick = [this](const sim::Change* change) { on_tick(change); },
-                      .changed = [this](const sim::Change& change) { listener_.changed(change); }});
+                     {.tick = [this](const Change* change) { on_tick(change); },
+                      .changed = [this](const Change& change) { listener_.changed(change); }});
   } catch (const std::exception& error) {
     fail(one_line(error.what()));
   }
@@ -107,7 +107,7 @@ void DrivenRobot::place_where_it_holds(unsigned joint) {
   targets_.place(joint, angle == canopen::position_not_measured ? 0 : angle);
 }
 
-void DrivenRobot::on_tick(const sim::Change* change) {
+void DrivenRobot::on_tick(const Change* change) {
   sim::TickSample sample = gait_.check().sample(gait_.drive());
   if (!is_in_gait_mode_) {
     move_targets();
@@ -248,7 +248,7 @@ bool DrivenRobot::has_room_for_changes() {
   return (state_ == State::running || state_ == State::joining || state_ == State::held) && gait_.has_made_changes();
 }
 
-void DrivenRobot::record(const sim::TickSample& sample, const sim::Change* change) {
+void DrivenRobot::record(const sim::TickSample& sample, const Change* change) {
   if (recorder_ == nullptr || !is_in_gait_mode_) {
     return;
   }

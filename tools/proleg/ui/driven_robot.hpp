@@ -37,7 +37,7 @@ class DrivenRobot {
                        const std::vector<bool>& measured)>
         tick;
     /// A change has become part of the gait.
-    std::function<void(const sim::Change& change)> changed;
+    std::function<void(const Change& change)> changed;
     /// For people, one line. is_error: the robot does not do what it should.
     std::function<void(const std::string& line, bool is_error)> report;
   };
@@ -73,7 +73,7 @@ class DrivenRobot {
 
   /// Values for the modules, which take effect together, while has_room_for_changes(). At most max_staged_values of a
   /// joint. Throws InputError.
-  void change(const std::vector<sim::Setting>& settings) { gait_.add_change(settings); }
+  void change(const std::vector<Setting>& settings) { gait_.add_change(settings); }
   /// Whether the modules have all changes that they were given.
   [[nodiscard]] bool has_room_for_changes();
   /// Changes that had no effect.
@@ -89,12 +89,12 @@ class DrivenRobot {
   [[nodiscard]] bool has_power() const { return state_ != State::stopping && state_ != State::stopped; }
   void on_started();
   void place_where_it_holds(unsigned joint);
-  void on_tick(const sim::Change* change);
+  void on_tick(const Change* change);
   void move_targets();
   void set_mode(std::int8_t mode);
   void read_target(unsigned joint);
   void on_mode_answer(const host::SdoResult& result);
-  void record(const sim::TickSample& sample, const sim::Change* change);
+  void record(const sim::TickSample& sample, const Change* change);
   void end_recording();
   void fail(const std::string& why);
 

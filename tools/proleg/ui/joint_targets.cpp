@@ -5,9 +5,9 @@
 
 namespace proleg::tools {
 
-JointTargets::JointTargets(std::span<const sim::JointLimits> limits, std::uint32_t tick_us)
+JointTargets::JointTargets(std::span<const AngleLimits> limits, std::uint32_t tick_us)
     : positions_(limits.size()), tick_us_(tick_us) {
-  for (const sim::JointLimits& limit : limits) {
+  for (const AngleLimits& limit : limits) {
     joints_.push_back({limit.lower, limit.upper});
   }
 }

@@ -13,7 +13,7 @@ namespace proleg::tools {
 class JointTargets {
  public:
   /// limits: of each joint. tick_us: microseconds from one step to the next.
-  JointTargets(std::span<const sim::JointLimits> limits, std::uint32_t tick_us);
+  JointTargets(std::span<const AngleLimits> limits, std::uint32_t tick_us);
 
   /// The joint is here, and stays.
   void place(unsigned joint, std::int32_t position);

@@ -46,19 +46,19 @@ LiveSimulation::LiveSimulation(sim::Scenario file, std::vector<std::string> sett
 }
 
 std::uint32_t LiveSimulation::set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture) {
-  const std::vector<sim::Setting> settings = edits_.set(words, gesture);
+  const std::vector<Setting> settings = edits_.set(words, gesture);
   std::uint32_t tick = std::max(simulation_->tick(), live_.empty() ? 0 : live_.back().tick);
   while (!fits(tick, settings)) {
     ++tick;
   }
-  for (const sim::Setting& setting : settings) {
+  for (const Setting& setting : settings) {
     schedule(tick, setting);
   }
   return tick;
 }
 
 bool LiveSimulation::undo() {
-  const std::optional<std::vector<sim::Setting>> settings = edits_.undo();
+  const std::optional<std::vector<Setting>> settings = edits_.undo();
   if (settings) {
     schedule_each(*settings);
   }
@@ -66,7 +66,7 @@ bool LiveSimulation::undo() {
 }
 
 bool LiveSimulation::redo() {
-  const std::optional<std::vector<sim::Setting>> settings = edits_.redo();
+  const std::optional<std::vector<Setting>> settings = edits_.redo();
   if (settings) {
     schedule_each(*settings);
   }
@@ -74,7 +74,7 @@ bool LiveSimulation::redo() {
 }
 
 void LiveSimulation::swap_sets() {
-  std::vector<sim::Setting> settings;
+  std::vector<Setting> settings;
   const std::vector<ParameterPlace>& places = parameters().places();
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::int32_t wanted = parameters().at(places[i]).wanted;
@@ -88,7 +88,7 @@ void LiveSimulation::swap_sets() {
 }
 
 void LiveSimulation::reset(const std::vector<ParameterPlace>& places) {
-  const std::vector<sim::Setting> settings = edits_.reset(places);
+  const std::vector<Setting> settings = edits_.reset(places);
   if (!settings.empty()) {
     schedule_each(settings);
   }
@@ -139,12 +139,12 @@ void LiveSimulation::restart(StartValues values) {
 
 void LiveSimulation::repeat(const RunInputs& inputs) {
   end_recording();
-  for (const sim::Setting& setting : inputs.start) {
+  for (const Setting& setting : inputs.start) {
     edits_.parameters().want(place_of(setting), setting.value);
   }
   clear_run();
-  for (const sim::Change& change : inputs.changes) {
-    for (const sim::Setting& setting : change.settings) {
+  for (const Change& change : inputs.changes) {
+    for (const Setting& setting : change.settings) {
       schedule(change.tick, setting);
     }
   }
@@ -167,7 +167,7 @@ void LiveSimulation::clear_run() {
   ++revision_;
 }
 
-void LiveSimulation::record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const sim::Change* change) {
+void LiveSimulation::record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const Change* change) {
   if (change != nullptr) {
     recorder.record_change(*change);
   }
@@ -176,7 +176,7 @@ void LiveSimulation::record_tick(sim::Recorder& recorder, sim::Simulation& simul
 
 void LiveSimulation::advance() {
   const std::uint32_t tick = simulation_->tick();
-  const sim::Change* change = simulation_->advance();
+  const Change* change = simulation_->advance();
   if (recorder_ != nullptr) {
     try {
       record_tick(*recorder_, *simulation_, change);
@@ -189,7 +189,7 @@ void LiveSimulation::advance() {
   if (change == nullptr) {
     return;
   }
-  for (const sim::Setting& setting : change->settings) {
+  for (const Setting& setting : change->settings) {
     if (setting.internal) {
       continue;
     }
@@ -206,8 +206,8 @@ std::vector<std::string> LiveSimulation::repeating_words() const {
   std::vector<std::string> words;
   std::vector<LiveSetting> start;
   for (const ParameterPlace& place : parameters().places()) {
-    const std::int32_t value = sim::start_value(scenario_, place.slot, place.joint, place.index);
-    if (value != sim::start_value(given_, place.slot, place.joint, place.index)) {
+    const std::int32_t value = sim::start_value(scenario_, place.slot, place.joint, place.number);
+    if (value != sim::start_value(given_, place.slot, place.joint, place.number)) {
       start.push_back({0, setting_of(place, value)});
     }
   }
@@ -273,25 +273,24 @@ bool LiveSimulation::was_asked_for(const ParameterPlace& place, std::uint32_t fr
   return false;
 }
 
-bool LiveSimulation::fits(std::uint32_t tick, const std::vector<sim::Setting>& settings) const {
-  const auto change = std::ranges::lower_bound(scenario_.changes, tick, {}, &sim::Change::tick);
+bool LiveSimulation::fits(std::uint32_t tick, const std::vector<Setting>& settings) const {
+  const auto change = std::ranges::lower_bound(scenario_.changes, tick, {}, &Change::tick);
   if (change == scenario_.changes.end() || change->tick != tick) {
     return true;
   }
-  std::vector<sim::Setting> merged = change->settings;
-  for (const sim::Setting& setting : settings) {
+  std::vector<Setting> merged = change->settings;
+  for (const Setting& setting : settings) {
     sim::put_setting(merged, setting);
   }
-  return std::ranges::all_of(merged, [&](const sim::Setting& setting) {
-    return std::ranges::count(merged, setting.joint, &sim::Setting::joint) <=
-           static_cast<std::ptrdiff_t>(max_staged_values);
+  return std::ranges::all_of(merged, [&](const Setting& setting) {
+    return std::ranges::count(merged, setting.joint, &Setting::joint) <= static_cast<std::ptrdiff_t>(max_staged_values);
   });
 }
 
-void LiveSimulation::schedule(std::uint32_t tick, const sim::Setting& setting) {
-  auto change = std::ranges::lower_bound(scenario_.changes, tick, {}, &sim::Change::tick);
+void LiveSimulation::schedule(std::uint32_t tick, const Setting& setting) {
+  auto change = std::ranges::lower_bound(scenario_.changes, tick, {}, &Change::tick);
   if (change == scenario_.changes.end() || change->tick != tick) {
-    change = scenario_.changes.insert(change, sim::Change{tick, {}});
+    change = scenario_.changes.insert(change, Change{tick, {}});
   }
   sim::put_setting(change->settings, setting);
   const auto same_tick = std::ranges::lower_bound(live_, tick, {}, &LiveSetting::tick);
@@ -308,9 +307,9 @@ void LiveSimulation::schedule(std::uint32_t tick, const sim::Setting& setting) {
   ++revision_;
 }
 
-void LiveSimulation::schedule_each(const std::vector<sim::Setting>& settings) {
+void LiveSimulation::schedule_each(const std::vector<Setting>& settings) {
   std::uint32_t tick = std::max(simulation_->tick(), live_.empty() ? 0 : live_.back().tick);
-  for (const sim::Setting& setting : settings) {
+  for (const Setting& setting : settings) {
     while (!fits(tick, {setting})) {
       ++tick;
     }
@@ -326,16 +325,16 @@ void LiveSimulation::add_words(std::vector<LiveSetting> settings, bool with_tick
     // The same value for all joints of the module is one word.
     const auto is_same = [&](const LiveSetting& other) {
       return other.tick == first.tick && other.setting.slot == first.setting.slot &&
-             other.setting.index == first.setting.index && other.setting.internal == first.setting.internal &&
+             other.setting.number == first.setting.number && other.setting.internal == first.setting.internal &&
              other.setting.value == first.setting.value;
     };
     const Slot& slot = scenario_.kernel.slots[first.setting.slot];
     const Declaration& declaration = slot.algorithm->declaration();
     const bool internal = first.setting.internal;
-    const std::string_view name = internal ? declaration.internal_values[first.setting.index].name
-                                           : declaration.parameters[first.setting.index].name;
-    const Unit unit = internal ? declaration.internal_values[first.setting.index].unit
-                               : declaration.parameters[first.setting.index].unit;
+    const std::string_view name = internal ? declaration.internal_values[first.setting.number].name
+                                           : declaration.parameters[first.setting.number].name;
+    const Unit unit = internal ? declaration.internal_values[first.setting.number].unit
+                               : declaration.parameters[first.setting.number].unit;
     const bool is_uniform = std::ranges::count_if(settings, is_same) == static_cast<std::ptrdiff_t>(slot.group.size());
     std::string word = std::to_string(first.setting.slot + 1) + '.' + std::string(name);
     if (is_uniform) {

@@ -103,20 +103,20 @@ class LiveSimulation {
  private:
   struct LiveSetting {
     std::uint32_t tick;
-    sim::Setting setting;
+    Setting setting;
   };
 
   /// The last tick of the simulation, and its change.
-  static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const sim::Change* change);
+  static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const Change* change);
   /// Without what was done to the run before.
   void clear_run();
   void begin();
   /// Whether a change for this tick or a later one sets the parameter.
   [[nodiscard]] bool was_asked_for(const ParameterPlace& place, std::uint32_t from_tick) const;
-  [[nodiscard]] bool fits(std::uint32_t tick, const std::vector<sim::Setting>& settings) const;
-  void schedule(std::uint32_t tick, const sim::Setting& setting);
+  [[nodiscard]] bool fits(std::uint32_t tick, const std::vector<Setting>& settings) const;
+  void schedule(std::uint32_t tick, const Setting& setting);
   /// Each of them as soon as possible.
-  void schedule_each(const std::vector<sim::Setting>& settings);
+  void schedule_each(const std::vector<Setting>& settings);
   void add_words(std::vector<LiveSetting> settings, bool with_tick, std::vector<std::string>& words) const;
 
   sim::Scenario file_;

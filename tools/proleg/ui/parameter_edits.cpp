@@ -13,11 +13,11 @@ namespace proleg::tools {
 ParameterEdits::ParameterEdits(const sim::Scenario& file, const sim::Scenario& start)
     : file_(file), parameters_(file, start) {}
 
-std::vector<sim::Setting> ParameterEdits::read(const std::vector<std::string>& words) const {
+std::vector<Setting> ParameterEdits::read(const std::vector<std::string>& words) const {
   if (words.empty()) {
     throw InputError("set", 0, "no word", "NAME=VALUE");
   }
-  std::vector<sim::Setting> settings;
+  std::vector<Setting> settings;
   for (const std::string& word : words) {
     if (word.find('@') != std::string::npos) {
       throw InputError(shortened(word), 0, "a tick", "NAME=VALUE, which takes effect at once");
@@ -27,11 +27,10 @@ std::vector<sim::Setting> ParameterEdits::read(const std::vector<std::string>& w
   return settings;
 }
 
-std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& words,
-                                              std::optional<std::uint64_t> gesture) {
-  std::vector<sim::Setting> settings = read(words);
+std::vector<Setting> ParameterEdits::set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture) {
+  std::vector<Setting> settings = read(words);
   ChangeHistory::Entry entry{words.front().substr(0, words.front().find('=')), {}, gesture};
-  for (const sim::Setting& setting : settings) {
+  for (const Setting& setting : settings) {
     if (!setting.internal) {
       const ParameterPlace place = place_of(setting);
       entry.steps.push_back({place, parameters_.at(place).wanted, setting.value});
@@ -44,7 +43,7 @@ std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& wo
   return settings;
 }
 
-std::optional<std::vector<sim::Setting>> ParameterEdits::undo() {
+std::optional<std::vector<Setting>> ParameterEdits::undo() {
   const ChangeHistory::Entry* entry = history_.to_undo();
   if (entry == nullptr) {
     return std::nullopt;
@@ -53,7 +52,7 @@ std::optional<std::vector<sim::Setting>> ParameterEdits::undo() {
   return want(*entry, &ChangeHistory::Step::before);
 }
 
-std::optional<std::vector<sim::Setting>> ParameterEdits::redo() {
+std::optional<std::vector<Setting>> ParameterEdits::redo() {
   const ChangeHistory::Entry* entry = history_.to_redo();
   if (entry == nullptr) {
     return std::nullopt;
@@ -62,7 +61,7 @@ std::optional<std::vector<sim::Setting>> ParameterEdits::redo() {
   return want(*entry, &ChangeHistory::Step::after);
 }
 
-std::vector<sim::Setting> ParameterEdits::reset(const std::vector<ParameterPlace>& places) {
+std::vector<Setting> ParameterEdits::reset(const std::vector<ParameterPlace>& places) {
   ChangeHistory::Entry entry{"reset", {}, std::nullopt};
   for (const ParameterPlace& place : places) {
     const ParameterTable::Values& values = parameters_.at(place);
@@ -70,16 +69,15 @@ std::vector<sim::Setting> ParameterEdits::reset(const std::vector<ParameterPlace
       entry.steps.push_back({place, values.wanted, values.file});
     }
   }
-  std::vector<sim::Setting> settings = want(entry, &ChangeHistory::Step::after);
+  std::vector<Setting> settings = want(entry, &ChangeHistory::Step::after);
   if (!settings.empty()) {
     history_.add(std::move(entry));
   }
   return settings;
 }
 
-std::vector<sim::Setting> ParameterEdits::want(const ChangeHistory::Entry& entry,
-                                               std::int32_t ChangeHistory::Step::*value) {
-  std::vector<sim::Setting> settings;
+std::vector<Setting> ParameterEdits::want(const ChangeHistory::Entry& entry, std::int32_t ChangeHistory::Step::*value) {
+  std::vector<Setting> settings;
   settings.reserve(entry.steps.size());
   for (const ChangeHistory::Step& step : entry.steps) {
     parameters_.want(step.place, step.*value);
@@ -100,7 +98,7 @@ std::vector<ParameterPlace> ParameterEdits::places_of(const std::optional<std::v
     }
     for (const unsigned joint : target.joints) {
       places.push_back({static_cast<std::uint8_t>(target.slot), static_cast<std::uint8_t>(joint),
-                        static_cast<std::uint8_t>(target.index)});
+                        static_cast<std::uint8_t>(target.number)});
     }
   }
   return places;

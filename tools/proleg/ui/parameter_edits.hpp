@@ -19,18 +19,18 @@ class ParameterEdits {
   ParameterEdits(const sim::Scenario& file, const sim::Scenario& start);
 
   /// What words mean, as for --set, without a tick. Changes nothing. Throws InputError.
-  [[nodiscard]] std::vector<sim::Setting> read(const std::vector<std::string>& words) const;
+  [[nodiscard]] std::vector<Setting> read(const std::vector<std::string>& words) const;
 
   // Each of these wants other values and returns them.
 
   /// Words as for read(). Internal values are among the result; they are not wanted longer than once. Throws
   /// InputError, and then changes nothing. gesture: as in ChangeHistory.
-  std::vector<sim::Setting> set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture);
+  std::vector<Setting> set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture);
   /// Nothing if there is nothing to undo.
-  std::optional<std::vector<sim::Setting>> undo();
-  std::optional<std::vector<sim::Setting>> redo();
+  std::optional<std::vector<Setting>> undo();
+  std::optional<std::vector<Setting>> redo();
   /// As the file has them.
-  std::vector<sim::Setting> reset(const std::vector<ParameterPlace>& places);
+  std::vector<Setting> reset(const std::vector<ParameterPlace>& places);
 
   /// The places that names like those of set() mean, of each joint that they mean; without names all. Throws
   /// InputError.
@@ -46,7 +46,7 @@ class ParameterEdits {
 
  private:
   /// Wants the values of an entry before or after it.
-  std::vector<sim::Setting> want(const ChangeHistory::Entry& entry, std::int32_t ChangeHistory::Step::*value);
+  std::vector<Setting> want(const ChangeHistory::Entry& entry, std::int32_t ChangeHistory::Step::*value);
 
   const sim::Scenario& file_;
   ParameterTable parameters_;

@@ -57,7 +57,7 @@ void RepeatedRun::require_simulation() const {
   }
 }
 
-sim::Setting RepeatedRun::resolve(const sim::RecordedSetting& recorded, bool internal) const {
+Setting RepeatedRun::resolve(const sim::RecordedSetting& recorded, bool internal) const {
   const Slot& slot = scenario_.kernel.slots[recorded.slot];
   const Declaration& declaration = slot.algorithm->declaration();
   const int index =
@@ -86,12 +86,12 @@ void RepeatedRun::read_inputs() {
 }
 
 void RepeatedRun::add_change(const sim::RecordedSetting& recorded, bool internal) {
-  const sim::Setting setting = resolve(recorded, internal);
+  const Setting setting = resolve(recorded, internal);
   if (recorded.tick > last_tick_) {
     ++left_out_;
     return;
   }
-  auto change = std::ranges::lower_bound(inputs_.changes, recorded.tick, {}, &sim::Change::tick);
+  auto change = std::ranges::lower_bound(inputs_.changes, recorded.tick, {}, &Change::tick);
   if (change == inputs_.changes.end() || change->tick != recorded.tick) {
     change = inputs_.changes.insert(change, {recorded.tick, {}});
   }

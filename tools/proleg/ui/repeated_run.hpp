@@ -19,8 +19,8 @@ namespace proleg::tools {
 
 /// What was done to a run.
 struct RunInputs {
-  std::vector<sim::Setting> start;    ///< values of parameters at tick 0
-  std::vector<sim::Change> changes;   ///< by ascending tick
+  std::vector<Setting> start;         ///< values of parameters at tick 0
+  std::vector<Change> changes;        ///< by ascending tick
   std::vector<sim::RobotMove> moves;  ///< by ascending tick
 };
 
@@ -58,7 +58,7 @@ class RepeatedRun {
   void read_inputs();
   void read_losses();
   void add_change(const sim::RecordedSetting& recorded, bool internal);
-  [[nodiscard]] sim::Setting resolve(const sim::RecordedSetting& recorded, bool internal) const;
+  [[nodiscard]] Setting resolve(const sim::RecordedSetting& recorded, bool internal) const;
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;
 
   std::unique_ptr<sim::Recording> recording_;

@@ -41,7 +41,7 @@ class Setup {
 
  private:
   std::array<std::uint8_t, 3> nodes_{4, 9, 2};
-  std::array<canopen::AngleLimits, 3> limits_{{{-1 << 29, 1 << 30}, {-1 << 30, 1 << 29}, {-1 << 30, 1 << 30}}};
+  std::array<AngleLimits, 3> limits_{{{-1 << 29, 1 << 30}, {-1 << 30, 1 << 29}, {-1 << 30, 1 << 30}}};
 };
 
 struct Meters final : firmware::SensorPort {

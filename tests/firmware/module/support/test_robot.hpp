@@ -111,7 +111,7 @@ class TestRobot {
 
  private:
   std::vector<std::uint8_t> nodes_;
-  std::vector<canopen::AngleLimits> limits_;
+  std::vector<AngleLimits> limits_;
 };
 
 /// A single configured module. The test sends its SYNC and TICK; its neighbours do not exist.

@@ -10,8 +10,8 @@ namespace {
 using namespace canopen;
 
 /// Parameter `number` of slot 0 for joints 0 to count - 1.
-std::vector<ChangedValue> for_all(unsigned joints, std::uint8_t number, std::int32_t value) {
-  std::vector<ChangedValue> values;
+std::vector<Setting> for_all(unsigned joints, std::uint8_t number, std::int32_t value) {
+  std::vector<Setting> values;
   for (unsigned joint = 0; joint < joints; ++joint) {
     values.push_back({0, static_cast<std::uint8_t>(joint), number, false, value + static_cast<std::int32_t>(joint)});
   }
@@ -31,7 +31,7 @@ std::uint32_t value_of(ScriptedRobot& robot, unsigned joint, std::uint8_t number
 std::vector<ScriptedModule::Effect> planned_effects(const ScriptedRobot& robot, unsigned joint) {
   std::vector<ScriptedModule::Effect> effects;
   for (std::size_t i = 0; i < robot.plan.size(); ++i) {
-    for (const ChangedValue& value : robot.plan[i].values) {
+    for (const Setting& value : robot.plan[i].settings) {
       if (value.joint == joint && !robot.changes[i].dropped) {
         effects.push_back({robot.plan[i].tick, in_force(value.number, value.internal, value.slot), value.value});
       }
@@ -62,7 +62,7 @@ void check_commits(const ScriptedRobot& robot, std::uint32_t lead) {
 }
 
 TEST(MasterChanges, ThoseThatFitAreCommittedBeforeTheStart) {
-  std::vector<PlannedChange> plan;
+  std::vector<Change> plan;
   for (std::uint32_t i = 0; i < 35; ++i) {
     plan.push_back({i * 10, for_all(3, 0, static_cast<std::int32_t>(i))});
   }
@@ -100,7 +100,7 @@ TEST(MasterChanges, RandomChangesComeIntoForceInEveryModuleAtTheirTick) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
     const auto joints = static_cast<unsigned>(1 + random() % 6);
-    std::vector<PlannedChange> plan;
+    std::vector<Change> plan;
     std::uint32_t tick = 0;
     for (int i = 0; i < 40; ++i) {
       plan.push_back({tick, {}});
@@ -110,7 +110,7 @@ TEST(MasterChanges, RandomChangesComeIntoForceInEveryModuleAtTheirTick) {
         const bool internal = random() % 4 == 0;
         const auto number = static_cast<std::uint8_t>(random() % 3);
         if (seen.insert({{joint, number + (internal ? 8U : 0U)}, true}).second) {
-          plan.back().values.push_back({0, joint, number, internal, static_cast<std::int32_t>(random() % 1000)});
+          plan.back().settings.push_back({0, joint, number, internal, static_cast<std::int32_t>(random() % 1000)});
         }
       }
       tick += static_cast<std::uint32_t>(4 + random() % 12);
@@ -130,11 +130,11 @@ TEST(MasterChanges, RandomChangesComeIntoForceInEveryModuleAtTheirTick) {
 }
 
 TEST(MasterChanges, AModuleNeverHasMoreValuesStagedThanItHasRoomFor) {
-  std::vector<PlannedChange> plan;
+  std::vector<Change> plan;
   for (std::uint32_t i = 0; i < 10; ++i) {  // 20 values of joint 0 in each: three changes fill its 64 places
     plan.push_back({60 + i * 30, {}});
     for (std::uint8_t n = 0; n < 20; ++n) {
-      plan.back().values.push_back({0, 0, static_cast<std::uint8_t>(n % 5), false, n});
+      plan.back().settings.push_back({0, 0, static_cast<std::uint8_t>(n % 5), false, n});
     }
   }
   ScriptedRobot robot(2, plan);
@@ -148,11 +148,11 @@ TEST(MasterChanges, AModuleNeverHasMoreValuesStagedThanItHasRoomFor) {
 }
 
 TEST(MasterChanges, OneThatComesTooLateIsReportedAndDroppedAndTheRobotGoesOn) {
-  std::vector<PlannedChange> plan;
+  std::vector<Change> plan;
   for (std::uint32_t i = 0; i < 12; ++i) {  // one a tick, of nine values of joint 0: seven of them fit at once
     plan.push_back({100 + i, for_all(2, 0, static_cast<std::int32_t>(i))});
     for (std::uint8_t n = 0; n < 8; ++n) {
-      plan.back().values.push_back({0, 0, 0, false, static_cast<std::int32_t>(i)});
+      plan.back().settings.push_back({0, 0, 0, false, static_cast<std::int32_t>(i)});
     }
   }
   plan.push_back({300, for_all(2, 0, 1234)});
@@ -177,7 +177,7 @@ TEST(MasterChanges, OneThatComesTooLateIsReportedAndDroppedAndTheRobotGoesOn) {
 }
 
 TEST(MasterChanges, OneThatAModuleRefusesInFlightIsDroppedForAll) {
-  std::vector<PlannedChange> plan;
+  std::vector<Change> plan;
   for (std::uint32_t i = 0; i < 35; ++i) {
     plan.push_back({50 + i * 25, for_all(4, 0, static_cast<std::int32_t>(i))});
   }
@@ -203,13 +203,13 @@ TEST(MasterChanges, OneThatAModuleRefusesInFlightIsDroppedForAll) {
 
 // Restarts.
 
-std::vector<PlannedChange> steady_plan(unsigned joints, std::uint32_t ticks) {
-  std::vector<PlannedChange> plan;
+std::vector<Change> steady_plan(unsigned joints, std::uint32_t ticks) {
+  std::vector<Change> plan;
   for (std::uint32_t tick = 10; tick < ticks; tick += 15) {
     // Two parameters change all the time, a third one now and then.
     const auto number = static_cast<std::uint8_t>(tick % 100 == 10 ? 2 : tick % 2);
     plan.push_back({tick, for_all(joints, number, static_cast<std::int32_t>(tick))});
-    plan.back().values.push_back({0, 1, 0, true, static_cast<std::int32_t>(tick)});  // a distortion
+    plan.back().settings.push_back({0, 1, 0, true, static_cast<std::int32_t>(tick)});  // a distortion
   }
   return plan;
 }
@@ -219,7 +219,7 @@ void expect_values_of_plan(ScriptedRobot& robot) {
   std::map<std::pair<unsigned, unsigned>, std::int32_t> values;
   for (std::size_t i = 0; i < robot.plan.size(); ++i) {
     if (robot.plan[i].tick <= robot.master().tick().value_or(0) && !robot.changes[i].dropped) {
-      for (const ChangedValue& value : robot.plan[i].values) {
+      for (const Setting& value : robot.plan[i].settings) {
         if (!value.internal) {
           values[{value.joint, value.number}] = value.value;
         }
@@ -267,7 +267,7 @@ TEST(MasterRestart, ARestartedModuleGetsItsSetupAndEverythingThatHasChanged) {
 }
 
 TEST(MasterRestart, ChangesMayPassWhileAModuleIsSetUpAgain) {
-  std::vector<PlannedChange> plan;
+  std::vector<Change> plan;
   for (std::uint32_t i = 0; i < 7; ++i) {
     plan.push_back({200 + i, for_all(4, static_cast<std::uint8_t>(i % 5), static_cast<std::int32_t>(i + 1))});
   }
@@ -288,11 +288,11 @@ TEST(MasterRestart, ChangesMayPassWhileAModuleIsSetUpAgain) {
 }
 
 TEST(MasterRestart, WhatWasDroppedIsNotMadeByARestart) {
-  std::vector<PlannedChange> plan;
+  std::vector<Change> plan;
   for (std::uint32_t i = 0; i < 9; ++i) {  // one a tick, of nine values of joint 0: seven of them fit at once
     plan.push_back({100 + i, for_all(3, static_cast<std::uint8_t>(i % 3), static_cast<std::int32_t>(i + 50))});
     for (std::uint8_t n = 0; n < 8; ++n) {
-      plan.back().values.push_back({0, 0, 4, false, static_cast<std::int32_t>(i)});
+      plan.back().settings.push_back({0, 0, 4, false, static_cast<std::int32_t>(i)});
     }
   }
   ScriptedRobot robot(3, plan);

@@ -138,19 +138,19 @@ TEST(MasterProblem, ARobotThatCouldFillTheBusIsRefusedBeforeAnythingIsSent) {
 }
 
 TEST(MasterProblem, AChangeThatCannotBeIsFoundBeforeAnythingIsSent) {
-  const auto bad_change = [](std::vector<PlannedChange> plan) {
+  const auto bad_change = [](std::vector<Change> plan) {
     ScriptedRobot robot(3, std::move(plan));
     expect_nothing_sent(robot, ProblemCode::bad_change);
     return robot.master().problem().change;
   };
-  const ChangedValue good{0, 2, 0, false, 5};
+  const Setting good{0, 2, 0, false, 5};
   EXPECT_EQ(bad_change({{10, {good}}, {20, {{0, 3, 0, false, 5}}}}), 1U) << "joint";
   EXPECT_EQ(bad_change({{10, {{2, 0, 0, false, 5}}}}), 0U) << "slot without algorithm";
   EXPECT_EQ(bad_change({{10, {{4, 0, 0, false, 5}}}}), 0U) << "slot";
   EXPECT_EQ(bad_change({{10, {{0, 0, 30, false, 5}}}}), 0U) << "parameter";
   EXPECT_EQ(bad_change({{10, {{0, 0, 30, true, 5}}}}), 0U) << "internal value";
   EXPECT_EQ(bad_change({{10, {good}}, {10, {good}}}), 1U) << "tick";
-  EXPECT_EQ(bad_change({{10, std::vector<ChangedValue>(65, good)}}), 0U) << "too many values of a joint";
+  EXPECT_EQ(bad_change({{10, std::vector<Setting>(65, good)}}), 0U) << "too many values of a joint";
 }
 
 TEST(MasterProblem, AMissingModuleIsNamedAfterASecond) {

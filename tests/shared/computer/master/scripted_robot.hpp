@@ -23,7 +23,7 @@ inline unsigned pick(std::mt19937_64& random, unsigned count) { return static_ca
 class MasterNode final : public sim::BusListener, private CanPort {
  public:
   MasterNode(sim::Bus& bus, const canopen::RobotSetup& setup, const canopen::MasterOptions& options,
-             std::span<canopen::Change> changes)
+             std::span<Change> changes)
       : controller(bus.attach(*this)), master(*this, setup, options, changes) {}
 
   void received(sim::BusTime time, const CanFrame& frame) override { master.receive(time / 1000, frame); }
@@ -38,21 +38,12 @@ class MasterNode final : public sim::BusListener, private CanPort {
   bool send(const CanFrame& frame) override { return (vanishes && vanishes(frame)) || controller.send(frame); }
 };
 
-/// Values of a change, with the storage that canopen::Change only refers to.
-struct PlannedChange {
-  std::uint32_t tick;
-  std::vector<canopen::ChangedValue> values;
-};
-
 class ScriptedRobot {
  public:
   static constexpr std::uint32_t fingerprint = 0xF1A9;
 
-  explicit ScriptedRobot(unsigned joints, std::vector<PlannedChange> planned = {})
-      : plan(std::move(planned)), setup_(joints) {
-    for (const PlannedChange& change : plan) {
-      changes.push_back({change.tick, change.values, false});
-    }
+  explicit ScriptedRobot(unsigned joints, std::vector<Change> planned = {})
+      : plan(std::move(planned)), changes(plan), setup_(joints) {
     options.core_fingerprint = fingerprint;
     for (unsigned joint = 0; joint < joints; ++joint) {
       add_module(setup_.nodes[joint]);
@@ -156,8 +147,8 @@ class ScriptedRobot {
 
   sim::Bus bus;
   std::vector<std::unique_ptr<ScriptedModule>> modules;  ///< modules by joint, then those that were added
-  std::vector<PlannedChange> plan;
-  std::vector<canopen::Change> changes;
+  std::vector<Change> plan;
+  std::vector<Change> changes;
   canopen::MasterOptions options;
   std::vector<sim::Transmission> transmissions;
   std::vector<canopen::Event> events;
@@ -170,15 +161,15 @@ class ScriptedRobot {
       for (unsigned joint = 0; joint < joints; ++joint) {
         nodes.push_back(static_cast<std::uint8_t>(joint * 2 + 3));
         limits.push_back({-(1 << 29), 1 << 29});
-        starts.push_back({0, static_cast<std::uint8_t>(joint), 0, static_cast<std::int32_t>(joint) * 1000 + 7});
+        starts.push_back({0, static_cast<std::uint8_t>(joint), 0, false, static_cast<std::int32_t>(joint) * 1000 + 7});
       }
       setup.nodes = nodes;
       setup.limits = limits;
       setup.start_values = starts;
     }
     std::vector<std::uint8_t> nodes;
-    std::vector<canopen::AngleLimits> limits;
-    std::vector<canopen::StartValue> starts;
+    std::vector<AngleLimits> limits;
+    std::vector<Setting> starts;
     canopen::RobotSetup setup;
   };
 

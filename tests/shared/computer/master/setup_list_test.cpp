@@ -41,7 +41,7 @@ struct Robot {
   RobotSetup setup;
   std::vector<std::uint8_t> nodes;
   std::vector<AngleLimits> limits;
-  std::vector<StartValue> start_values;
+  std::vector<Setting> start_values;
 };
 
 KernelConfiguration random_configuration(Pcg32& random, unsigned joints) {
@@ -69,7 +69,7 @@ TEST(SetupList, WritesInTheOrderOfTheProtocol) {
   robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b111)};
   robot.setup.kernel.slots[2] = {&test::algorithm(test::sinusoidal), JointMask(0b110)};  // second frames of 1 and 2
   robot.limits[1] = {-5, 6};
-  robot.start_values = {{2, 1, 0, 77}, {0, 1, 3, -8}, {0, 0, 0, 5}};
+  robot.start_values = {{2, 1, 0, false, 77}, {0, 1, 3, false, -8}, {0, 0, 0, false, 5}};
   const std::vector<SdoWrite> expected{
       {{0x1016, 1}, 4, 127U << 16U | 500U},
       {{0x1017, 0}, 2, 100},
@@ -137,11 +137,11 @@ TEST(SetupList, SendsTheLastOfRepeatedStartValuesAndNoDefaults) {
   robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b01)};
   const std::int32_t usual = test::algorithm(test::coupled).declaration().parameters[0].default_value;
   const std::size_t without = robot.writes(0).size();
-  robot.start_values = {{0, 0, 0, 1}, {0, 0, 1, 2}, {0, 0, 0, 3}};
+  robot.start_values = {{0, 0, 0, false, 1}, {0, 0, 1, false, 2}, {0, 0, 0, false, 3}};
   EXPECT_EQ(robot.writes(0).size(), without + 2);
   EXPECT_EQ(robot.writes(0)[without], (SdoWrite{{0x3080, 1}, 4, 3}));
   EXPECT_EQ(robot.writes(0)[without + 1], (SdoWrite{{0x3081, 1}, 4, 2}));
-  robot.start_values = {{0, 0, 0, 1}, {0, 0, 0, usual}};
+  robot.start_values = {{0, 0, 0, false, 1}, {0, 0, 0, false, usual}};
   EXPECT_EQ(robot.writes(0).size(), without);
 }
 
@@ -150,13 +150,13 @@ TEST(SetupList, LeavesOutStartValuesWithoutAParameter) {
   robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b01)};
   const std::size_t without = robot.writes(0).size();
   robot.start_values = {
-      {0, 1, 0, 1},    // a joint that the slot does not drive
-      {1, 0, 0, 1},    // an empty slot
-      {4, 0, 0, 1},    // no slot
-      {255, 0, 0, 1},  //
-      {0, 0, 7, 1},    // no parameter
-      {0, 0, 255, 1},  //
-      {0, 64, 0, 1},   // no joint
+      {0, 1, 0, false, 1},    // a joint that the slot does not drive
+      {1, 0, 0, false, 1},    // an empty slot
+      {4, 0, 0, false, 1},    // no slot
+      {255, 0, 0, false, 1},  //
+      {0, 0, 7, false, 1},    // no parameter
+      {0, 0, 255, false, 1},  //
+      {0, 64, 0, false, 1},   // no joint
   };
   EXPECT_EQ(robot.writes(0).size(), without);
   EXPECT_EQ(robot.writes(1).size(), without);
@@ -219,7 +219,7 @@ TEST(SetupList, GivesAModuleTheWholeConfiguration) {
       if (algorithm != nullptr) {
         const auto number = static_cast<std::uint8_t>(random.next() % algorithm->declaration().parameters.size());
         const Parameter& parameter = algorithm->declaration().parameters[number];
-        robot.start_values.push_back({slot, static_cast<std::uint8_t>(random.next() % joints), number,
+        robot.start_values.push_back({slot, static_cast<std::uint8_t>(random.next() % joints), number, false,
                                       random.next() % 2 == 0 ? parameter.minimum : parameter.maximum});
       }
     }
@@ -244,8 +244,8 @@ TEST(SetupList, GivesAModuleTheWholeConfiguration) {
       const Declaration& declaration = configured.algorithm->declaration();
       for (std::uint8_t number = 0; number < declaration.parameters.size(); ++number) {
         std::int32_t wanted = declaration.parameters[number].default_value;
-        for (const StartValue& start : robot.start_values) {
-          if (start.slot == slot && start.joint == joint && start.parameter == number) {
+        for (const Setting& start : robot.start_values) {
+          if (start.slot == slot && start.joint == joint && start.number == number) {
             wanted = start.value;
           }
         }

@@ -44,7 +44,7 @@ TEST(Genome, MakesADimensionForEachJointOfAnIndividualParameterFromHeadToTail) {
     ASSERT_EQ(dimension.targets.size(), 1U);
     EXPECT_EQ(dimension.targets[0].slot, 0);
     EXPECT_EQ(dimension.targets[0].joint, d);
-    EXPECT_EQ(dimension.targets[0].index, 0);
+    EXPECT_EQ(dimension.targets[0].number, 0);
     EXPECT_FALSE(dimension.targets[0].internal);
     EXPECT_EQ(dimension.unit, Unit::degree);
     EXPECT_EQ(dimension.values.size(), 61U);
@@ -187,10 +187,10 @@ TEST(Genome, NamesAreWordsOfTheSetOption) {
     only.apply({1}, by_candidate);
     ASSERT_EQ(by_word.settings.size(), by_candidate.settings.size());
     for (std::size_t i = 0; i < by_word.settings.size(); ++i) {
-      const sim::Setting& left = by_word.settings[i];
-      const sim::Setting& right = by_candidate.settings[i];
-      EXPECT_EQ(std::tuple(left.slot, left.joint, left.index, left.value),
-                std::tuple(right.slot, right.joint, right.index, right.value));
+      const Setting& left = by_word.settings[i];
+      const Setting& right = by_candidate.settings[i];
+      EXPECT_EQ(std::tuple(left.slot, left.joint, left.number, left.value),
+                std::tuple(right.slot, right.joint, right.number, right.value));
     }
   }
 }

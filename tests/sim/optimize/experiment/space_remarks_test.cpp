@@ -78,7 +78,7 @@ TEST(ValuesOutsideSpace, AreThoseThatTheNearestCandidateReplaces) {
 
 TEST(ValuesOutsideSpace, HasADimensionOnSeveralJointsIfOneOfThemDiffers) {
   Experiment experiment = with_bounds("0", "40");
-  std::vector<sim::Setting>& targets = experiment.space.dimensions[0].targets;
+  std::vector<Setting>& targets = experiment.space.dimensions[0].targets;
   targets.push_back(experiment.space.dimensions[1].targets.front());
   EXPECT_TRUE(values_outside_space(experiment).empty());
   sim::apply_setting(experiment.scenario, "amplitude:J4=30");

@@ -84,7 +84,7 @@ inline SearchSpace make_space(const std::vector<std::uint32_t>& sizes) {
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     Dimension dimension;
     dimension.name = "amplitude:J" + std::to_string(i);
-    sim::Setting target;
+    Setting target;
     target.joint = static_cast<std::uint8_t>(i);
     dimension.targets = {target};
     for (std::uint32_t value = 0; value < sizes[i]; ++value) {

@@ -273,7 +273,7 @@ TEST(GreatDelugeStart, CanBeTheScenario) {
   settings.chains = 2;
   Experiment experiment = make_experiment({161, 161}, settings);
   for (const Dimension& dimension : experiment.space.dimensions) {
-    sim::Setting setting = dimension.targets[0];
+    Setting setting = dimension.targets[0];
     setting.value = 33 + setting.joint;
     experiment.scenario.settings.push_back(setting);
   }

@@ -69,14 +69,14 @@ std::string description_of(const sim::Scenario& scenario) {
     }
     out << "\n";
   }
-  for (const sim::JointLimits& limits : scenario.joint_limits) {
+  for (const AngleLimits& limits : scenario.joint_limits) {
     out << "limits " << limits.lower << " " << limits.upper << "\n";
   }
   for (const sim::ModulePlace& place : scenario.modules) {
     out << "node " << +place.node << " " << place.serial.value_or(0) << "\n";
   }
-  for (const sim::Setting& setting : scenario.settings) {
-    out << "setting " << +setting.slot << " " << +setting.joint << " " << +setting.index << " " << setting.internal
+  for (const Setting& setting : scenario.settings) {
+    out << "setting " << +setting.slot << " " << +setting.joint << " " << +setting.number << " " << setting.internal
         << " " << setting.value << "\n";
   }
   out << "run " << scenario.duration_s << " " << scenario.step_s << " " << static_cast<int>(scenario.solver) << " "

@@ -160,7 +160,7 @@ void check_with_kernel(const Scenario& scenario) {
   }
   for (const Setting& setting : scenario.settings) {
     require(!setting.internal &&
-                kernel.set_parameter(setting.slot, setting.joint, setting.index, setting.value) == Status::ok,
+                kernel.set_parameter(setting.slot, setting.joint, setting.number, setting.value) == Status::ok,
             "the kernel takes the start values");
   }
   kernel.reset();
@@ -175,8 +175,8 @@ void check_with_kernel(const Scenario& scenario) {
     for (const Setting& setting : change.settings) {
       const Status status =
           setting.internal
-              ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.index, setting.value)
-              : kernel.stage(transaction, setting.slot, setting.joint, setting.index, setting.value);
+              ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.number, setting.value)
+              : kernel.stage(transaction, setting.slot, setting.joint, setting.number, setting.value);
       require(status == Status::ok, "the kernel takes the changes");
     }
   }

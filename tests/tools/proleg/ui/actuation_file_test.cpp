@@ -51,7 +51,7 @@ TEST_F(ActuationFile, WrittenAndReadAgainHasTheWantedValues) {
     const sim::Scenario again = read();
     for (const ParameterPlace& place : live.parameters().places()) {
       const ParameterTable::Values& values = live.parameters().at(place);
-      EXPECT_EQ(sim::start_value(again, place.slot, place.joint, place.index), values.wanted);
+      EXPECT_EQ(sim::start_value(again, place.slot, place.joint, place.number), values.wanted);
       EXPECT_EQ(values.file, values.wanted);
     }
     EXPECT_TRUE(live.file_edits().empty());
@@ -75,7 +75,7 @@ TEST_F(ActuationFile, SettingsOfTheCommandLineAreNotOfTheFile) {
   std::ranges::copy(live.repeating_words(), std::back_inserter(words));
   EXPECT_EQ(hashes_of(live.simulation()), simulated(read(), words, 30));
   live.restart(LiveSimulation::StartValues::file);
-  EXPECT_EQ(live.parameters().at(tail).wanted, sim::start_value(read(), tail.slot, tail.joint, tail.index));
+  EXPECT_EQ(live.parameters().at(tail).wanted, sim::start_value(read(), tail.slot, tail.joint, tail.number));
 }
 
 TEST_F(ActuationFile, ThatHasChangedSinceItWasReadIsNotOverwritten) {

@@ -12,8 +12,8 @@ namespace {
 constexpr std::int32_t degree = (1 << 30) / 90;
 constexpr std::uint32_t period_us = 10'000;
 
-std::vector<sim::JointLimits> limits(std::size_t joints) {
-  return std::vector<sim::JointLimits>(joints, {-60 * degree, 60 * degree});
+std::vector<AngleLimits> limits(std::size_t joints) {
+  return std::vector<AngleLimits>(joints, {-60 * degree, 60 * degree});
 }
 
 TEST(JointTargets, GoToTheirGoalsInTheTimeThatTheSpeedTakes) {

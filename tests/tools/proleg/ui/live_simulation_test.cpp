@@ -149,9 +149,9 @@ TEST(LiveSimulation, AChangeForOneTickNeverHasMoreValuesThanAModuleKeeps) {
                               "offset=" + std::to_string(value)},
                              std::nullopt));
   }
-  for (const sim::Change& change : live.scenario().changes) {
+  for (const Change& change : live.scenario().changes) {
     for (unsigned joint = 0; joint < 5; ++joint) {
-      EXPECT_LE(std::ranges::count(change.settings, joint, &sim::Setting::joint),
+      EXPECT_LE(std::ranges::count(change.settings, joint, &Setting::joint),
                 static_cast<std::ptrdiff_t>(max_staged_values));
     }
   }

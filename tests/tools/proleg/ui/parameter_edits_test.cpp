@@ -78,12 +78,12 @@ TEST_F(ParameterEditsTest, BecomeTheStartValuesOfTheNextRun) {
   edits.set({"amplitude:J2=20"}, {});
   const sim::Scenario scenario = edits.scenario_as_wanted();
   for (const ParameterPlace& place : edits.parameters().places()) {
-    EXPECT_EQ(sim::start_value(scenario, place.slot, place.joint, place.index), edits.parameters().at(place).wanted);
+    EXPECT_EQ(sim::start_value(scenario, place.slot, place.joint, place.number), edits.parameters().at(place).wanted);
   }
 }
 
 TEST_F(ParameterEditsTest, InternalValuesAreWantedOnce) {
-  const std::vector<sim::Setting> distortion = edits.set({"current_phase:J1=90"}, {});
+  const std::vector<Setting> distortion = edits.set({"current_phase:J1=90"}, {});
   ASSERT_EQ(distortion.size(), 1U);
   EXPECT_TRUE(distortion.front().internal);
   EXPECT_EQ(wanted(), of_file);

@@ -37,12 +37,13 @@ void check_message(const InputError& error) {
 
 void check_dimension(const Dimension& dimension, const sim::Scenario& scenario) {
   require(!dimension.targets.empty() && !dimension.values.empty(), "a dimension has targets and values");
-  const sim::Setting& first = dimension.targets.front();
-  for (const sim::Setting& target : dimension.targets) {
-    require(target.slot == first.slot && target.index == first.index && !target.internal, "targets are one parameter");
+  const Setting& first = dimension.targets.front();
+  for (const Setting& target : dimension.targets) {
+    require(target.slot == first.slot && target.number == first.number && !target.internal,
+            "targets are one parameter");
     require(scenario.kernel.slots.at(target.slot).group.contains(target.joint), "targets are driven");
   }
-  const Parameter& parameter = scenario.kernel.slots.at(first.slot).algorithm->declaration().parameters[first.index];
+  const Parameter& parameter = scenario.kernel.slots.at(first.slot).algorithm->declaration().parameters[first.number];
   require(parameter.unit == dimension.unit, "a dimension has its parameter's unit");
   for (std::size_t i = 0; i < dimension.values.size(); ++i) {
     const std::int32_t value = dimension.values[i];

@@ -93,7 +93,7 @@ void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& s
   const Slot& slot = scenario.kernel.slots[slot_number];
   std::vector<ParameterTag> tags = read_parameter_tags(module, scenario, slot_number);
   // Values for all joints first, in any order of the file.
-  std::ranges::stable_partition(tags, &ParameterTag::is_for_all);
+  std::stable_partition(tags.begin(), tags.end(), [](const ParameterTag& tag) { return tag.is_for_all; });
   for (const ParameterTag& tag : tags) {
     Setting setting = tag.setting;
     for (const unsigned joint : tag.is_for_all ? slot.group : JointMask::of(setting.joint)) {

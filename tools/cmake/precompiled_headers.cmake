@@ -18,7 +18,7 @@ endfunction()
 
 # Rooms that compute little, or mostly wait, are optimised less, which shortens their compile time.
 if(PROLEG_SANITIZE)
-  set(PROLEG_LIGHT_ROOMS "^(tools|host/(remote|robot|robot_control|server|transport)|sim/(data_file|optimize/(confirm|evaluation|experiment|mpi|report|sweep)))(/|$)")
+  set(PROLEG_LIGHT_ROOMS "^(tools|host/(remote|robot|robot_control|server|transport)|sim/(data_file|record|scenario|optimize/(confirm|evaluation|experiment|mpi|report|sweep)))(/|$)")
   set(PROLEG_LIGHT_OPTION -O0)
 else()
   set(PROLEG_LIGHT_ROOMS "^(tools|host)(/|$)")
@@ -31,6 +31,13 @@ if(PROLEG_PRECOMPILED_HEADERS AND NOT CMAKE_CROSSCOMPILING)
       <optional> <span> <sstream> <string> <string_view> <vector>)
   proleg_precompiled_headers(program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers})
   proleg_precompiled_headers(light_program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers} OPTIONS ${PROLEG_LIGHT_OPTION})
+  # The rooms of the bus, of the page and of the commands.
+  find_package(Boost REQUIRED)
+  find_package(nlohmann_json REQUIRED)
+  proleg_precompiled_headers(host_program_headers LIBRARIES Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json
+      HEADERS ${program_headers} <boost/asio/io_context.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/posix/stream_descriptor.hpp>
+              <boost/asio/steady_timer.hpp> <nlohmann/json.hpp>
+      OPTIONS ${PROLEG_LIGHT_OPTION})
 endif()
 
 # proleg_compile_program_code(<target> <path>)
@@ -39,6 +46,9 @@ function(proleg_compile_program_code target path)
   set(headers program_headers)
   if(path MATCHES "${PROLEG_LIGHT_ROOMS}")
     set(headers light_program_headers)
+    if(path MATCHES "^(host/(remote|robot|server|transport)|tools/proleg)(/|$)")
+      set(headers host_program_headers)
+    endif()
     target_compile_options(${target} PRIVATE ${PROLEG_LIGHT_OPTION})
   endif()
   if(TARGET ${headers})

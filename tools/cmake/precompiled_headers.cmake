@@ -25,18 +25,21 @@ else()
   set(PROLEG_LIGHT_OPTION -O1)
 endif()
 
+# The rooms of the bus, of the page and of the commands, and what most of their sources include.
+set(PROLEG_HOST_HEADERS_ROOMS "^(host/(remote|robot|server|transport)|tools/proleg)(/|$)")
+set(PROLEG_HOST_HEADERS <boost/asio/io_context.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/posix/stream_descriptor.hpp>
+    <boost/asio/steady_timer.hpp> <nlohmann/json.hpp>)
+
 if(PROLEG_PRECOMPILED_HEADERS AND NOT CMAKE_CROSSCOMPILING)
   find_package(Eigen3 REQUIRED NO_MODULE)
   set(program_headers <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory>
       <optional> <span> <sstream> <string> <string_view> <vector>)
   proleg_precompiled_headers(program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers})
   proleg_precompiled_headers(light_program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers} OPTIONS ${PROLEG_LIGHT_OPTION})
-  # The rooms of the bus, of the page and of the commands.
   find_package(Boost REQUIRED)
   find_package(nlohmann_json REQUIRED)
   proleg_precompiled_headers(host_program_headers LIBRARIES Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json
-      HEADERS ${program_headers} <boost/asio/io_context.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/posix/stream_descriptor.hpp>
-              <boost/asio/steady_timer.hpp> <nlohmann/json.hpp>
+      HEADERS ${program_headers} ${PROLEG_HOST_HEADERS}
       OPTIONS ${PROLEG_LIGHT_OPTION})
 endif()
 
@@ -46,8 +49,9 @@ function(proleg_compile_program_code target path)
   set(headers program_headers)
   if(path MATCHES "${PROLEG_LIGHT_ROOMS}")
     set(headers light_program_headers)
-    if(path MATCHES "^(host/(remote|robot|server|transport)|tools/proleg)(/|$)")
+    if(path MATCHES "${PROLEG_HOST_HEADERS_ROOMS}")
       set(headers host_program_headers)
+      target_compile_definitions(${target} PRIVATE BOOST_ALL_NO_LIB)  # as CMake's target of Boost has it
     endif()
     target_compile_options(${target} PRIVATE ${PROLEG_LIGHT_OPTION})
   endif()

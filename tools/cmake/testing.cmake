@@ -22,11 +22,14 @@ endif()
 
 # Headers that nearly every test includes, compiled once.
 if(PROLEG_PRECOMPILED_HEADERS)
-  proleg_precompiled_headers(test_headers
-    LIBRARIES GTest::gtest Eigen3::Eigen
-    OPTIONS ${PROLEG_TEST_OPTIONS}
-    HEADERS <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional>
-            <memory> <optional> <random> <span> <sstream> <string> <string_view> <vector>)
+  set(test_header_names <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
+      <functional> <memory> <optional> <random> <span> <sstream> <string> <string_view> <vector>)
+  proleg_precompiled_headers(test_headers LIBRARIES GTest::gtest Eigen3::Eigen HEADERS ${test_header_names}
+    OPTIONS ${PROLEG_TEST_OPTIONS})
+  proleg_precompiled_headers(host_test_headers
+    LIBRARIES GTest::gtest Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json
+    HEADERS ${test_header_names} ${PROLEG_HOST_HEADERS}
+    OPTIONS ${PROLEG_TEST_OPTIONS})
 endif()
 
 # Data that tests of any room may read. A change in them runs every test again, so docs/ is not among them.
@@ -110,8 +113,13 @@ function(proleg_test path)
   endforeach()
   target_link_libraries(${name}_test PRIVATE ${test_LIBRARIES} proleg::tests_support GTest::gtest GTest::gtest_main)
   target_compile_options(${name}_test PRIVATE ${PROLEG_TEST_OPTIONS})
-  if(TARGET test_headers)
-    target_precompile_headers(${name}_test REUSE_FROM test_headers)
+  if(PROLEG_PRECOMPILED_HEADERS)
+    set(headers test_headers)
+    if(path MATCHES "${PROLEG_HOST_HEADERS_ROOMS}")
+      set(headers host_test_headers)
+      target_compile_definitions(${name}_test PRIVATE BOOST_ALL_NO_LIB)  # as CMake's target of Boost has it
+    endif()
+    target_precompile_headers(${name}_test REUSE_FROM ${headers})
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
       COST ${test_COST} HALF_CORES ${test_HALF_CORES})

@@ -1,4 +1,4 @@
-#include "sim/record/change_marks.hpp"
+#include "sim/record/marks.hpp"
 
 #include <gtest/gtest.h>
 

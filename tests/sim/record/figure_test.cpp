@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/record/disturbance_marks.hpp"
 #include "sim/record/figure_contents.hpp"
-#include "sim/record/loss_panel.hpp"
+#include "sim/record/marks.hpp"
 #include "sim/record/svg.hpp"
+#include "sim/record/time_panels.hpp"
 #include "sim/scenario/reader.hpp"
 #include "small_run.hpp"
 #include "tests/support/files.hpp"

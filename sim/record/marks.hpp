@@ -45,4 +45,13 @@ void draw_fault_texts(Svg& svg, const Disturbances& disturbances, const Axis& ti
 /// Restarts as bands behind the lines of a panel, named at its lower edge.
 void draw_restarts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height);
 
+/// A change during a run, for the figure.
+struct ChangeMark {
+  double time_s;     ///< of the SYNC at which it took effect
+  std::string text;  ///< "frequency = 0.5", "current_phase J3 = 180", "amplitude J2 = 10, +3"
+};
+
+/// Commits and distortions, in the order of time, one mark for each tick.
+[[nodiscard]] std::vector<ChangeMark> collect_change_marks(const Recording& recording);
+
 }  // namespace proleg::sim

@@ -15,7 +15,6 @@
 using proleg::host::ChainSettings;
 using proleg::host::Line;
 using proleg::host::ServoChain;
-using proleg::host::ServoSettings;
 
 /// A robot whose servos are on one line. The chain exists while it is connected.
 struct proleg_robot {

@@ -1,6 +1,9 @@
 #pragma once
 
 // Calls of code that has not been checked: a mistake in it ends the call, not the program.
+//
+// The code runs in the program and not in a child process: a simulation of 30 s makes 30,000 calls and takes 0.4 s, and
+// an exchange with a child by a futex in shared memory takes 7 us. In the page the program goes on after a failure.
 
 #include <string>
 #include <type_traits>

@@ -115,7 +115,7 @@ function(proleg_test path)
   target_compile_options(${name}_test PRIVATE ${PROLEG_TEST_OPTIONS})
   if(PROLEG_PRECOMPILED_HEADERS)
     set(headers test_headers)
-    if(path MATCHES "${PROLEG_HOST_HEADERS_ROOMS}")
+    if(path MATCHES "^(host/(remote|robot|server|transport)|tools/proleg/ui)(/|$)")
       set(headers host_test_headers)
       target_compile_definitions(${name}_test PRIVATE BOOST_ALL_NO_LIB)  # as CMake's target of Boost has it
     endif()

@@ -26,8 +26,8 @@ else()
 endif()
 
 # The rooms of the bus, of the page and of the commands, and what most of their sources include.
-set(PROLEG_HOST_HEADERS_ROOMS "^(host/(remote|robot|server|transport)|tools/proleg)(/|$)")
-set(PROLEG_HOST_HEADERS <boost/asio/io_context.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/posix/stream_descriptor.hpp>
+set(PROLEG_NETWORK_ROOMS "^(host/(remote|robot|server|transport)|tools/proleg)(/|$)")
+set(PROLEG_NETWORK_HEADERS <boost/asio/io_context.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/posix/stream_descriptor.hpp>
     <boost/asio/steady_timer.hpp> <nlohmann/json.hpp>)
 
 if(PROLEG_PRECOMPILED_HEADERS AND NOT CMAKE_CROSSCOMPILING)
@@ -38,8 +38,8 @@ if(PROLEG_PRECOMPILED_HEADERS AND NOT CMAKE_CROSSCOMPILING)
   proleg_precompiled_headers(light_program_headers LIBRARIES Eigen3::Eigen HEADERS ${program_headers} OPTIONS ${PROLEG_LIGHT_OPTION})
   find_package(Boost REQUIRED)
   find_package(nlohmann_json REQUIRED)
-  proleg_precompiled_headers(host_program_headers LIBRARIES Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json
-      HEADERS ${program_headers} ${PROLEG_HOST_HEADERS}
+  proleg_precompiled_headers(network_program_headers LIBRARIES Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json
+      HEADERS ${program_headers} ${PROLEG_NETWORK_HEADERS}
       OPTIONS ${PROLEG_LIGHT_OPTION})
 endif()
 
@@ -49,8 +49,8 @@ function(proleg_compile_program_code target path)
   set(headers program_headers)
   if(path MATCHES "${PROLEG_LIGHT_ROOMS}")
     set(headers light_program_headers)
-    if(path MATCHES "${PROLEG_HOST_HEADERS_ROOMS}")
-      set(headers host_program_headers)
+    if(path MATCHES "${PROLEG_NETWORK_ROOMS}")
+      set(headers network_program_headers)
       target_compile_definitions(${target} PRIVATE BOOST_ALL_NO_LIB)  # as CMake's target of Boost has it
     endif()
     target_compile_options(${target} PRIVATE ${PROLEG_LIGHT_OPTION})

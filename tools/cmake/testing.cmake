@@ -26,9 +26,9 @@ if(PROLEG_PRECOMPILED_HEADERS)
       <functional> <memory> <optional> <random> <span> <sstream> <string> <string_view> <vector>)
   proleg_precompiled_headers(test_headers LIBRARIES GTest::gtest Eigen3::Eigen HEADERS ${test_header_names}
     OPTIONS ${PROLEG_TEST_OPTIONS})
-  proleg_precompiled_headers(host_test_headers
+  proleg_precompiled_headers(network_test_headers
     LIBRARIES GTest::gtest Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json
-    HEADERS ${test_header_names} ${PROLEG_HOST_HEADERS}
+    HEADERS ${test_header_names} ${PROLEG_NETWORK_HEADERS}
     OPTIONS ${PROLEG_TEST_OPTIONS})
 endif()
 
@@ -116,7 +116,7 @@ function(proleg_test path)
   if(PROLEG_PRECOMPILED_HEADERS)
     set(headers test_headers)
     if(path MATCHES "^(host/(remote|robot|server|transport)|tools/proleg/ui)(/|$)")
-      set(headers host_test_headers)
+      set(headers network_test_headers)
       target_compile_definitions(${name}_test PRIVATE BOOST_ALL_NO_LIB)  # as CMake's target of Boost has it
     endif()
     target_precompile_headers(${name}_test REUSE_FROM ${headers})

@@ -3,20 +3,6 @@
 #include <algorithm>
 
 namespace proleg::host {
-namespace {
-
-/// Number of slots of a joint whose algorithms broadcast: 1 or 2 frames a tick, and 1 without any.
-std::uint8_t channels_of(const KernelConfiguration& kernel, unsigned joint) {
-  unsigned senders = 0;
-  for (const Slot& slot : kernel.slots) {
-    if (slot.algorithm != nullptr && slot.group.contains(joint) && !slot.algorithm->declaration().frame.empty()) {
-      ++senders;
-    }
-  }
-  return senders > 1 ? 2 : 1;
-}
-
-}  // namespace
 
 RobotDrive::RobotDrive(CanPort& port, const canopen::RobotSetup& setup, const canopen::MasterOptions& options,
                        std::span<Change> changes)
@@ -25,7 +11,7 @@ RobotDrive::RobotDrive(CanPort& port, const canopen::RobotSetup& setup, const ca
       ring_(kept),
       monitoring_(nodes_.size()) {
   for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
-    channels_.push_back(channels_of(setup.kernel, joint));
+    channels_.push_back(setup.kernel.second_channel_senders().contains(joint) ? 2 : 1);
   }
   for (std::uint32_t tick = 0; tick < kept; ++tick) {
     ring_[tick] = {tick, std::vector<std::array<std::optional<StateFrame>, 2>>(nodes_.size())};

@@ -15,6 +15,7 @@
 
 #include "shared/kernel/joint_memory.hpp"
 #include "shared/kernel/kernel_configuration.hpp"
+#include "shared/kernel/setting.hpp"
 #include "shared/kernel/staging.hpp"
 #include "shared/kernel/status.hpp"
 
@@ -36,6 +37,10 @@ class Kernel {
 
   /// Sets a parameter at once, for use before the first tick. The start state follows with the next reset().
   Status set_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
+  /// The same. setting: for a parameter.
+  Status set_parameter(const Setting& setting) {
+    return set_parameter(setting.slot, setting.joint, setting.number, setting.value);
+  }
 
   /// Returns to tick 0 and state 0. Parameters and staged values stay.
   void reset();
@@ -45,6 +50,11 @@ class Kernel {
   Status open(std::uint16_t transaction) { return staging_.open(memory_, transaction); }
   /// Stages a parameter that takes effect at the commit's tick. Opens the transaction if necessary.
   Status stage(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
+  /// Stages a setting: a parameter or an internal value.
+  Status stage(std::uint16_t transaction, const Setting& setting) {
+    return setting.internal ? stage_internal(transaction, setting.slot, setting.joint, setting.number, setting.value)
+                            : stage(transaction, setting.slot, setting.joint, setting.number, setting.value);
+  }
   /// Stages an internal value (thesis listing A.2, setDistortion). It is overwritten before the commit's tick is
   /// computed; neighbours receive it one tick later.
   Status stage_internal(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned internal_value,

@@ -39,7 +39,7 @@ void KernelChain::configure(unsigned joint) {
   expect_ok(kernel.set_limits(joint, limits_[joint].lower, limits_[joint].upper));
   for (const Setting& setting : settings_) {
     if (setting.joint == joint) {
-      expect_ok(kernel.set_parameter(setting.slot, joint, setting.number, setting.value));
+      expect_ok(kernel.set_parameter(setting));
     }
   }
   kernel.reset();
@@ -72,10 +72,7 @@ void KernelChain::apply(const Change& change) {
       keep(setting);
     }
     if (running_.contains(setting.joint)) {
-      Kernel& kernel = *kernels_[setting.joint];
-      expect_ok(setting.internal
-                    ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.number, setting.value)
-                    : kernel.stage(transaction, setting.slot, setting.joint, setting.number, setting.value));
+      expect_ok(kernels_[setting.joint]->stage(transaction, setting));
     }
   }
   for (unsigned joint = 0; joint < joint_count(); ++joint) {

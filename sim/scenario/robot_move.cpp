@@ -6,7 +6,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/scenario/tick_word.hpp"
+#include "sim/scenario/settings.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -21,7 +21,7 @@ namespace {
 
 }  // namespace
 
-void add_move(Scenario& scenario, const std::string& word) {
+RobotMove parse_move(const std::string& word, std::uint32_t tick_period_us) {
   const std::size_t at = word.find('@');
   if (at == std::string::npos) {
     refuse(word);
@@ -38,9 +38,11 @@ void add_move(Scenario& scenario, const std::string& word) {
     numbers[i] = *number;
     rest.remove_prefix(is_last ? rest.size() : comma + 1);
   }
-  const RobotMove move{read_tick(word, word.substr(at + 1), scenario.kernel.tick_period_us),
-                       {numbers[0], numbers[1], numbers[2]},
-                       numbers[3]};
+  return {read_tick(word, word.substr(at + 1), tick_period_us), {numbers[0], numbers[1], numbers[2]}, numbers[3]};
+}
+
+void add_move(Scenario& scenario, const std::string& word) {
+  const RobotMove move = parse_move(word, scenario.kernel.tick_period_us);
   scenario.moves.insert(std::ranges::upper_bound(scenario.moves, move.tick, {}, &RobotMove::tick), move);
 }
 

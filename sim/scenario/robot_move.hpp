@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 
-/// Adds a word of --move, X,Y,Z,DEGREES@TICK, behind the moves of its tick. Throws InputError with the option as its
-/// file.
+/// Reads a word of --move, X,Y,Z,DEGREES@TICK. Throws InputError with the option as its file.
+[[nodiscard]] RobotMove parse_move(const std::string& word, std::uint32_t tick_period_us);
+
+/// Adds a word of --move behind the moves of its tick. Throws as parse_move() does.
 void add_move(Scenario& scenario, const std::string& word);
 
 /// The same move as a word.

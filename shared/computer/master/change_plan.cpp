@@ -95,15 +95,15 @@ void ChangePlan::pass(std::uint32_t tick) {
   }
 }
 
-std::optional<SdoWrite> ChangePlan::staging(std::size_t change, unsigned joint, std::size_t n) const {
+std::optional<SdoRequest> ChangePlan::staging(std::size_t change, unsigned joint, std::size_t n) const {
   if (n == 0) {
-    return SdoWrite{object::transaction.address, size_of(object::transaction.type), transaction(change)};
+    return SdoRequest{object::transaction.address, size_of(object::transaction.type), transaction(change)};
   }
   for (const Setting& setting : changes_[change].settings) {
     if (setting.joint == joint && --n == 0) {
       const ValueKind kind = setting.internal ? ValueKind::internal_value : ValueKind::staged_parameter;
-      return SdoWrite{address_of({kind, kernel_.slots[setting.slot].algorithm_id(), setting.number, setting.slot}),
-                      value_size, static_cast<std::uint32_t>(setting.value)};
+      return SdoRequest{address_of({kind, kernel_.slots[setting.slot].algorithm_id(), setting.number, setting.slot}),
+                        value_size, static_cast<std::uint32_t>(setting.value)};
     }
   }
   return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<std::int32_t> ChangePlan::parameter_before(std::size_t end, unsign
   return std::nullopt;
 }
 
-std::optional<SdoWrite> ChangePlan::parameter_write(std::size_t end, unsigned joint, std::size_t n) const {
+std::optional<SdoRequest> ChangePlan::parameter_write(std::size_t end, unsigned joint, std::size_t n) const {
   for (std::uint8_t slot = 0; slot < max_slots; ++slot) {
     if (kernel_.slots[slot].algorithm == nullptr) {
       continue;
@@ -137,8 +137,8 @@ std::optional<SdoWrite> ChangePlan::parameter_write(std::size_t end, unsigned jo
     for (std::uint8_t parameter = 0; parameter < parameters; ++parameter) {
       const std::optional<std::int32_t> value = parameter_before(end, joint, slot, parameter);
       if (value && n-- == 0) {
-        return SdoWrite{address_of({ValueKind::parameter, kernel_.slots[slot].algorithm_id(), parameter, slot}),
-                        value_size, static_cast<std::uint32_t>(*value)};
+        return SdoRequest{address_of({ValueKind::parameter, kernel_.slots[slot].algorithm_id(), parameter, slot}),
+                          value_size, static_cast<std::uint32_t>(*value)};
       }
     }
   }

@@ -49,10 +49,10 @@ class ChangePlan {
   void pass(std::uint32_t tick);
 
   /// Write number n of those that stage a change in the module of a joint; nothing behind the last one.
-  [[nodiscard]] std::optional<SdoWrite> staging(std::size_t change, unsigned joint, std::size_t n) const;
+  [[nodiscard]] std::optional<SdoRequest> staging(std::size_t change, unsigned joint, std::size_t n) const;
   /// Write number n of those that repeat, for one joint, the parameters that the changes before `end` have set; nothing
   /// behind the last one. (The gait has overwritten their internal values since.)
-  [[nodiscard]] std::optional<SdoWrite> parameter_write(std::size_t end, unsigned joint, std::size_t n) const;
+  [[nodiscard]] std::optional<SdoRequest> parameter_write(std::size_t end, unsigned joint, std::size_t n) const;
 
  private:
   [[nodiscard]] bool exists(const Setting& setting) const;

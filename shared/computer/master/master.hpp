@@ -44,7 +44,7 @@
 #include "shared/can/transmit_queue.hpp"
 #include "shared/computer/master/change_plan.hpp"
 #include "shared/computer/master/master_report.hpp"
-#include "shared/computer/master/sdo_client_pool.hpp"
+#include "shared/computer/master/sdo_client.hpp"
 #include "shared/computer/master/tick_follower.hpp"
 
 namespace proleg::canopen {
@@ -226,23 +226,23 @@ class Master final : private SdoWork {
   static constexpr std::uint32_t ticks_on_the_way = 2;
 
   // Functions of SdoWork: the transfers of the present phase.
-  [[nodiscard]] std::optional<SdoStep> step(unsigned joint, std::size_t position) override;
+  [[nodiscard]] std::optional<SdoRequest> request(unsigned joint, std::size_t position) override;
   [[nodiscard]] bool on_value(unsigned joint, std::size_t position, std::uint32_t value) override;
   void on_abort(unsigned joint, Address address, AbortCode code) override;
-  [[nodiscard]] std::optional<SdoStep> set_up_step(unsigned joint, std::size_t position) const;
+  [[nodiscard]] std::optional<SdoRequest> set_up_request(unsigned joint, std::size_t position) const;
   [[nodiscard]] std::size_t user_algorithm_count() const;
   [[nodiscard]] const Declaration& user_algorithm(std::size_t position) const;
   bool algorithm_missing(unsigned joint, const Declaration& algorithm, std::uint32_t found);
-  [[nodiscard]] std::optional<SdoStep> checksum_step(std::size_t position) const;
-  [[nodiscard]] std::optional<SdoStep> lease_step(std::size_t position) const;
+  [[nodiscard]] std::optional<SdoRequest> checksum_request(std::size_t position) const;
+  [[nodiscard]] std::optional<SdoRequest> lease_request(std::size_t position) const;
   [[nodiscard]] bool on_lease(unsigned joint, std::uint32_t holder);
   void on_lease_abort(unsigned joint, Address address, AbortCode code);
   void refuse_lease(unsigned joint);
   void fail_without_lease(unsigned joint);
   void begin_lease();
   void take_next_lease();
-  [[nodiscard]] std::optional<SdoStep> ramp_in_step(unsigned joint, std::size_t position) const;
-  [[nodiscard]] std::optional<SdoStep> hold_step(unsigned joint, std::size_t position) const;
+  [[nodiscard]] std::optional<SdoRequest> ramp_in_request(unsigned joint, std::size_t position) const;
+  [[nodiscard]] std::optional<SdoRequest> hold_request(unsigned joint, std::size_t position) const;
   void on_checksum(unsigned joint, std::size_t position, std::uint32_t value);
   [[nodiscard]] bool joint_failed(const Problem& problem);
 

@@ -10,14 +10,14 @@ namespace proleg::canopen {
 /// Number of attempts to take the lease of a module. A missing module takes the time of this number of answers.
 constexpr unsigned lease_attempts = 2;
 
-std::optional<SdoStep> Master::lease_step(std::size_t position) const {
+std::optional<SdoRequest> Master::lease_request(std::size_t position) const {
   const Object& token = object::session_token;
   switch (position + (only_reads_lease_ ? 1U : 0U)) {
     case 0:
-      return SdoStep{true, token.address, size_of(token.type), options_.session_token};
+      return SdoRequest{token.address, size_of(token.type), options_.session_token};
     case 1:
       // The answer to a write may belong to the write of another host, which has the same identifier.
-      return SdoStep{false, token.address};
+      return SdoRequest{token.address};
     default:
       return std::nullopt;
   }

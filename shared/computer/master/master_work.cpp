@@ -23,43 +23,39 @@ bool is_user_slot(const Slot& slot) {
 
 }  // namespace
 
-std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
+std::optional<SdoRequest> Master::request(unsigned joint, std::size_t position) {
   const auto write = [](const Object& object, std::uint32_t value) {
-    return SdoStep{true, object.address, size_of(object.type), value};
+    return SdoRequest{object.address, size_of(object.type), value};
   };
   const auto only = [&](const Object& object, std::uint32_t value) {
     return position == 0 ? std::optional(write(object, value)) : std::nullopt;
   };
   switch (phase_) {
     case Phase::set_up:
-      return set_up_step(joint, position);
+      return set_up_request(joint, position);
     case Phase::stage:
-      if (const std::optional<SdoWrite> next = plan_.staging(change_, joint, position)) {
-        return SdoStep{true, next->address, next->size, next->value};
-      }
-      return std::nullopt;
+      return plan_.staging(change_, joint, position);
     case Phase::enable:
       if (position < enabling_count) {
         return write(object::controlword, enabling_controlwords[position]);
       }
       // A late answer may have confirmed the next request, which was lost.
-      return position == enabling_count && options_.attempts > 1
-                 ? std::optional(SdoStep{false, object::statusword.address})
-                 : std::nullopt;
+      return position == enabling_count && options_.attempts > 1 ? std::optional(SdoRequest{object::statusword.address})
+                                                                 : std::nullopt;
     case Phase::produce_sync:
       return only(object::sync_identifier, produces_sync | identifier::sync);
     case Phase::ramp:
       return only(object::controlword, quick_stop_controlword);
     case Phase::take_lease:
     case Phase::keep_lease:
-      return lease_step(position);
+      return lease_request(position);
     case Phase::set_ramp_in:
     case Phase::ramp_in:
-      return ramp_in_step(joint, position);
+      return ramp_in_request(joint, position);
     case Phase::hold:
-      return hold_step(joint, position);
+      return hold_request(joint, position);
     case Phase::ramping:
-      return checksum_step(position);
+      return checksum_request(position);
     case Phase::disable:
       // The host leaves, so its silence must be no error. (In the loop the modules are not used again.)
       return position == 1 && options_.resets_modules ? std::optional(write(object::host_heartbeat, 0))
@@ -71,26 +67,25 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
   }
 }
 
-std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position) const {
+std::optional<SdoRequest> Master::set_up_request(unsigned joint, std::size_t position) const {
   if (position < identity_count) {
-    return SdoStep{false, identity_entries[position]->address};
+    return SdoRequest{identity_entries[position]->address};
   }
   position -= identity_count;
   const std::size_t users = user_algorithm_count();
   if (position < users) {
-    return SdoStep{false, object::user_algorithm_address(user_algorithm(position).id)};
+    return SdoRequest{object::user_algorithm_address(user_algorithm(position).id)};
   }
   position -= users;
   const SetupList list(setup_, joint);
-  std::optional<SdoWrite> next;
   if (position < list.size()) {
-    next = list.at(position);
-  } else if (position == list.size()) {
-    return SdoStep{false, object::configuration_crc.address};
-  } else if (mission_ == Mission::rejoin) {
-    next = plan_.parameter_write(rejoin_from_, joint, position - list.size() - 1);
+    return list.at(position);
   }
-  return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
+  if (position == list.size()) {
+    return SdoRequest{object::configuration_crc.address};
+  }
+  return mission_ == Mission::rejoin ? plan_.parameter_write(rejoin_from_, joint, position - list.size() - 1)
+                                     : std::nullopt;
 }
 
 /// Number of slots of the robot with users' algorithms.
@@ -113,19 +108,19 @@ const Declaration& Master::user_algorithm(std::size_t position) const {
 
 /// The requests before the servos have power: whether the module measures its angle, and its speed. The requests
 /// afterwards: the angle.
-std::optional<SdoStep> Master::ramp_in_step(unsigned joint, std::size_t position) const {
+std::optional<SdoRequest> Master::ramp_in_request(unsigned joint, std::size_t position) const {
   if (!ramping_in_.contains(joint)) {
     return std::nullopt;
   }
   if (phase_ == Phase::ramp_in) {
-    return SdoStep{false, object::statusword.address};
+    return SdoRequest{object::statusword.address};
   }
   const Object& speed = object::ramp_in_speed;
   switch (position) {
     case 0:
-      return SdoStep{false, object::capabilities.address};
+      return SdoRequest{object::capabilities.address};
     case 1:
-      return SdoStep{true, speed.address, size_of(speed.type), options_.ramp_in_speed};
+      return SdoRequest{speed.address, size_of(speed.type), options_.ramp_in_speed};
     default:
       return std::nullopt;
   }
@@ -133,16 +128,16 @@ std::optional<SdoStep> Master::ramp_in_step(unsigned joint, std::size_t position
 
 /// The requests with which a joint holds its angle. The mode comes first: with it the module drops the target that it
 /// had.
-std::optional<SdoStep> Master::hold_step(unsigned joint, std::size_t position) const {
+std::optional<SdoRequest> Master::hold_request(unsigned joint, std::size_t position) const {
   const auto write = [](const Object& object, std::uint32_t value) {
-    return SdoStep{true, object.address, size_of(object.type), value};
+    return SdoRequest{object.address, size_of(object.type), value};
   };
   const bool is_measured = measured_[joint] != static_cast<std::uint32_t>(position_not_measured);
   switch (position) {
     case 0:
       return write(object::mode, static_cast<std::uint8_t>(mode_direct_position));
     case 1:
-      return SdoStep{false, object::actual_position.address};
+      return SdoRequest{object::actual_position.address};
     case 2:
       return is_measured ? std::optional(write(object::target_position, measured_[joint])) : std::nullopt;
     default:
@@ -152,15 +147,15 @@ std::optional<SdoStep> Master::hold_step(unsigned joint, std::size_t position) c
 
 /// The requests for a checksum. The request to take the pair of values comes before both reads, also if a read is
 /// repeated: the values belong together.
-std::optional<SdoStep> Master::checksum_step(std::size_t position) const {
+std::optional<SdoRequest> Master::checksum_request(std::size_t position) const {
   const Object& ticks = object::setpoint_ticks;
   switch (position) {
     case 0:
-      return SdoStep{true, ticks.address, size_of(ticks.type), 0};
+      return SdoRequest{ticks.address, size_of(ticks.type), 0};
     case 1:
-      return SdoStep{false, ticks.address};
+      return SdoRequest{ticks.address};
     case 2:
-      return SdoStep{false, object::setpoint_crc.address};
+      return SdoRequest{object::setpoint_crc.address};
     default:
       return std::nullopt;
   }

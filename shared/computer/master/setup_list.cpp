@@ -19,12 +19,12 @@ class Picker {
   void operator()(const Object& object, std::uint32_t value) { (*this)(object.address, object.type, value); }
 
   [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] const SdoWrite& picked() const { return picked_; }
+  [[nodiscard]] const SdoRequest& picked() const { return picked_; }
 
  private:
   std::size_t position_;
   std::size_t count_ = 0;
-  SdoWrite picked_{};
+  SdoRequest picked_{};
 };
 
 }  // namespace
@@ -41,7 +41,7 @@ SetupList::SetupList(const RobotSetup& setup, unsigned joint)
   size_ = counter.count();
 }
 
-SdoWrite SetupList::at(std::size_t position) const {
+SdoRequest SetupList::at(std::size_t position) const {
   Picker picker(position);
   visit_all(picker);
   return picker.picked();

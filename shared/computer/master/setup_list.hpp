@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
-#include "shared/canopen/object.hpp"
 #include "shared/canopen/robot_configuration.hpp"
+#include "shared/computer/master/sdo_client.hpp"
 #include "shared/kernel/motion_limiter.hpp"
 #include "shared/kernel/setting.hpp"
 
@@ -27,14 +27,6 @@ struct RobotSetup : RobotConfiguration {
   std::span<const Setting> start_values;  ///< of parameters; if one occurs several times, the last value counts
 };
 
-struct SdoWrite {
-  Address address;
-  std::uint8_t size;  ///< number of bytes
-  std::uint32_t value;
-
-  friend bool operator==(const SdoWrite&, const SdoWrite&) = default;
-};
-
 /// The writes that configure a module for a joint, in the order in which they must be made: heartbeats, the
 /// configuration of the kernel, `activate`, then limits and parameters. The module is in Pre-operational after a reset,
 /// so values that equal the defaults are left out.
@@ -47,7 +39,7 @@ class SetupList {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   /// The write at a position below size().
-  [[nodiscard]] SdoWrite at(std::size_t position) const;
+  [[nodiscard]] SdoRequest at(std::size_t position) const;
 
  private:
   using Values = std::array<std::array<std::int32_t, max_parameters>, max_slots>;

@@ -11,7 +11,7 @@
 #include "sim/scenario/file_source.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
-#include "sim/scenario/setting_word.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -30,7 +30,7 @@ class Measuring {
     bus.run_until(20'000);
     const canopen::SetupList list(setup, 0);
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const canopen::SdoWrite write = list.at(i);
+      const canopen::SdoRequest write = list.at(i);
       EXPECT_EQ(bus.write(node, write.address, write.size, write.value), canopen::AbortCode::none);
     }
     bus.deliver(encode(canopen::NmtRequest{canopen::NmtCommand::start, 0}));

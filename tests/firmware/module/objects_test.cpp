@@ -127,7 +127,7 @@ TEST(Objects, ReadBackWhatTheSetUpWrites) {
   robot.configure(0);
   const canopen::SetupList list(robot.setup, 0);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const canopen::SdoWrite write = list.at(i);
+    const canopen::SdoRequest write = list.at(i);
     EXPECT_EQ(robot.bus.value(node, write.address), write.value) << std::hex << write.address.index;
   }
   EXPECT_EQ(robot.bus.value(node, object::configuration_crc), robot.crc());
@@ -248,7 +248,7 @@ TEST(Objects, TheConfigurationOfTheRobotIsWritableInPreOperationalOnly) {
   const canopen::SetupList list(robot.setup, 0);
   unsigned refused = 0;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const canopen::SdoWrite write = list.at(i);
+    const canopen::SdoRequest write = list.at(i);
     const AbortCode code = robot.bus.write(node, write.address, write.size, write.value);
     const bool always = write.address == object::host_heartbeat.address ||
                         write.address == object::heartbeat_period.address ||

@@ -23,6 +23,7 @@
 #include "sim/bus/candump_log.hpp"
 #include "sim/hardware_loop/host_node.hpp"
 #include "sim/hardware_loop/native_module.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/lines_of.hpp"
 
 namespace proleg::sim {

@@ -17,6 +17,7 @@
 #include "sim/loop/verification.hpp"
 #include "sim/record/figure.hpp"
 #include "sim/record/tsv.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 

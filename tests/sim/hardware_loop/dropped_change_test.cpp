@@ -9,6 +9,7 @@
 #include "shipped.hpp"
 #include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/loop/verification.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace proleg::sim {

@@ -14,7 +14,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {

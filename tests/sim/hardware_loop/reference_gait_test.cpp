@@ -7,6 +7,7 @@
 
 #include "shipped.hpp"
 #include "sim/loop/servo_pulses.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {

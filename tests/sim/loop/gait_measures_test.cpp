@@ -11,6 +11,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/measure/body_wave.hpp"
 #include "sim/measure/measure.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {

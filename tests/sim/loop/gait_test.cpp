@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shipped.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "shared/computer/hash/sha256.hpp"
 #include "shipped.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -8,6 +8,7 @@
 #include "engine_run.hpp"
 #include "sim/loop/simulation_batch.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::sim {

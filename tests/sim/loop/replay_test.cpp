@@ -16,7 +16,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/record/recording.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/identity/sensing_probe.hpp"
 
 namespace proleg::sim {

@@ -15,7 +15,7 @@
 #include "shared/kernel/servo_command.hpp"
 #include "shipped.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -162,7 +162,7 @@ TEST(Simulation, ItsSetpointsAreThoseOfOneKernelOfAllJoints) {
               Status::ok);
   }
   for (const Setting& setting : scenario.settings) {
-    ASSERT_EQ(whole.set_parameter(setting.slot, setting.joint, setting.number, setting.value), Status::ok);
+    ASSERT_EQ(whole.set_parameter(setting), Status::ok);
   }
   whole.reset();
   for (int tick = 0; tick < 1000; ++tick) {

@@ -4,7 +4,7 @@
 
 #include "sim/record/figure.hpp"
 #include "sim/record/recorder.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "small_run.hpp"
 
 namespace proleg::sim {

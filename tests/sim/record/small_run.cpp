@@ -117,7 +117,7 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
               Status::ok);
   }
   for (const Setting& setting : scenario.settings) {
-    ASSERT_EQ(kernel.set_parameter(setting.slot, setting.joint, setting.number, setting.value), Status::ok);
+    ASSERT_EQ(kernel.set_parameter(setting), Status::ok);
   }
   kernel.reset();
 
@@ -135,11 +135,7 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
     if (next_change != scenario.changes.end() && next_change->tick == tick) {
       change = &*next_change++;
       for (const Setting& setting : change->settings) {
-        if (setting.internal) {
-          ASSERT_EQ(kernel.stage_internal(1, setting.slot, setting.joint, setting.number, setting.value), Status::ok);
-        } else {
-          ASSERT_EQ(kernel.stage(1, setting.slot, setting.joint, setting.number, setting.value), Status::ok);
-        }
+        ASSERT_EQ(kernel.stage(1, setting), Status::ok);
         ASSERT_EQ(kernel.commit(1, tick), Status::ok);
       }
     }

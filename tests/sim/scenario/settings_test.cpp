@@ -8,7 +8,7 @@
 #include "memory_files.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
-#include "sim/scenario/setting_word.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::sim {

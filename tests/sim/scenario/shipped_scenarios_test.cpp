@@ -114,7 +114,7 @@ std::vector<int> ticks_of_the_crests(const Scenario& scenario) {
   Kernel kernel(memory);
   EXPECT_EQ(kernel.configure(scenario.kernel, 0), Status::ok);
   for (const Setting& setting : scenario.settings) {
-    EXPECT_EQ(kernel.set_parameter(setting.slot, setting.joint, setting.number, setting.value), Status::ok);
+    EXPECT_EQ(kernel.set_parameter(setting), Status::ok);
   }
   kernel.reset();
   std::vector<int> ticks(memory.size());

@@ -5,7 +5,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
 #include "sim/hardware_loop/master_input.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master/change_plan.hpp"
-#include "sim/scenario/setting_word.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::tools {
 

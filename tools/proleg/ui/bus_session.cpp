@@ -15,7 +15,7 @@
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/bus_document.hpp"
 #include "tools/proleg/ui/operation.hpp"
-#include "tools/proleg/ui/recording_place.hpp"
+#include "tools/proleg/ui/recording_folder.hpp"
 #include "tools/proleg/ui/robot_row.hpp"
 
 namespace proleg::tools {

@@ -16,7 +16,6 @@
 #include "host/robot/bus_scan.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/ui/change_delivery.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/robot_row.hpp"

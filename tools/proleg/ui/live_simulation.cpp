@@ -7,7 +7,6 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/loop/robot_placement.hpp"
-#include "sim/scenario/reader.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/run/simulation_results.hpp"
@@ -15,12 +14,6 @@
 
 namespace proleg::tools {
 namespace {
-
-/// The sources are not needed, and cost time to copy.
-sim::Scenario without_sources(sim::Scenario scenario) {
-  scenario.sources.clear();
-  return scenario;
-}
 
 sim::Scenario with_settings(sim::Scenario scenario, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
@@ -37,7 +30,6 @@ LiveSimulation::LiveSimulation(sim::Scenario file, std::vector<std::string> sett
       given_(with_settings(file_, settings_)),
       losses_(losses),
       scenario_(given_),
-      scratch_(without_sources(file_)),
       edits_(file_, given_) {
   for (const ParameterPlace& place : parameters().places()) {
     other_set_.push_back(parameters().at(place).file);
@@ -106,9 +98,8 @@ void LiveSimulation::apply_to_file(std::span<const sim::ActuationEdit> edits) {
 }
 
 void LiveSimulation::move(const std::string& place) {
-  scratch_.moves.clear();
-  sim::add_move(scratch_, place + '@' + std::to_string(simulation_->tick()));
-  const sim::RobotMove& move = scratch_.moves.front();
+  const sim::RobotMove move =
+      sim::parse_move(place + '@' + std::to_string(simulation_->tick()), scenario_.kernel.tick_period_us);
   simulation_->apply_moves();  // those of the command line come before
   static_cast<void>(sim::placement(move, simulation_->plant().link_poses(), scenario_));
   scenario_.moves.insert(std::ranges::upper_bound(scenario_.moves, move.tick, {}, &sim::RobotMove::tick), move);
@@ -295,10 +286,7 @@ void LiveSimulation::schedule(std::uint32_t tick, const Setting& setting) {
   sim::put_setting(change->settings, setting);
   const auto same_tick = std::ranges::lower_bound(live_, tick, {}, &LiveSetting::tick);
   live_.erase(std::remove_if(same_tick, live_.end(),
-                             [&](const LiveSetting& live) {
-                               return live.setting.internal == setting.internal &&
-                                      place_of(live.setting) == place_of(setting);
-                             }),
+                             [&](const LiveSetting& live) { return live.setting.has_same_place(setting); }),
               live_.end());
   live_.push_back({tick, setting});
   if (!setting.internal) {

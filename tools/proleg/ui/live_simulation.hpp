@@ -124,7 +124,6 @@ class LiveSimulation {
   sim::Scenario given_;  ///< file_ with settings_
   const sim::Losses* losses_;
   sim::Scenario scenario_;  ///< of the present run, with all changes
-  sim::Scenario scratch_;   ///< to read moves with
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<sim::Recorder> recorder_;
   std::optional<std::string> recording_failure_;

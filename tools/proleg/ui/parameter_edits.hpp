@@ -1,17 +1,52 @@
 #pragma once
 
-// What a user wants of the parameters of a robot, and what they wanted before.
+// What a user wants of the parameters of a robot, what they wanted before, and how it gets to modules that move.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "shared/computer/change/change.hpp"
+#include "shared/kernel/setting.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/document/parameter_table.hpp"
-#include "tools/proleg/ui/change_history.hpp"
 
 namespace proleg::tools {
+
+/// What a user changed, for undo and redo.
+class ChangeHistory {
+ public:
+  /// The oldest entries beyond these are forgotten.
+  static constexpr std::size_t max_entries = 200;
+
+  struct Step {
+    ParameterPlace place;
+    std::int32_t before;
+    std::int32_t after;
+  };
+  struct Entry {
+    std::string name;  ///< of the change, for people
+    std::vector<Step> steps;
+    std::optional<std::uint64_t> gesture;
+  };
+
+  /// A new entry, after which nothing can be redone. With the gesture of the entry before, the two become one: a slider
+  /// that is drawn makes many changes.
+  void add(Entry entry);
+
+  /// The entry that undo takes back; null: none.
+  [[nodiscard]] const Entry* to_undo() const { return done_ > 0 ? &entries_[done_ - 1] : nullptr; }
+  [[nodiscard]] const Entry* to_redo() const { return done_ < entries_.size() ? &entries_[done_] : nullptr; }
+  /// Only if there is such an entry.
+  void undone() { --done_; }
+  void redone() { ++done_; }
+
+ private:
+  std::vector<Entry> entries_;
+  std::size_t done_ = 0;  ///< entries from here on are undone
+};
 
 class ParameterEdits {
  public:
@@ -51,6 +86,31 @@ class ParameterEdits {
   const sim::Scenario& file_;
   ParameterTable parameters_;
   ChangeHistory history_;
+};
+
+/// The way of what a user wants to the modules of a robot that has power. A change is on its way for many ticks, and
+/// the next one goes when the modules have it; meanwhile the user may want something else again.
+class ChangeDelivery {
+ public:
+  /// edits: must outlive this.
+  explicit ChangeDelivery(ParameterEdits& edits) : edits_(edits) {}
+
+  /// The modules have started with what is wanted.
+  void begin_run();
+  /// Internal values that the modules are to get once.
+  void add(const std::vector<Setting>& internal_values);
+  /// The next change for the modules: all that is wanted and not given, but at most max_staged_values of a joint.
+  /// Empty: there is none.
+  [[nodiscard]] std::vector<Setting> next();
+  /// The modules have made a change.
+  void confirm(const Change& change);
+  /// A change had no effect: what was given and not confirmed is not wanted any more.
+  void give_up();
+
+ private:
+  ParameterEdits& edits_;
+  std::vector<std::int32_t> given_;       ///< of each place of the table, what the modules were given last
+  std::vector<Setting> internal_values_;  ///< not given yet
 };
 
 }  // namespace proleg::tools

@@ -6,7 +6,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/scenario/setting_word.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::tools {
 namespace {

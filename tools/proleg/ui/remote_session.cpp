@@ -31,8 +31,6 @@ constexpr RemoteTime values_period{100};
 constexpr RemoteTime watch_time{5'000};
 constexpr RemoteTime search_period{1'000};
 
-constexpr std::string_view prefix = "remote.";
-
 bool is_own(host::RequestId request) { return (request & own_request) != 0; }
 
 }  // namespace
@@ -145,20 +143,14 @@ void RemoteSession::publish_news() {
 // From viewers, on the server's thread.
 
 void RemoteSession::operate(const host::OperationRequest& request) {
-  if (request.name.starts_with(prefix)) {
-    tasks_.post([this, request] { carry_out(request); });
-  } else {
-    session_.operate(request);
-  }
+  tasks_.post([this, request] { carry_out(request); });
 }
 
-void RemoteSession::stop(const host::StopRequest& request) {
-  session_.stop(request);
+void RemoteSession::stop(const host::StopRequest& /*request*/) {
   tasks_.post([this] { remote_.robot_stopped(); });
 }
 
 void RemoteSession::holder_changed(bool has_holder, bool is_away) {
-  session_.holder_changed(has_holder, is_away);
   tasks_.post([this, is_allowed = has_holder && !is_away] { remote_.set_allowed(is_allowed); });
 }
 

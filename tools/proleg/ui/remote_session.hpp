@@ -1,7 +1,7 @@
 #pragma once
 
-// Remote control of a session: what viewers ask of it and what it answers passes through here. Input devices are read
-// in a thread of its own.
+// Remote control of a session: what the session answers passes through here. Input devices are read in a thread of its
+// own.
 
 #include <chrono>
 #include <functional>
@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -28,13 +29,15 @@ class RemoteSession final : public host::RobotSession, public host::SessionOutpu
 
   /// The gamepads of this computer.
   [[nodiscard]] static std::unique_ptr<host::DeviceSource> kernel_devices(host::DeviceListener& listener);
+  /// The names of its operations begin with this.
+  static constexpr std::string_view prefix = "remote.";
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"remote.watch"}; }
 
   /// session: what is controlled. Must outlive this.
   RemoteSession(host::RobotSession& session, host::BindingStore store, MakeDevices make_devices);
 
-  // RobotSession: from viewers.
+  // RobotSession: from viewers, by the server's thread.
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
   void holder_changed(bool has_holder, bool is_away) override;

@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 // Ticks that are compared before the session looks for requests again: some milliseconds.
-constexpr std::uint32_t slice_ticks = 128;
+constexpr std::uint32_t ticks_at_once = 128;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ bool RunComparison::compare_some() {
     return false;
   }
   const std::uint32_t from = first_tick() + compared_;
-  const std::uint32_t to = from + std::min(slice_ticks, common - compared_) - 1;
+  const std::uint32_t to = from + std::min(ticks_at_once, common - compared_) - 1;
   setpoints_.clear();
   runs_[0]->read_ticks(from, to, [this](const sim::RecordedTick& tick) {
     setpoints_.insert(setpoints_.end(), tick.setpoints.begin(), tick.setpoints.end());

@@ -4,12 +4,13 @@
 
 namespace proleg::tools {
 
-/// Two sessions behind one page: a robot, and recordings. Operations go by their names; STOP and the holder of control
-/// go to the robot.
+/// Three sessions behind one page: a robot, its remote control, and recordings. Each operation goes to the one that its
+/// name tells; STOP and the holder of control go to the robot, then to the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
-  /// Both must outlive the router.
-  SessionRouter(host::RobotSession& recordings, host::RobotSession& robot) : recordings_(recordings), robot_(robot) {}
+  /// All must outlive the router.
+  SessionRouter(host::RobotSession& recordings, host::RobotSession& remote, host::RobotSession& robot)
+      : recordings_(recordings), remote_(remote), robot_(robot) {}
 
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
@@ -17,6 +18,7 @@ class SessionRouter final : public host::RobotSession {
 
  private:
   host::RobotSession& recordings_;
+  host::RobotSession& remote_;
   host::RobotSession& robot_;
 };
 

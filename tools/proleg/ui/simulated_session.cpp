@@ -16,7 +16,7 @@
 #include "tools/proleg/document/telemetry_row.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
 #include "tools/proleg/ui/operation.hpp"
-#include "tools/proleg/ui/recording_place.hpp"
+#include "tools/proleg/ui/recording_folder.hpp"
 
 namespace proleg::tools {
 namespace {

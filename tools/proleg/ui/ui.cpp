@@ -195,7 +195,7 @@ int serve(UiOptions& options) {
   host::SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
-  SessionRouter router(recording_requests, remote);
+  SessionRouter router(recording_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RemoteThread remote_thread(remote, page);

@@ -111,7 +111,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   void configure() {
     const canopen::SetupList list(setup_.robot, Setup::joint);
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const canopen::SdoWrite entry = list.at(i);
+      const canopen::SdoRequest entry = list.at(i);
       write(entry.address, entry.size, entry.value);
     }
     receive(encode(canopen::NmtRequest{canopen::NmtCommand::start, 0}));

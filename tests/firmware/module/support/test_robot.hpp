@@ -56,7 +56,7 @@ class TestRobot {
     const canopen::SetupList list(setup, joint);
     ASSERT_GT(list.size(), 0U);
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const canopen::SdoWrite write = list.at(i);
+      const canopen::SdoRequest write = list.at(i);
       ASSERT_EQ(bus.write(node(joint), write.address, write.size, write.value), canopen::AbortCode::none)
           << "joint " << joint << ": " << std::hex << write.address.index << ':' << int{write.address.sub} << " = "
           << write.value;

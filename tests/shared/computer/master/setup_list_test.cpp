@@ -29,9 +29,9 @@ struct Robot {
     setup.start_values = start_values;
     return setup;
   }
-  [[nodiscard]] std::vector<SdoWrite> writes(unsigned joint) {
+  [[nodiscard]] std::vector<SdoRequest> writes(unsigned joint) {
     const SetupList list(with_spans(), joint);
-    std::vector<SdoWrite> result;
+    std::vector<SdoRequest> result;
     for (std::size_t i = 0; i < list.size(); ++i) {
       result.push_back(list.at(i));
     }
@@ -70,7 +70,7 @@ TEST(SetupList, WritesInTheOrderOfTheProtocol) {
   robot.setup.kernel.slots[2] = {&test::algorithm(test::sinusoidal), JointMask(0b110)};  // second frames of 1 and 2
   robot.limits[1] = {-5, 6};
   robot.start_values = {{2, 1, 0, false, 77}, {0, 1, 3, false, -8}, {0, 0, 0, false, 5}};
-  const std::vector<SdoWrite> expected{
+  const std::vector<SdoRequest> expected{
       {{0x1016, 1}, 4, 127U << 16U | 500U},
       {{0x1017, 0}, 2, 100},
       {{0x1006, 0}, 4, 5'000},
@@ -105,7 +105,7 @@ TEST(SetupList, WritesInTheOrderOfTheProtocol) {
       {{0x3083, 1}, 4, static_cast<std::uint32_t>(-8)},
       {{0x3040, 3}, 4, 77},
   };
-  const std::vector<SdoWrite> writes = robot.writes(1);
+  const std::vector<SdoRequest> writes = robot.writes(1);
   ASSERT_EQ(writes.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(writes[i], expected[i]) << "write " << i << ": " << std::hex << writes[i].address.index << ":"
@@ -117,7 +117,7 @@ TEST(SetupList, TheEndsOfTheRobotHaveOneNeighbour) {
   Robot robot(2);
   robot.nodes = {4, 5};
   const auto value = [&](unsigned joint, Address address) {
-    for (const SdoWrite& write : robot.writes(joint)) {
+    for (const SdoRequest& write : robot.writes(joint)) {
       if (write.address == address) {
         return static_cast<int>(write.value);
       }
@@ -139,8 +139,8 @@ TEST(SetupList, SendsTheLastOfRepeatedStartValuesAndNoDefaults) {
   const std::size_t without = robot.writes(0).size();
   robot.start_values = {{0, 0, 0, false, 1}, {0, 0, 1, false, 2}, {0, 0, 0, false, 3}};
   EXPECT_EQ(robot.writes(0).size(), without + 2);
-  EXPECT_EQ(robot.writes(0)[without], (SdoWrite{{0x3080, 1}, 4, 3}));
-  EXPECT_EQ(robot.writes(0)[without + 1], (SdoWrite{{0x3081, 1}, 4, 2}));
+  EXPECT_EQ(robot.writes(0)[without], (SdoRequest{{0x3080, 1}, 4, 3}));
+  EXPECT_EQ(robot.writes(0)[without + 1], (SdoRequest{{0x3081, 1}, 4, 2}));
   robot.start_values = {{0, 0, 0, false, 1}, {0, 0, 0, false, usual}};
   EXPECT_EQ(robot.writes(0).size(), without);
 }
@@ -226,7 +226,7 @@ TEST(SetupList, GivesAModuleTheWholeConfiguration) {
     const unsigned joint = random.next() % joints;
     test::DeviceMemory device;
     SdoClient client;
-    for (const SdoWrite& write : robot.writes(joint)) {
+    for (const SdoRequest& write : robot.writes(joint)) {
       const std::uint8_t node = robot.nodes[joint];
       const std::optional<CanFrame> answer =
           SdoServer(node, device).receive(0, client.write(0, node, write.address, write.size, write.value));

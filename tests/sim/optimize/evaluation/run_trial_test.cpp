@@ -4,7 +4,7 @@
 
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/evaluation/rating.hpp"
-#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "small_experiment.hpp"
 
 namespace proleg::optimize {

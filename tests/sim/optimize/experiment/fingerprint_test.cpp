@@ -3,6 +3,7 @@
 #include <map>
 
 #include "experiment_files.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "experiment_files.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "experiment_files.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {

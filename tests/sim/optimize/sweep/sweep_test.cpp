@@ -12,6 +12,7 @@
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"
 

@@ -17,6 +17,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace {
 
@@ -159,9 +160,7 @@ void check_with_kernel(const Scenario& scenario) {
             "the kernel takes the limits");
   }
   for (const Setting& setting : scenario.settings) {
-    require(!setting.internal &&
-                kernel.set_parameter(setting.slot, setting.joint, setting.number, setting.value) == Status::ok,
-            "the kernel takes the start values");
+    require(!setting.internal && kernel.set_parameter(setting) == Status::ok, "the kernel takes the start values");
   }
   kernel.reset();
   const Change* before = nullptr;
@@ -173,11 +172,7 @@ void check_with_kernel(const Scenario& scenario) {
     kernel.reset();
     ++transaction;
     for (const Setting& setting : change.settings) {
-      const Status status =
-          setting.internal
-              ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.number, setting.value)
-              : kernel.stage(transaction, setting.slot, setting.joint, setting.number, setting.value);
-      require(status == Status::ok, "the kernel takes the changes");
+      require(kernel.stage(transaction, setting) == Status::ok, "the kernel takes the changes");
     }
   }
   kernel.advance();

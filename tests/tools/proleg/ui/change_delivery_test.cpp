@@ -1,4 +1,4 @@
-#include "tools/proleg/ui/change_delivery.hpp"
+#include "tools/proleg/ui/parameter_edits.hpp"
 
 #include <gtest/gtest.h>
 

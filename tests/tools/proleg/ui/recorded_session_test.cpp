@@ -222,21 +222,28 @@ TEST_F(RecordedSessionTest, ComparesAFileWithItselfWhileItIsReplaced) {
   replacing.join();
 }
 
-TEST(SessionRouter, RobotAndRecordingsGetTheirOwn) {
+TEST(SessionRouter, RobotRemoteControlAndRecordingsGetTheirOwn) {
   host::SessionRequests recordings;
+  host::SessionRequests remote;
   host::SessionRequests robot;
-  SessionRouter router(recordings, robot);
+  SessionRouter router(recordings, remote, robot);
   router.operate({1, "recording.list", json::object(), 1, "a test"});
   router.operate({2, "set", json::object(), 1, "a test"});
+  router.operate({3, "remote.watch", json::object(), 1, "a test"});
   router.holder_changed(true, false);
   EXPECT_EQ(recordings.take_operation()->request, 1U);
   EXPECT_EQ(robot.take_operation()->request, 2U);
+  EXPECT_EQ(remote.take_operation()->request, 3U);
+  EXPECT_FALSE(robot.take_operation());
+  EXPECT_FALSE(remote.take_operation());
   EXPECT_FALSE(recordings.take_operation());
   EXPECT_TRUE(robot.take_holder().is_there);
-  router.stop({3, "a test"});
+  EXPECT_TRUE(remote.take_holder().is_there);
+  router.stop({4, "a test"});
   std::deque<host::OperationRequest> outdated;
   EXPECT_TRUE(recordings.take_stops(outdated).empty());
   EXPECT_EQ(robot.take_stops(outdated).size(), 1U);
+  EXPECT_EQ(remote.take_stops(outdated).size(), 1U);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/scenario/reader.hpp"
 #include "sim/scenario/robot_move.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::tools {
 

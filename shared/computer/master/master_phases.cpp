@@ -390,7 +390,7 @@ void Master::begin_commit() {
       drop_change(problem);
       return;
     }
-  } else {
+  } else if (change_ == plan_.next()) {  // a change that is committed again has its tick
     plan_.decide_tick(0);
   }
   enter(Phase::commit);

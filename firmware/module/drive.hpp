@@ -6,7 +6,7 @@
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 
 namespace proleg::firmware {
 

@@ -3,7 +3,7 @@
 #include "firmware/module/module_settings.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 
 namespace proleg::firmware {
 

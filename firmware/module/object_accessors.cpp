@@ -6,7 +6,7 @@
 #include "firmware/module/board_control.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 
 namespace proleg::firmware {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <bit>
 
-#include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/hardware.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 
 extern "C" {
 

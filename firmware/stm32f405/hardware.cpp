@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <memory>
 
-#include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 
 namespace proleg::stm32f405 {
 

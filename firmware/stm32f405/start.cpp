@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 
 extern "C" {
 

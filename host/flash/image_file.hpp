@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/flash/bare_commands.hpp"
 #include "shared/image/image_header.hpp"
 
 namespace proleg::host {
@@ -57,5 +58,13 @@ void check_image_body(const std::string& file, const image::Header& header, std:
 /// Reads an intact image. Throws InputError for any other file. image::check_place() decides whether the image fits a
 /// board.
 [[nodiscard]] ImageFile read_image(const std::string& file);
+
+/// A bootloader as the flash holds it: the bytes from the beginning of its sector, with 0xFF up to a multiple of 4. The
+/// file is an ELF file (for a 32-bit ARM, little-endian) or a raw binary. file: its name, for messages. Throws
+/// InputError for anything else, and for a bootloader that does not fit into the sector, or does not start there.
+[[nodiscard]] std::vector<std::uint8_t> bootloader_of(const std::string& file, std::span<const std::uint8_t> bytes,
+                                                      const FlashPart& sector);
+/// Reads a file and returns bootloader_of() its bytes.
+[[nodiscard]] std::vector<std::uint8_t> read_bootloader(const std::string& file, const FlashPart& sector);
 
 }  // namespace proleg::host

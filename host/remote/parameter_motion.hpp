@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/remote/binding.hpp"
-#include "host/remote/element.hpp"
+#include "host/remote/device_listener.hpp"
 #include "host/remote/remote_target.hpp"
 
 namespace proleg::host {

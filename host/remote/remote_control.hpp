@@ -2,8 +2,10 @@
 
 // Input devices, and the bindings of their elements. All calls come from one thread; the time is an argument.
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,12 +13,42 @@
 
 #include "host/remote/binding.hpp"
 #include "host/remote/device_listener.hpp"
-#include "host/remote/parameter_changes.hpp"
 #include "host/remote/parameter_motion.hpp"
 #include "host/remote/remote_buttons.hpp"
 #include "host/remote/remote_target.hpp"
 
 namespace proleg::host {
+
+/// Sends changes of parameters to the robot: at most 50 a second, one at a time, each with the newest values, so that
+/// no old changes queue up for a robot that answers slowly.
+class ParameterChanges {
+ public:
+  static constexpr RemoteTime shortest_period{20};
+  /// A pause of this length ends a gesture; a later movement is another entry for undo.
+  static constexpr RemoteTime gesture_pause{500};
+  /// After this time an answer is no longer expected.
+  static constexpr RemoteTime answer_timeout{1000};
+
+  explicit ParameterChanges(RemoteTarget& target) : target_(target) {}
+
+  void want(RemoteTime now, const ParameterMotion::Value& value);
+  /// Forgets changes that have not been sent.
+  void clear() { pending_.clear(); }
+  void answered() { sent_unanswered_.reset(); }
+  void advance(RemoteTime now);
+  /// Time at which advance() has something to do; nothing if it has nothing to do before the next change.
+  [[nodiscard]] std::optional<RemoteTime> due() const;
+
+ private:
+  [[nodiscard]] RemoteTime next_set() const;
+
+  RemoteTarget& target_;
+  std::map<std::string, double> pending_;
+  std::optional<RemoteTime> wanted_at_;
+  std::optional<RemoteTime> sent_at_;
+  std::optional<RemoteTime> sent_unanswered_;
+  std::uint64_t gesture_ = 0;
+};
 
 /// Finds, once, the element that a person moves clearly after the request to do so.
 class ElementLearning {
@@ -117,5 +149,12 @@ class RemoteControl final : public DeviceListener {
   std::uint64_t revision_ = 1;
   std::uint64_t movements_ = 0;
 };
+
+/// The members `devices`, `bindings`, `problems`, `learning` and `active` of the document `remote`
+/// (docs/page-interface.md).
+[[nodiscard]] nlohmann::json remote_document(const RemoteControl& remote);
+
+/// The document `remote_values`: positions of elements, and the values that bindings make of them.
+[[nodiscard]] nlohmann::json remote_values_document(const RemoteControl& remote);
 
 }  // namespace proleg::host

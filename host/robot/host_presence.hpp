@@ -1,11 +1,19 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <random>
 
 #include "host/robot/bus_user.hpp"
 #include "shared/canopen/messages.hpp"
 
 namespace proleg::host {
+
+/// A token for the lease of a robot (object 0x2002): not 0, and different from that of any other host.
+[[nodiscard]] inline std::uint32_t random_token() {
+  std::random_device device;
+  return std::uniform_int_distribution<std::uint32_t>(1)(device);
+}
 
 /// Finds out by heartbeats whether another host drives the robot. A host sends one each 100 ms. On a busy computer
 /// some are late, and a last one of a host that has just ended may still be under way.

@@ -10,7 +10,7 @@
 #include "host/robot/bus_user.hpp"
 #include "host/robot/sdo_queue.hpp"
 #include "shared/computer/master/master.hpp"
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 
 namespace proleg::host {
 

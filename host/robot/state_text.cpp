@@ -50,4 +50,46 @@ std::string_view drive_text(std::uint16_t statusword) {
   }
 }
 
+std::string_view fault_advice(canopen::EmergencyCode code) {
+  using enum canopen::EmergencyCode;
+  switch (code) {
+    case none:
+    case rejoined:
+      break;
+    case over_current:
+      return "Look whether the joint is blocked; give it less amplitude, or a higher limit (object 0x200A).";
+    case supply_low:
+      return "Charge the battery, or look at the supply and its cable.";
+    case over_temperature:
+      return "Switch the power off and let the module cool.";
+    case sensors_failed:
+      return "Switch the module off and on; if it comes back, look at its board.";
+    case clock_failure:
+      return "Look at the crystal of the board.";
+    case watchdog_reset:
+    case software_fault:
+      return "Start again; if it comes back, flash the module and report it.";
+    case not_configured:
+    case foreign_configuration:
+      return "Start again: another program may have changed the module.";
+    case frames_lost:
+      return "Look for another program that sends on the bus.";
+    case heartbeat_lost:
+      return "Look at the connection of this computer to the bus.";
+    case bus_off_recovered:
+    case wrong_length:
+      return "Look at cable, termination and plugs: proleg doctor.";
+    case identifier_collision:
+      return "Two modules have one node id: proleg assign.";
+    case sync_lost:
+    case early_sync:
+      return "Look at the cable to the first joint, and for another program that drives the robot.";
+    case commit_too_late:
+    case commit_not_staged:
+    case unknown_label:
+      return "Start again; if it comes back, look at cable and termination: proleg doctor.";
+  }
+  return "docs/protocol.md explains the code. Start again; if it comes back, look at its cause.";
+}
+
 }  // namespace proleg::host

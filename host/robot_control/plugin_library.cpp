@@ -5,8 +5,6 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "host/robot_control/robot_control_error.hpp"
-
 namespace proleg::host {
 namespace {
 

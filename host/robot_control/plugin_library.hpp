@@ -2,12 +2,27 @@
 
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/robot_control_abi/robot_control.h"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::host {
+
+/// A robot or its plug-in failed. what(): one line, with what to do.
+class RobotControlError : public std::runtime_error {
+ public:
+  explicit RobotControlError(const std::string& text) : std::runtime_error(one_line(text)) {}
+};
+
+/// The robot's file is wrong: it names a plug-in that cannot be loaded, or parameters that the plug-in rejects. what()
+/// begins with FILE:LINE. As an InputError, it is bad input for a program.
+class RobotFileError : public RobotControlError {
+ public:
+  using RobotControlError::RobotControlError;
+};
 
 /// The path of the plug-in with that name. A name with a slash is a path, relative to `robot_folder`. Any other name
 /// NAME is the file proleg-NAME.so in the first one of `folders` that has it. Throws RobotControlError.

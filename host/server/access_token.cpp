@@ -9,7 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 
 namespace proleg::host {
 namespace {

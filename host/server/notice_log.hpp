@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/server/document_store.hpp"
-#include "host/server/notice_level.hpp"
+#include "host/server/robot_session.hpp"
 
 namespace proleg::host {
 

@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 
 namespace proleg::host {

@@ -1,11 +1,162 @@
 #include "host/server/web_server.hpp"
 
+#include <boost/asio/ip/v6_only.hpp>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <stdexcept>
 #include <utility>
 
+#include "host/server/http_connection.hpp"
 #include "host/server/session_link.hpp"
-#include "host/server/socket_server.hpp"
 
 namespace proleg::host {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+using tcp = asio::ip::tcp;
+
+constexpr std::size_t max_connections = 56;
+constexpr std::size_t max_stop_connections = 8;
+constexpr std::chrono::milliseconds accept_pause{100};
+
+}  // namespace
+
+SocketServer::SocketServer(asio::io_context& context, std::uint16_t port,
+                           std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link)
+    : context_(context),
+      certificate_(std::move(certificate)),
+      link_(std::move(link)),
+      acceptor_(context),
+      timer_(context),
+      accept_timer_(context) {
+  try {
+    listen(port);
+  } catch (const boost::system::system_error& error) {
+    const std::string place = certificate_ ? "port " : "127.0.0.1:";
+    throw std::runtime_error(place + std::to_string(port) + ": found " + error.code().message() +
+                             ", expected a free port");
+  }
+}
+
+void SocketServer::listen(std::uint16_t port) {
+  tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
+  if (certificate_) {
+    // The server listens on all interfaces; the IPv6 socket also takes IPv4, if the system has IPv6.
+    error_code error;
+    acceptor_.open(tcp::v6(), error);
+    if (!error) {
+      acceptor_.set_option(asio::ip::v6_only(false));
+    }
+    endpoint = tcp::endpoint(error ? tcp::v4() : tcp::v6(), port);
+  }
+  if (!acceptor_.is_open()) {
+    acceptor_.open(endpoint.protocol());
+  }
+  acceptor_.set_option(asio::socket_base::reuse_address(true));
+  acceptor_.bind(endpoint);
+  acceptor_.listen();
+  address_ = {acceptor_.local_endpoint().port(), certificate_ != nullptr,
+              certificate_ ? certificate_->names() : std::vector<std::string>()};
+}
+
+void SocketServer::post_delivery() {
+  asio::post(context_, [self = shared_from_this()] {
+    self->link_->deliver();
+    self->serve();
+  });
+}
+
+void SocketServer::post_stop() {
+  asio::post(context_, [self = shared_from_this()] { self->stop(); });
+}
+
+void SocketServer::accept() {
+  acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
+    if (self->has_ended_) {
+      return;
+    }
+    if (!error) {
+      self->accepted(std::move(socket));
+      self->accept();
+      return;
+    }
+    // The process may have no file descriptors left; another attempt at once would fail, too.
+    self->accept_timer_.expires_after(accept_pause);
+    self->accept_timer_.async_wait([self](const error_code&) {
+      if (!self->has_ended_) {
+        self->accept();
+      }
+    });
+  });
+}
+
+void SocketServer::accepted(tcp::socket socket) {
+  error_code ignored;
+  socket.set_option(tcp::no_delay(true), ignored);
+  asio::ssl::context* const tls = certificate_ ? &certificate_->tls() : nullptr;
+  if (living(connections_).size() < max_connections) {
+    connections_.push_back(open_http_connection(shared_from_this(), std::move(socket), tls, ConnectionUse::any));
+    return;
+  }
+  if (const auto reserved = living(stop_connections_); reserved.size() >= max_stop_connections) {
+    reserved.front()->end_by_force();
+    stop_connections_.pop_front();
+  }
+  stop_connections_.push_back(
+      open_http_connection(shared_from_this(), std::move(socket), tls, ConnectionUse::only_stop));
+}
+
+std::vector<std::shared_ptr<Connection>> SocketServer::living(Connections& connections) {
+  std::vector<std::shared_ptr<Connection>> living;
+  std::erase_if(connections, [&living](const std::weak_ptr<Connection>& known) {
+    if (std::shared_ptr<Connection> connection = known.lock()) {
+      living.push_back(std::move(connection));
+      return false;
+    }
+    return true;
+  });
+  return living;
+}
+
+void SocketServer::serve() {
+  const ServerTime now = server_now();
+  link_->hub.advance(now);
+  for (const std::shared_ptr<Connection>& connection : living(connections_)) {
+    connection->pump();
+  }
+  const ServerTime deadline = has_ended_ ? no_deadline : link_->hub.deadline(now);
+  if (deadline == timer_deadline_) {
+    return;
+  }
+  timer_deadline_ = deadline;
+  timer_.cancel();
+  if (deadline == no_deadline) {
+    return;
+  }
+  timer_.expires_at(std::chrono::steady_clock::time_point(deadline));
+  timer_.async_wait([self = shared_from_this(), deadline](const error_code& error) {
+    if (!error && self->timer_deadline_ == deadline) {
+      self->timer_deadline_ = no_deadline;
+      self->serve();
+    }
+  });
+}
+
+void SocketServer::stop() {
+  if (std::exchange(has_ended_, true)) {
+    return;
+  }
+  error_code ignored;
+  acceptor_.close(ignored);
+  accept_timer_.cancel();
+  timer_.cancel();
+  for (Connections* const connections : {&connections_, &stop_connections_}) {
+    for (const std::shared_ptr<Connection>& connection : living(*connections)) {
+      connection->end();
+    }
+  }
+}
 
 WebServer::WebServer(boost::asio::io_context& context, ServerOptions options, RobotSession& session)
     : link_(std::make_shared<SessionLink>(

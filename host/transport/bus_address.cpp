@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "host/transport/serial_speed.hpp"
+#include "host/transport/serial_device.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 

@@ -2,10 +2,19 @@
 
 // Describes a serial device by the file system. The device is not opened, because some adapters reset when they are.
 
+#include <termios.h>
+
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace proleg::host {
+
+/// The code of a baud rate in termios; nothing if Linux has none.
+[[nodiscard]] std::optional<speed_t> serial_speed(unsigned baud);
+
+/// All baud rates that have a code, for messages.
+[[nodiscard]] std::string serial_speeds_text();
 
 struct SerialDevice {
   bool exists = false;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "host/transport/link.hpp"
-#include "host/transport/serial_speed.hpp"
+#include "host/transport/serial_device.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::host {

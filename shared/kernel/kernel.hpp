@@ -15,7 +15,6 @@
 
 #include "shared/kernel/joint_memory.hpp"
 #include "shared/kernel/kernel_configuration.hpp"
-#include "shared/kernel/setting.hpp"
 #include "shared/kernel/staging.hpp"
 #include "shared/kernel/status.hpp"
 

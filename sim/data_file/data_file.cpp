@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"

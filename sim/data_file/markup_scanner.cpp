@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 

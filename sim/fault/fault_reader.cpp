@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/names.hpp"

@@ -7,7 +7,7 @@
 #include "sim/hardware_loop/module_rack.hpp"
 #include "sim/hardware_loop/plant_ticks.hpp"
 #include "sim/hardware_loop/reference_gait.hpp"
-#include "sim/robot/servo_pulse.hpp"
+#include "sim/robot/servo.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "sim/loop/pulse_timing.hpp"
+#include "sim/loop/pulse_player.hpp"
 
 namespace proleg::sim {
 

@@ -10,7 +10,7 @@
 #include "sim/loop/gait.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/touch_inputs.hpp"
-#include "sim/robot/servo_pulse.hpp"
+#include "sim/robot/servo.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "sim/robot/servo_pulse.hpp"
+#include "sim/robot/servo.hpp"
 
 namespace proleg::sim {
 

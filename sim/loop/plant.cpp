@@ -13,7 +13,6 @@
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/reduced_world.hpp"
 #include "sim/robot/servo.hpp"
-#include "sim/robot/servo_current.hpp"
 #include "sim/scenario/random_streams.hpp"
 
 namespace proleg::sim {

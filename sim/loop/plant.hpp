@@ -83,7 +83,7 @@ class Plant {
   void add_to(TickSample& sample) const;
 
   /// What the module of a joint measures now: the current that its servo drew in the last step (an estimate,
-  /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.
+  /// sim/robot/servo.hpp), the actual angle, and a chip at 25 degrees Celsius.
   [[nodiscard]] ServoReadings servo_readings(std::size_t joint) const;
 
   /// What an algorithm on a joint can read of its module now (shared/gait/joint_readings.hpp), with sensors that no

@@ -8,7 +8,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/robot/mesh_height.hpp"
+#include "sim/robot/bounds.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
 

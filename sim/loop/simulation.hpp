@@ -17,7 +17,7 @@
 #include "sim/measure/gait_meter.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/record/recorder.hpp"
-#include "sim/robot/servo_pulse.hpp"
+#include "sim/robot/servo.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "sim/measure/body_wave.hpp"
-#include "sim/robot/link_ends.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -15,11 +15,11 @@
 #include "sim/measure/servo_tracking.hpp"
 #include "sim/measure/stride.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/robot/servo_current.hpp"
+#include "sim/robot/servo.hpp"
 
 namespace proleg::sim {
 
-/// Supply voltage of the servos; sim/robot/servo_current.hpp estimates their current for this voltage.
+/// Supply voltage of the servos; sim/robot/servo.hpp estimates their current for this voltage.
 inline constexpr double servo_supply_v = 6.0;
 
 /// Computes the measures of a run from the robot's motion. docs/gait-measures.md defines them.

@@ -14,7 +14,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/mesh/mesh_error.hpp"
+#include "sim/mesh/mesh_checks.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -22,7 +22,7 @@
 
 #include "shared/computer/child_process/leave_parent.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/mesh/mesh_error.hpp"
+#include "sim/mesh/mesh_checks.hpp"
 
 namespace proleg::sim {
 namespace {

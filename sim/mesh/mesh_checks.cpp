@@ -1,5 +1,6 @@
 #include "sim/mesh/mesh_checks.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,10 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "shared/computer/text/text.hpp"
-#include "sim/mesh/mesh_error.hpp"
 
 namespace proleg::sim {
 namespace {

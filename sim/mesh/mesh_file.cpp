@@ -27,7 +27,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/mesh/import_process.hpp"
-#include "sim/mesh/mesh_error.hpp"
+#include "sim/mesh/mesh_checks.hpp"
 
 namespace Assimp {
 

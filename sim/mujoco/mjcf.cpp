@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/robot/friction.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::mujoco {
 namespace {

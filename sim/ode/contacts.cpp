@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "sim/ode/shapes.hpp"
-#include "sim/robot/friction.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
 namespace {

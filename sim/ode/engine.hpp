@@ -1,8 +1,11 @@
 #pragma once
 
+#include <ode/ode.h>
+
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace proleg::sim {
 
@@ -14,5 +17,33 @@ void prepare_engine_for_this_thread();
 [[nodiscard]] std::size_t engine_messages();
 /// The first messages that differ, at most ten.
 [[nodiscard]] std::span<const std::string> engine_message_texts();
+
+/// The memory that the engine takes for the steps of a world. If an error of the engine ends a step in its middle, the
+/// engine does not free this memory; the destructor frees it.
+class StepMemory {
+ public:
+  StepMemory() = default;
+  /// The world must be destroyed before its memory.
+  ~StepMemory();
+  StepMemory(const StepMemory&) = delete;
+  StepMemory& operator=(const StepMemory&) = delete;
+
+  /// Lets the world take its memory from the selected object. Must be called before the world's first step.
+  static void use_for(dWorldID world);
+  /// Must be called before each step: this thread's worlds take their memory from this object.
+  void select();
+
+ private:
+  /// The header in front of each block that the engine gets.
+  struct alignas(std::max_align_t) Header {
+    StepMemory* owner;
+  };
+
+  static void* allocate(std::size_t size);
+  static void* shrink(void* block, std::size_t size, std::size_t smaller);
+  static void release(void* block, std::size_t size);
+
+  std::vector<Header*> blocks_;  ///< blocks in use, which are few
+};
 
 }  // namespace proleg::sim

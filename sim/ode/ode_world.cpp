@@ -13,7 +13,6 @@
 #include "sim/ode/engine.hpp"
 #include "sim/ode/hinge_motor.hpp"
 #include "sim/ode/shapes.hpp"
-#include "sim/ode/step_memory.hpp"
 #include "sim/physics/physics_error.hpp"
 
 namespace proleg::sim {

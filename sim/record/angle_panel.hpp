@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/record/axis.hpp"
 #include "sim/record/figure_contents.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/svg.hpp"
 

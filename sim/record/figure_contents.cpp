@@ -9,8 +9,8 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/stride.hpp"
-#include "sim/robot/link_ends.hpp"
-#include "sim/robot/sensor_quantity.hpp"
+#include "sim/robot/attached_sensor.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/record/axis.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/svg.hpp"
 

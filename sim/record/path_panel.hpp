@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sim/record/axis.hpp"
 #include "sim/record/figure_contents.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/svg.hpp"
 

@@ -1,6 +1,11 @@
 #include "sim/record/recorded_scenario.hpp"
 
+#include <string_view>
+
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/gait/registry.hpp"
+#include "shared/kernel/fingerprint.hpp"
 #include "sim/scenario/file_source.hpp"
 #include "sim/scenario/reader.hpp"
 
@@ -19,6 +24,43 @@ std::optional<Scenario> recorded_scenario(const Recording& recording, const Over
   } catch (const InputError&) {
     return std::nullopt;
   }
+}
+
+std::string user_algorithms_text(const KernelConfiguration& kernel) {
+  std::string text;
+  for (const Slot& slot : kernel.slots) {
+    if (slot.algorithm != nullptr && is_user_algorithm(slot.algorithm->declaration().id)) {
+      const Declaration& declaration = slot.algorithm->declaration();
+      text += (text.empty() ? "" : ", ") + std::string(declaration.name) + ' ' + hexadecimal(declaration.sources, 8);
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> other_algorithms(const Recording& recording) {
+  std::vector<std::string> sentences;
+  const std::string core = recording.run_value("core_fingerprint");
+  if (core != hexadecimal(core_fingerprint, 8)) {
+    sentences.push_back("the recording was made with core " + core + ", this program has core " +
+                        hexadecimal(core_fingerprint, 8));
+  }
+  const std::string recorded = recording.run_value("user_algorithms");
+  std::string_view rest = recorded;
+  while (!rest.empty()) {
+    const std::string_view item = trimmed(rest.substr(0, rest.find(',')));
+    rest.remove_prefix(rest.find(',') == std::string_view::npos ? rest.size() : rest.find(',') + 1);
+    const std::string_view name = item.substr(0, item.find(' '));
+    const ActuationModule* const algorithm = find_algorithm(name);
+    if (algorithm == nullptr || !is_user_algorithm(algorithm->declaration().id)) {
+      continue;
+    }
+    const std::string present = std::string(name) + ' ' + hexadecimal(algorithm->declaration().sources, 8);
+    if (item != present) {
+      sentences.push_back("the recording was made with the user's algorithm " + std::string(item) +
+                          ", this program has loaded " + present);
+    }
+  }
+  return sentences;
 }
 
 }  // namespace proleg::sim

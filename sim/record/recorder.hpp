@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/record/recorded_run.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/robot/servo_pulse.hpp"
+#include "sim/robot/servo.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 

@@ -5,7 +5,6 @@
 #include <optional>
 #include <sstream>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/kernel.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/record/recorded_run.hpp"
-#include "sim/robot/servo_pulse.hpp"
+#include "sim/robot/servo.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 

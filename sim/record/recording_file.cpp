@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "sim/record/schema.hpp"
 

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/fixed/unit.hpp"

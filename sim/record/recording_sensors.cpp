@@ -3,7 +3,7 @@
 #include <string>
 
 #include "sim/record/recording_rows.hpp"
-#include "sim/robot/sensor_quantity.hpp"
+#include "sim/robot/attached_sensor.hpp"
 
 namespace proleg::sim {
 

@@ -6,8 +6,7 @@
 
 #include "sim/measure/stride.hpp"
 #include "sim/record/figure_page.hpp"
-#include "sim/robot/joint_direction.hpp"
-#include "sim/robot/link_ends.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/fingerprint.hpp"
-#include "sim/record/recorded_algorithms.hpp"
+#include "sim/record/recorded_scenario.hpp"
 #include "sim/record/schema.hpp"
 #include "sim/scenario/settings.hpp"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/record/axis.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 

@@ -10,7 +10,7 @@
 #include "shared/gait/registry.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
-#include "sim/robot/sensor_quantity.hpp"
+#include "sim/robot/attached_sensor.hpp"
 
 namespace proleg::sim {
 namespace {

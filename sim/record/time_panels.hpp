@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/record/axis.hpp"
 #include "sim/record/figure_contents.hpp"
 #include "sim/record/marks.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/svg.hpp"
 

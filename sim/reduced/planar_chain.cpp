@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/robot/friction.hpp"
+#include "sim/robot/robot_model.hpp"
 #include "sim/robot/touch_sensor_frame.hpp"
 
 namespace proleg::sim::reduced {

@@ -3,6 +3,8 @@
 // A robot as data: links, hinge joints and servos, in metres, kilograms, radians and newtons. It is
 // independent of the physics engine and of file formats.
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,8 +12,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "shared/kernel/motion_limiter.hpp"
 #include "sim/robot/attached_sensor.hpp"
@@ -120,5 +120,49 @@ struct RobotModel {
   ServoModel servo;
   std::vector<AttachedSensor> sensors;  ///< beside the two touch sensors of every link; in the order of the file
 };
+
+/// Which way a joint bends the robot that lies as in its file.
+enum class JointDirection : std::uint8_t {
+  pitch,  ///< up and down: its axis is rather horizontal
+  yaw,    ///< to the sides: its axis is rather vertical
+};
+
+[[nodiscard]] inline JointDirection direction_of(const Joint& joint) {
+  constexpr double cosine_of_45_degrees = 0.7071;
+  return std::abs(joint.axis.z()) > cosine_of_45_degrees ? JointDirection::yaw : JointDirection::pitch;
+}
+
+/// The ends of a link, in the robot's frame at angles 0.
+struct LinkEnds {
+  Eigen::Vector3d rear;
+  Eigen::Vector3d front;
+};
+
+/// A link ends at its joints. An end link reaches as far beyond its centre of mass as its joint is from it.
+inline LinkEnds link_ends(const RobotModel& robot, std::size_t link) {
+  const Eigen::Vector3d center = robot.links[link].pose * robot.links[link].mass.center;
+  LinkEnds ends{center, center};
+  if (link < robot.joints.size()) {
+    ends.rear = robot.joints[link].anchor;
+  }
+  if (link > 0) {
+    ends.front = robot.joints[link - 1].anchor;
+  }
+  if (link == 0) {
+    ends.front = 2.0 * center - ends.rear;
+  }
+  if (link == robot.joints.size()) {
+    ends.rear = 2.0 * center - ends.front;
+  }
+  return ends;
+}
+
+/// Coulomb coefficient of two geometries that touch, from those that they have. unspecified: where neither has one.
+[[nodiscard]] inline double friction_of(std::optional<double> a, std::optional<double> b, double unspecified) {
+  if (a && b) {
+    return std::sqrt(*a * *b);
+  }
+  return a.value_or(b.value_or(unspecified));
+}
 
 }  // namespace proleg::sim

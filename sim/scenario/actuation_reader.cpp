@@ -9,7 +9,6 @@
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
-#include "sim/scenario/thesis_names.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/xml_document.hpp"
 

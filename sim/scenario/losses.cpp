@@ -8,7 +8,6 @@
 #include <sstream>
 #include <tuple>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"

@@ -9,10 +9,9 @@
 #include "sim/mesh/convex_hull.hpp"
 #include "sim/mesh/height_mesh.hpp"
 #include "sim/mesh/mesh_checks.hpp"
-#include "sim/mesh/mesh_error.hpp"
 #include "sim/mesh/mesh_file.hpp"
 #include "sim/mesh/mesh_solid.hpp"
-#include "sim/scenario/data_url.hpp"
+#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/tag_scanner.hpp"
 #include "sim/scenario/values.hpp"
 

@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/robot/mesh_height.hpp"
+#include "sim/robot/bounds.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 
 namespace proleg::sim {

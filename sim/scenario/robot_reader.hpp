@@ -4,13 +4,26 @@
 #include <string>
 #include <vector>
 
-#include "sim/robot/module_place.hpp"
-#include "sim/robot/robot_control_entry.hpp"
+#include "sim/robot/robot_hardware.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/source_set.hpp"
+#include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {
+
+/// Reads the element of a <Robot> that names a plug-in, if there is one:
+///   <robot_control plugin="dynamixel">
+///     <parameter name="device" value="/dev/ttyUSB0"/>
+///     <parameter name="id" value="5" joint="J1"/>
+///   </robot_control>
+/// Checks joints, and that no parameter is given twice. Names and values are checked by the plug-in.
+[[nodiscard]] std::optional<RobotControlEntry> read_robot_control(const XmlElement& robot, const RobotModel& model);
+
+/// Reads the elements <module joint="J1" node="5" serial="0x1234ABCD"/> of a <Robot>: which module drives which joint.
+/// The serial number, decimal or hexadecimal, is optional. There is one element for each joint, in any order, or none:
+/// then kernel joint j has the module with node id j + 1. The result is in kernel order.
+[[nodiscard]] std::vector<ModulePlace> read_modules(const XmlElement& robot, const RobotModel& model);
 
 struct RobotDescription {
   RobotModel model;
@@ -22,8 +35,8 @@ struct RobotDescription {
 
 /// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our
 ///   <servo><gain>50</gain><period unit="ms">1</period><latency unit="ms">0</latency></servo>
-/// (gain in 1/s; what is missing is as in ServoModel), the modules (module_reader.hpp), the
-/// plug-in (robot_control_reader.hpp) and the sensors (sensor_reader.hpp). Adds the joint map to the remarks. step_s:
+/// (gain in 1/s; what is missing is as in ServoModel), the modules, the
+/// plug-in and the sensors (sensor_reader.hpp). Adds the joint map to the remarks. step_s:
 /// of the physics; bounds the gain.
 [[nodiscard]] RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSet& sources,
                                           std::vector<std::string>& remarks);

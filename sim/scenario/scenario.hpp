@@ -13,10 +13,9 @@
 
 #include "shared/computer/change/change.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 #include "sim/environment/environment_model.hpp"
-#include "sim/robot/module_place.hpp"
-#include "sim/robot/robot_control_entry.hpp"
+#include "sim/robot/robot_hardware.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/overrides.hpp"
 

@@ -13,7 +13,6 @@
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/joint_memory.hpp"
 #include "sim/scenario/names.hpp"
-#include "sim/scenario/thesis_names.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -10,7 +10,7 @@
 #include "shared/fixed/unit.hpp"
 #include "shared/gait/declaration.hpp"
 #include "shared/gait/joint_mask.hpp"
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {

@@ -3,10 +3,9 @@
 #include <optional>
 #include <utility>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/scenario/data_url.hpp"
+#include "sim/scenario/file_source.hpp"
 
 namespace proleg::sim {
 namespace {

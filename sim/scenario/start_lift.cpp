@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/robot/mesh_height.hpp"
+#include "sim/robot/bounds.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
 

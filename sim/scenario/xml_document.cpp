@@ -8,7 +8,6 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/tag_scanner.hpp"
-#include "sim/scenario/unpaired_tag.hpp"
 
 namespace proleg::sim {
 namespace {

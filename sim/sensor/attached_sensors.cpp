@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/robot/sensor_quantity.hpp"
+#include "sim/robot/attached_sensor.hpp"
 
 namespace proleg::sim {
 namespace {

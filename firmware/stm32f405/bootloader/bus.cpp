@@ -11,10 +11,10 @@
 #include "firmware/stm32f405/can.hpp"
 #include "firmware/stm32f405/factory_data.hpp"
 #include "firmware/stm32f405/flash.hpp"
-#include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
 
 extern "C" {

@@ -10,11 +10,11 @@
 #include "firmware/stm32f405/bootloader/slot_memory.hpp"
 #include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/gpio.hpp"
-#include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/handover.hpp"
 #include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
 
 namespace proleg::stm32f405 {

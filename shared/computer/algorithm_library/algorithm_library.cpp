@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shared/kernel/setting.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 
 namespace proleg {
 

@@ -1,5 +1,7 @@
 #include "shared/computer/errors/input_error.hpp"
 
+#include <system_error>
+
 #include "shared/computer/text/text.hpp"
 
 namespace proleg {
@@ -7,5 +9,24 @@ namespace proleg {
 InputError::InputError(const std::string& file, int line, const std::string& found, const std::string& expected)
     : std::runtime_error(one_line(file + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": found " + found +
                                   ", expected " + expected)) {}
+
+std::optional<std::string> found_instead_of_file(const std::filesystem::path& path) {
+  if (path.empty()) {
+    return "an empty path";
+  }
+  std::error_code error;
+  switch (std::filesystem::status(path, error).type()) {
+    case std::filesystem::file_type::regular:
+      return std::nullopt;
+    case std::filesystem::file_type::not_found:
+      return "no such file";
+    case std::filesystem::file_type::none:
+      return "a path that cannot be looked at (" + error.message() + ")";
+    case std::filesystem::file_type::directory:
+      return "a folder";
+    default:
+      return "a device, a pipe or a socket";
+  }
+}
 
 }  // namespace proleg

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +14,19 @@ namespace proleg {
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& file, int line, const std::string& found, const std::string& expected);
+};
+
+/// The kind of thing that a path names instead of a file whose bytes can be read to an end, for messages with "found
+/// ...": "a folder", "a device, a pipe or a socket", "no such file", "an empty path", or the system's reason why the
+/// kind is unknown. Nothing if it is a regular file, or a link to one.
+[[nodiscard]] std::optional<std::string> found_instead_of_file(const std::filesystem::path& path);
+
+/// A file that cannot be written or read although the request is right: a full disk, a read-only folder, a device
+/// error. what() is one line: the path and the error.
+class FileError : public std::runtime_error {
+ public:
+  FileError(const std::filesystem::path& path, const std::string& what)
+      : std::runtime_error(path.string() + ": " + what) {}
 };
 
 }  // namespace proleg

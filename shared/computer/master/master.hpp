@@ -44,7 +44,7 @@
 #include "shared/can/transmit_queue.hpp"
 #include "shared/computer/master/change_plan.hpp"
 #include "shared/computer/master/master_report.hpp"
-#include "shared/computer/master/sdo_client.hpp"
+#include "shared/computer/master/sdo_client_pool.hpp"
 #include "shared/computer/master/tick_follower.hpp"
 
 namespace proleg::canopen {
@@ -71,7 +71,7 @@ struct MasterOptions {
   /// modules, and again when it sets them up. 0: without a lease.
   std::uint32_t session_token = 0;
   /// Time for each SDO answer; more for a slow connection.
-  Microseconds answer_timeout_us = SdoClient::default_timeout_us;
+  Microseconds answer_timeout_us = SdoTransferOptions{}.timeout_us;
   /// Number of times that a request is sent without an answer; more for a connection that loses frames.
   unsigned attempts = 1;
   /// Least number of ticks before its tick at which a COMMIT is sent.

@@ -1,7 +1,7 @@
 #pragma once
 
 // The client of SDO transfers of any size (CiA 301, 7.2.4.3): expedited, segmented or block, chosen by the size. It has
-// no clock: the caller passes the time. SdoClient is a smaller client, for numbers.
+// no clock: the caller passes the time.
 
 #include <array>
 #include <optional>

@@ -9,9 +9,9 @@
 #include <span>
 
 #include "shared/canopen/robot_configuration.hpp"
-#include "shared/computer/master/sdo_client.hpp"
+#include "shared/computer/master/sdo_client_pool.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 #include "shared/kernel/motion_limiter.hpp"
-#include "shared/kernel/setting.hpp"
 
 namespace proleg::canopen {
 

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 
 namespace proleg {
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 #include "sim/mcu/cpu/elf_image.hpp"
-#include "sim/mcu/cpu/exception_frame.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -9,7 +9,6 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"
 #include "sim/mcu/cpu/engine.hpp"
-#include "sim/mcu/cpu/exception_frame.hpp"
 #include "sim/mcu/cpu/exceptions.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_control.hpp"

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/mcu/cpu/exception_frame.hpp"
 
 namespace proleg::sim {
 namespace {

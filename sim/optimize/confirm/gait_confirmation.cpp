@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "sim/optimize/confirm/perturbed_worlds.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/overrides.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -139,6 +141,28 @@ ConfirmationFinding of_start(const ConfirmedRun& run) {
           ratio <= max_start || run.first_second <= negligible_m};
 }
 
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+std::string right(double value, int decimals, std::size_t width) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return std::string(width > std::string(text).size() ? width - std::string(text).size() : 0, ' ') + text;
+}
+
+std::string line_of(const ConfirmedRun& run) {
+  std::string line = "  " + padded(run.name, 32) + padded(std::string(sim::name_of(run.engine)), 9) +
+                     padded(number_text(run.step_s * 1e3) + " ms", 10);
+  if (!run.failure.empty()) {
+    return line + (run.is_refused ? "-" : run.failure) + "\n";
+  }
+  return line + right(run.distance, 4, 8) + right(run.energy.motors, 3, 10) + right(run.energy.friction, 3, 10) +
+         right(run.energy.stored, 3, 9) + right(run.energy_gains, 3, 9) +
+         right(run.energy_gains - run.energy.unexplained, 3, 9) + "\n";
+}
+
 }  // namespace
 
 bool GaitConfirmation::is_real() const { return std::ranges::all_of(findings, &ConfirmationFinding::is_good); }
@@ -203,6 +227,22 @@ GaitConfirmation confirm_gait(const sim::Scenario& scenario, const ConfirmationO
   result.failed_worlds = worlds.failed;
   result.findings = find_doubts(result);
   return result;
+}
+
+std::string confirmation_text(const GaitConfirmation& confirmation) {
+  std::string text =
+      "run                               engine   step      distance    motors  friction   stored    gained     lost\n"
+      "                                                            m         J         J        J         J        J\n";
+  for (const ConfirmedRun& run : confirmation.runs) {
+    text += line_of(run);
+  }
+  text += "\n";
+  for (const ConfirmationFinding& finding : confirmation.findings) {
+    text += (finding.is_good ? "  ok     " : "  DOUBT  ") + padded(finding.name, 33) + finding.text + "\n";
+  }
+  return text + "\n" +
+         (confirmation.is_real() ? "Nothing speaks against this gait.\n"
+                                 : "This gait may live on an error of the physics.\n");
 }
 
 }  // namespace proleg::optimize

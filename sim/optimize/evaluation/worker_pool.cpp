@@ -20,7 +20,7 @@
 #include "shared/computer/child_process/leave_parent.hpp"
 #include "sim/loop/simulation_batch.hpp"
 #include "sim/optimize/evaluation/local_workers.hpp"
-#include "sim/optimize/evaluation/message_socket.hpp"
+#include "sim/optimize/evaluation/message.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "shared/computer/child_process/leave_parent.hpp"
 #include "sim/optimize/evaluation/message.hpp"
-#include "sim/optimize/evaluation/message_socket.hpp"
 
 namespace proleg::optimize {
 namespace {

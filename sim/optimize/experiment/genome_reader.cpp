@@ -12,7 +12,6 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/value_reader.hpp"
 #include "sim/scenario/names.hpp"
-#include "sim/scenario/thesis_names.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/optimize/experiment/method_settings.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::optimize {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/optimize/experiment/method_settings.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
 
 namespace pagmo {
 class algorithm;

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
@@ -20,7 +20,7 @@
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/scenario/data_url.hpp"
+#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/xml_document.hpp"

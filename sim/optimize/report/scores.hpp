@@ -9,7 +9,7 @@
 
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
-#include "sim/record/axis.hpp"
+#include "sim/record/plot_frame.hpp"
 
 namespace proleg::optimize {
 

@@ -10,7 +10,6 @@
 #include "sim/optimize/report/scores.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
 #include "sim/optimize/report/thesis_tables.hpp"
-#include "sim/record/axis.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"

@@ -10,6 +10,48 @@
 namespace proleg::host {
 namespace {
 
+// As Linux shows them in /sys/class/input/eventN/device/capabilities on a 64-bit computer.
+constexpr const char* keyboard = "402000000 3803078f800d001 feffffdfffefffff fffffffffffffffe";
+constexpr const char* mouse = "ffff0000 0 0 0 0";
+constexpr const char* xbox_pad = "7cdb000000000000 0 0 0 0";
+constexpr const char* joystick = "fff00000000 0 0 0 0";
+constexpr const char* touchpad = "e520 10000 0 0 0 0";
+
+TEST(InputCapabilities, FindTheBitsOfTheKernelsBitmap) {
+  EXPECT_TRUE(has_bit("1", 0));
+  EXPECT_TRUE(has_bit("8000000000000000", 63));
+  EXPECT_TRUE(has_bit("1 0", 64));
+  EXPECT_FALSE(has_bit("1 0", 0));
+  EXPECT_FALSE(has_bit("1", 64));
+  EXPECT_FALSE(has_bit("", 0));
+  EXPECT_FALSE(has_bit("no number", 0));
+}
+
+TEST(InputCapabilities, TellGamepadsFromKeyboardsAndMice) {
+  EXPECT_TRUE(is_remote_control({"Microsoft X-Box 360 pad", xbox_pad, "0"}));
+  EXPECT_TRUE(is_remote_control({"Logitech Extreme 3D", joystick, "0"}));
+  EXPECT_FALSE(is_remote_control({"AT Translated Set 2 keyboard", keyboard, "0"}));
+  EXPECT_FALSE(is_remote_control({"Logitech Mouse", mouse, "903"}));
+  EXPECT_FALSE(is_remote_control({"SynPS/2 Touchpad", touchpad, "0"}));
+  EXPECT_FALSE(is_remote_control({"Gaming mouse", xbox_pad, "3"}));
+}
+
+TEST(InputCapabilities, KnowAllPartsOfAWiimote) {
+  EXPECT_TRUE(is_remote_control({"Nintendo Wii Remote", "", ""}));
+  EXPECT_TRUE(is_remote_control({"Nintendo Wii Remote Accelerometer", "", ""}));
+}
+
+TEST(InputCapabilities, AreReadFromTheFolderOfTheKernel) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "capabilities");
+  write_file(folder / "name", "Pad\n");
+  write_file(folder / "capabilities/key", "1 0\n");
+  const InputCapabilities capabilities = read_capabilities(folder.path());
+  EXPECT_EQ(capabilities.name, "Pad");
+  EXPECT_EQ(capabilities.keys, "1 0");
+  EXPECT_EQ(capabilities.relatives, "");
+}
+
 class Listener final : public DeviceListener {
  public:
   void plugged(const InputDevice& device) override { FAIL() << device.name; }

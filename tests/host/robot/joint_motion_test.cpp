@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "host/robot/machine_user.hpp"
+#include "host/robot/bus_user.hpp"
 #include "live_bus.hpp"
 #include "shared/computer/master/lss_master.hpp"
 #include "shared/computer/master/lss_renumbering.hpp"

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "host/robot_control/robot_control_error.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"

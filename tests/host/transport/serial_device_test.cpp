@@ -1,7 +1,8 @@
 #include "host/transport/serial_device.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
+
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -26,7 +26,6 @@
 #include "tests/identity/verify/forbidden_symbols.hpp"
 #include "tests/identity/verify/user_builds.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/program_places.hpp"
 #include "tools/proleg/common/program_run.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "gateway_robot.hpp"
-#include "sim/hardware_loop/injector.hpp"
+#include "sim/hardware_loop/hardware_options.hpp"
 
 namespace proleg::sim {
 namespace {

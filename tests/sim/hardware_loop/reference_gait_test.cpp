@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "shipped.hpp"
-#include "sim/loop/servo_pulses.hpp"
+#include "sim/loop/gait.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {

@@ -11,7 +11,7 @@
 #include "shipped.hpp"
 #include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/robot/servo_current.hpp"
+#include "sim/robot/servo.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include "shared/kernel/servo_command.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/robot/servo_current.hpp"
+#include "sim/robot/servo.hpp"
 
 namespace proleg::sim {
 namespace {

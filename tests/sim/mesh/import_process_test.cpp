@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim/mesh/mesh_error.hpp"
+#include "sim/mesh/mesh_checks.hpp"
 #include "tests/sim/mesh/mesh_shapes.hpp"
 
 namespace proleg::sim {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "sim/mesh/mesh_checks.hpp"
-#include "sim/mesh/mesh_error.hpp"
 #include "sim/mesh/mesh_file.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "tests/sim/mesh/mesh_shapes.hpp"

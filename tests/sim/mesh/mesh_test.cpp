@@ -7,7 +7,6 @@
 #include "sim/mesh/convex_hull.hpp"
 #include "sim/mesh/height_mesh.hpp"
 #include "sim/mesh/mesh_checks.hpp"
-#include "sim/mesh/mesh_error.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "tests/sim/mesh/mesh_shapes.hpp"
 

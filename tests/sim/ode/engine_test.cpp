@@ -1,6 +1,7 @@
 #include "sim/ode/engine.hpp"
 
 #include <gtest/gtest.h>
+
 #include <ode/error.h>
 #include <ode/odeinit.h>
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "memory_files.hpp"
-#include "sim/scenario/data_url.hpp"
 #include "sim/scenario/file_source.hpp"
 #include "sim/scenario/reader.hpp"
 

@@ -4,17 +4,18 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <exception>
 #include <iostream>
 #include <string>
+#include <thread>
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
-
 namespace {
 
 /// The fault of a command line that cannot be parsed.
@@ -192,6 +193,17 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     print_error(error);
     return exit_failed;
   }
+}
+
+std::uint32_t parse_workers(const std::optional<std::string>& argument) {
+  if (!argument) {
+    return std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
+  }
+  const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*argument);
+  if (!count || *count == 0 || *count > max_workers) {
+    throw InputError("--workers", 0, in_quotes(*argument), "1 to " + std::to_string(max_workers));
+  }
+  return *count;
 }
 
 }  // namespace proleg::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -78,5 +79,14 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
   std::vector<std::string> algorithms_;
 };
+
+}  // namespace proleg::tools
+
+namespace proleg::tools {
+
+inline constexpr std::uint32_t max_workers = 1024;
+
+/// Parses --workers; by default one for each processor. Throws InputError.
+[[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& argument);
 
 }  // namespace proleg::tools

@@ -10,9 +10,19 @@
 #include <cstring>
 #include <iostream>
 #include <stdexcept>
+#include <system_error>
+
+#include "shared/computer/algorithm_library/algorithm_library.hpp"
+#include "tools/proleg/common/command_line.hpp"
 
 namespace proleg::tools {
 namespace {
+
+bool is_source_tree(const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::exists(folder / "tools/cmake/user_algorithm.cmake", error) &&
+         std::filesystem::exists(folder / "shared/gait/registry.cpp", error);
+}
 
 /// Actions of a child before it becomes the program.
 class SpawnActions {
@@ -59,6 +69,56 @@ int wait_for_end(pid_t process) {
 }
 
 }  // namespace
+
+std::filesystem::path source_tree(const std::string& given) {
+  if (!given.empty()) {
+    const std::filesystem::path folder = std::filesystem::absolute(given).lexically_normal();
+    if (!is_source_tree(folder)) {
+      throw BadInput("--source: found " + folder.string() + " without the sources of Proleg, expected a checkout");
+    }
+    return folder;
+  }
+  // A program is in build/PRESET/bin of its checkout.
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  while (!folder.empty() && !is_source_tree(folder)) {
+    if (folder == folder.parent_path()) {
+      throw BadInput("found no checkout of Proleg around this program, expected one; --source FOLDER names it");
+    }
+    folder = folder.parent_path();
+  }
+  return folder;
+}
+
+std::filesystem::path built_page(const std::string& folder, const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path path = (self.parent_path() / "../.." / folder).lexically_normal();
+  if (!std::filesystem::exists(path / file, error)) {
+    throw BadInput("found no " + folder + " in " + path.string() + ", expected one that tools/page has built");
+  }
+  return path;
+}
+
+std::string shell_argument(const std::string& argument) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,@%+";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) {
+    return argument;
+  }
+  std::string quoted = "'";
+  for (const char character : argument) {
+    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  }
+  return quoted + "'";
+}
+
+std::string algorithm_options() {
+  std::string options;
+  for (const std::string& library : loaded_libraries()) {
+    options += " --algorithms " + shell_argument(library);
+  }
+  return options;
+}
 
 ProgramResult run_program(const std::vector<std::string>& command, const std::string& folder) {
   std::vector<std::string> words = command;

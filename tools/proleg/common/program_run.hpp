@@ -1,9 +1,24 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace proleg::tools {
+
+/// The checkout of Proleg's sources: `given`, or if that is empty, the checkout in which this program was built. Throws
+/// BadInput, which names the option --source, if no checkout is found.
+[[nodiscard]] std::filesystem::path source_tree(const std::string& given);
+
+/// A folder with a page beside the build of this program, which tools/page makes. Throws BadInput if it lacks the file.
+[[nodiscard]] std::filesystem::path built_page(const std::string& folder, const std::string& file);
+
+/// An argument of a command that is printed for the user to repeat: in quotes for a shell, if it needs them.
+[[nodiscard]] std::string shell_argument(const std::string& argument);
+
+/// Text " --algorithms LIBRARY" for each library that this program has loaded, in their order; mostly empty. A command
+/// that repeats or continues a run needs them.
+[[nodiscard]] std::string algorithm_options();
 
 struct ProgramResult {
   bool was_found = true;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace proleg::tools {
@@ -14,5 +15,13 @@ void check_result_folder(const std::filesystem::path& folder, std::span<const st
 
 /// Creates the folder. Throws BadInput.
 void create_result_folder(const std::filesystem::path& folder);
+
+/// The name of a file that belongs to a recording: run.svg for run.proleg. Only the usual extension of recordings is
+/// replaced, so that run.1 and run.2 do not share a file.
+[[nodiscard]] inline std::filesystem::path beside_recording(const std::filesystem::path& recording,
+                                                            const std::string& extension) {
+  return recording.extension() == ".proleg" ? std::filesystem::path(recording).replace_extension(extension)
+                                            : std::filesystem::path(recording.string() + extension);
+}
 
 }  // namespace proleg::tools

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <system_error>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sim/record/internal_values.hpp"
-#include "sim/robot/sensor_quantity.hpp"
+#include "sim/robot/attached_sensor.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 

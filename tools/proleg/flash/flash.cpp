@@ -24,7 +24,6 @@
 #include "tools/proleg/flash/flash_modules.hpp"
 #include "tools/proleg/flash/update_run.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/host_presence.hpp"
 
 namespace {
 

@@ -17,8 +17,6 @@
 #include "firmware/module/module_identity.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "host/flash/bare_commands.hpp"
-#include "host/flash/bare_failure.hpp"
-#include "host/flash/bootloader_file.hpp"
 #include "host/flash/image_file.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"

@@ -7,8 +7,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/flash/image_info.hpp"
-#include "tools/proleg/flash/image_make.hpp"
+#include "tools/proleg/flash/image_commands.hpp"
 
 int main(int argc, char** argv) {
   using namespace proleg;

@@ -11,7 +11,6 @@
 #include "host/flash/image_file.hpp"
 #include "host/flash/module_fault.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/host_presence.hpp"
 
 namespace proleg::tools {
 

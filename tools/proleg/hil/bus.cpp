@@ -26,7 +26,6 @@
 #include "tools/proleg/hil/broken_modules.hpp"
 #include "tools/proleg/hil/gateway_line.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
-#include "tools/proleg/hil/served_port.hpp"
 
 namespace {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,9 +10,20 @@
 #include "sim/scenario/scenario.hpp"
 #include "sim/serial/serial_host.hpp"
 #include "sim/serial/serial_sender.hpp"
-#include "tools/proleg/hil/served_port.hpp"
 
 namespace proleg::tools {
+
+/// The address at which a program listens: PORT, ADDRESS:PORT or, for an IPv6 address, [ADDRESS]:PORT.
+struct ServedPort {
+  std::string address = "127.0.0.1";  ///< address without brackets; by default only for programs of this computer
+  std::uint16_t port = 0;             ///< 0: any free port
+};
+
+/// Parses an argument. Throws InputError, which names the option.
+[[nodiscard]] ServedPort parse_served_port(const std::string& option, const std::string& argument);
+
+/// The value of --bus that reaches the port: "tcp:127.0.0.1:20000", "tcp:[::1]:20000".
+[[nodiscard]] std::string bus_argument(const ServedPort& served);
 
 /// The module of a simulated robot that is a gateway, and the place at which programs reach its serial line.
 struct GatewayPlace {

@@ -10,7 +10,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/hardware_loop/module_making.hpp"
+#include "sim/hardware_loop/module_rack.hpp"
 #include "sim/hardware_loop/native_program.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"

@@ -12,8 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/shell_argument.hpp"
-#include "tools/proleg/new/new_commands.hpp"
+#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/new/new_files.hpp"
 #include "tools/proleg/new/robot_files.hpp"
 

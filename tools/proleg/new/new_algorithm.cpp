@@ -1,4 +1,4 @@
-#include "tools/proleg/new/new_commands.hpp"
+#include "tools/proleg/new/new_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,10 +19,7 @@
 #include "shared/fixed/crc32.hpp"
 #include "shared/gait/registry.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/program_places.hpp"
-#include "tools/proleg/common/shell_argument.hpp"
-#include "tools/proleg/new/embedded_texts.hpp"
-#include "tools/proleg/new/new_files.hpp"
+#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/new/robot_files.hpp"
 
 namespace proleg::tools {

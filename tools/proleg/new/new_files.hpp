@@ -1,12 +1,34 @@
 #pragma once
 
-// Writes the files of `proleg new`.
+// The subcommands of `proleg new`, the shipped files that they copy (CMake makes strings of the program of them), and
+// how they write files.
 
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace proleg::tools {
+
+// Files of the shipped travelling_wave that a new robot has too.
+[[nodiscard]] std::string_view floor_text();    ///< flat.environment.xml
+[[nodiscard]] std::string_view tail_text();     ///< modules/tail.kinbody.xml
+[[nodiscard]] std::string_view segment_text();  ///< modules/segment.kinbody.xml
+[[nodiscard]] std::string_view head_text();     ///< modules/head.kinbody.xml
+
+// The files in algorithm_template/. @NAME@, @ID@, @SOURCE@ (the checkout) and @FOLDER@ stand for texts that
+// `proleg new algorithm` fills in.
+[[nodiscard]] std::string_view algorithm_source_text();
+[[nodiscard]] std::string_view algorithm_test_text();
+[[nodiscard]] std::string_view algorithm_cmake_text();
+[[nodiscard]] std::string_view algorithm_actuation_text();
+[[nodiscard]] std::string_view algorithm_readme_text();
+
+/// proleg new algorithm: writes the folder of a user's algorithm. argv[0] is "algorithm". Returns the exit status.
+int new_algorithm(int argc, char** argv);
+
+/// proleg new obstacle: writes an environment file with hills. argv[0] is "obstacle". Returns the exit status.
+int new_obstacle(int argc, char** argv);
 
 struct NewFile {
   std::string name;  ///< path relative to the folder

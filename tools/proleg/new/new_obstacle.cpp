@@ -1,4 +1,4 @@
-#include "tools/proleg/new/new_commands.hpp"
+#include "tools/proleg/new/new_files.hpp"
 
 #include <array>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/new/new_files.hpp"
 
 namespace proleg::tools {
 namespace {

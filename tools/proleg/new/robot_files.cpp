@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/proleg/new/embedded_texts.hpp"
+#include "tools/proleg/new/new_files.hpp"
 
 namespace proleg::tools {
 namespace {

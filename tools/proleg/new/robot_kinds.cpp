@@ -4,7 +4,7 @@
 #include <array>
 
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/new/embedded_texts.hpp"
+#include "tools/proleg/new/new_files.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -18,8 +18,6 @@
 #include "tools/proleg/robot/assign_bus.hpp"
 #include "tools/proleg/robot/assign_dialogue.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/host_presence.hpp"
-#include "tools/proleg/robot/joint_words.hpp"
 #include "tools/proleg/robot/node_numbering.hpp"
 
 namespace {

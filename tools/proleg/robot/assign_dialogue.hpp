@@ -2,21 +2,35 @@
 
 // The questions of proleg assign. They are on standard error, answers come by standard input, from a person or from a
 // program in the place of one.
+// The names that users give joints stand here too.
 
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "host/robot/joint_motion.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "tools/proleg/common/input_lines.hpp"
 #include "tools/proleg/robot/assign_bus.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/host_presence.hpp"
 
 namespace proleg::tools {
+
+/// The joint that a user means: its name, in any case if that is one joint, or the number at the end of one name.
+[[nodiscard]] std::optional<unsigned> joint_of(const sim::RobotModel& robot, std::string_view word);
+
+/// A module and its joint, as the user says.
+struct Place {
+  std::uint8_t node;
+  unsigned joint;
+};
+
+/// "3=J1,1=J2". Throws InputError, which names --places; also if a module or a joint is named twice.
+[[nodiscard]] std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view words);
 
 class AssignDialogue {
  public:

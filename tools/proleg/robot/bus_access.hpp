@@ -16,6 +16,13 @@
 
 namespace proleg::tools {
 
+/// The addresses of the CAN interfaces and serial adapters of this computer, whatever is behind them.
+[[nodiscard]] std::vector<std::string> present_buses();
+
+/// The address of the only adapter of this computer that has joint modules behind it: CAN interfaces that are up, and
+/// serial adapters. Throws std::runtime_error, which names what was looked at, if there is none, or more than one.
+[[nodiscard]] std::string find_bus();
+
 struct BusOptions {
   std::optional<std::string> bus;  ///< --bus
 
@@ -68,5 +75,24 @@ void finish(BusAccess& bus, host::SdoQueue& queue);
 /// known about the bus.
 [[nodiscard]] std::string failure_text(std::uint8_t node, const std::string& object, canopen::AbortCode code,
                                        const std::string& cause);
+
+/// Shows other hosts, while it exists and is active, that a host works on this robot: then they change nothing.
+class HostPresence final : public host::BusUser {
+ public:
+  explicit HostPresence(host::BusConnection& bus) : bus_(bus), attachment_(bus, *this) {}
+
+  /// A master sends heartbeats itself.
+  void set_active(bool is_active) { is_active_ = is_active; }
+
+  void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
+  void poll(Microseconds now) override;
+  [[nodiscard]] Microseconds next_deadline() const override { return is_active_ ? next_ : never; }
+
+ private:
+  host::BusConnection& bus_;
+  host::BusAttachment attachment_;
+  bool is_active_ = true;
+  Microseconds next_ = 0;
+};
 
 }  // namespace proleg::tools

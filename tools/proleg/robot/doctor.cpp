@@ -16,7 +16,6 @@
 #include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/bus_search.hpp"
 
 namespace {
 

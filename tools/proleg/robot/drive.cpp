@@ -20,10 +20,10 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/terminal_line.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/drive_plugin.hpp"
 #include "tools/proleg/robot/drive_report.hpp"
 #include "tools/proleg/robot/gait_run.hpp"
-#include "tools/proleg/robot/mirrored_run.hpp"
+#include "tools/proleg/robot/mirror.hpp"
+#include "tools/proleg/robot/robot_control_drive.hpp"
 #include "tools/proleg/robot/simulated_transport.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/robot/gait_check.hpp"
-#include "tools/proleg/robot/mirrored_run.hpp"
+#include "tools/proleg/robot/mirror.hpp"
 
 namespace proleg::tools {
 

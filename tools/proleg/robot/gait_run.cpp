@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "host/robot/host_presence.hpp"
 #include "host/robot/sdo_queue.hpp"
-#include "host/robot/session_token.hpp"
 #include "host/robot/state_text.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master/master_text.hpp"

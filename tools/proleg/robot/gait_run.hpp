@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/robot/answer_times.hpp"
 #include "host/robot/bus_connection.hpp"
-#include "host/robot/change_times.hpp"
 #include "host/robot/gait_watch.hpp"
+#include "host/robot/response_times.hpp"
 #include "host/robot/robot_drive.hpp"
 #include "sim/hardware_loop/master_input.hpp"
 #include "sim/scenario/scenario.hpp"

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <deque>
+#include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +16,8 @@
 #include "sim/record/recorder.hpp"
 #include "sim/record/svg.hpp"
 #include "sim/scenario/scenario.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/robot/gait_check.hpp"
 
 namespace proleg::tools {
 
@@ -60,6 +64,33 @@ class Mirror {
   std::uint32_t next_tick_ = 0;  ///< after the last of angles_
   std::deque<Measurement> waiting_;
   std::vector<sim::Polyline> lines_;  ///< by joint
+};
+
+/// The simulated robot of --mirror FILE: its recording, and the picture beside it.
+class MirroredRun {
+ public:
+  /// scenario: must outlive this. Throws BadInput if the recording cannot be created.
+  MirroredRun(const ScenarioOptions& options, const std::string& recording, const sim::Scenario& scenario);
+
+  /// The files, for check_outputs().
+  [[nodiscard]] static std::vector<PlannedOutput> planned(const ScenarioOptions& options, const std::string& recording);
+
+  [[nodiscard]] Mirror& mirror() { return mirror_; }
+  [[nodiscard]] sim::Recorder& recorder() { return *recorder_; }
+
+  /// Writes the files. seconds: length of the run. check: of the real robot.
+  void finish(double seconds, const GaitCheck& check);
+  /// For --json.
+  [[nodiscard]] Json json() const;
+  /// For people, on standard output.
+  void print() const;
+
+ private:
+  std::string recording_;
+  std::string title_;
+  const sim::Scenario& scenario_;
+  Mirror mirror_;
+  std::unique_ptr<sim::Recorder> recorder_;
 };
 
 }  // namespace proleg::tools

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "host/robot/machine_user.hpp"
+#include "host/robot/bus_user.hpp"
 #include "host/robot/node_plan.hpp"
 #include "shared/computer/master/master_text.hpp"
 #include "shared/computer/text/text.hpp"

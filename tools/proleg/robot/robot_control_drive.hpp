@@ -12,6 +12,7 @@
 #include "host/robot_control/robot_control.hpp"
 #include "sim/loop/gait.hpp"
 #include "sim/scenario/scenario.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg {
 
@@ -60,3 +61,10 @@ struct RobotControlDrive {
                                                     const host::Plugin& plugin, host::Clock& clock);
 
 }  // namespace proleg
+
+namespace proleg::tools {
+
+/// Drives a robot without modules, by the plug-in that its file names. Returns the exit status.
+int drive_by_plugin(const ScenarioOptions& options, const ScenarioRun& run);
+
+}  // namespace proleg::tools

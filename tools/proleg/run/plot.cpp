@@ -24,9 +24,9 @@
 #include "sim/record/series.hpp"
 #include "sim/record/series_figure.hpp"
 #include "sim/record/tsv.hpp"
-#include "tools/proleg/common/beside_recording.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"
+#include "tools/proleg/common/result_folder.hpp"
 
 using namespace proleg;
 using namespace proleg::tools;

@@ -8,7 +8,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/verification.hpp"
-#include "sim/record/recorded_algorithms.hpp"
+#include "sim/record/recorded_scenario.hpp"
 #include "sim/record/recording.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "tools/proleg/common/shell_argument.hpp"
+#include "tools/proleg/common/program_run.hpp"
 
 namespace proleg::tools {
 

@@ -24,7 +24,6 @@
 #include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/result_folder.hpp"
-#include "tools/proleg/common/worker_count.hpp"
 #include "tools/proleg/search/experiment_gaits.hpp"
 #include "tools/proleg/search/experiment_methods.hpp"
 #include "tools/proleg/search/gait_checks.hpp"

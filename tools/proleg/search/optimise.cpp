@@ -17,10 +17,10 @@
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/shell_argument.hpp"
 #include "tools/proleg/search/search_result.hpp"
 
 namespace proleg::tools {

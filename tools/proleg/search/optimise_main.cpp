@@ -11,7 +11,6 @@
 
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/worker_count.hpp"
 #include "tools/proleg/search/optimise.hpp"
 
 namespace {

@@ -8,8 +8,8 @@
 
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/evaluation/worker_pool.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/interrupt.hpp"
-#include "tools/proleg/common/worker_count.hpp"
 #include "tools/proleg/search/optimisation.hpp"
 #include "tools/proleg/search/side_by_side.hpp"
 

@@ -26,7 +26,6 @@
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/terminal_line.hpp"
-#include "tools/proleg/common/worker_count.hpp"
 
 namespace {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/robot/fault_advice.hpp"
 #include "host/robot/state_text.hpp"
 
 namespace proleg::tools {

@@ -11,7 +11,7 @@
 
 #include "host/remote/binding_file.hpp"
 #include "host/remote/event_devices.hpp"
-#include "host/remote/remote_document.hpp"
+#include "host/remote/remote_control.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/ui/operation.hpp"

@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include "host/remote/binding_store.hpp"
+#include "host/remote/binding_file.hpp"
 #include "host/remote/device_listener.hpp"
 #include "host/remote/remote_control.hpp"
-#include "host/server/session_output.hpp"
-#include "tools/proleg/ui/parameter_words.hpp"
+#include "host/server/robot_session.hpp"
+#include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/task_queue.hpp"
 
 namespace proleg::tools {

@@ -5,7 +5,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/record/recorded_algorithms.hpp"
+#include "sim/record/recorded_scenario.hpp"
 #include "tools/proleg/document/recording_document.hpp"
 #include "tools/proleg/run/simulate_command.hpp"
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/server/session_output.hpp"
+#include "host/server/robot_session.hpp"
 #include "host/server/session_requests.hpp"
 
 namespace proleg::tools {

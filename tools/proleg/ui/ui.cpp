@@ -22,7 +22,7 @@
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/interrupt.hpp"
-#include "tools/proleg/common/program_places.hpp"
+#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/new/robot_files.hpp"

@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "module_node.hpp"
-#include "shared/computer/master/sdo_client.hpp"
-#include "shared/computer/master/sdo_transfer.hpp"
+#include "tests/support/number_transfer.hpp"
 
 namespace proleg::test {
 
@@ -202,12 +201,12 @@ class TestBus {
 
   canopen::AbortCode transfer(const CanFrame& request) {
     send(request);
-    const Microseconds end = now_ + 2 * canopen::SdoClient::default_timeout_us;
-    while (client_.state() == canopen::SdoClient::State::waiting && now_ < end) {
+    const Microseconds end = now_ + 2 * NumberTransfer::default_timeout_us;
+    while (client_.state() == NumberTransfer::State::running && now_ < end) {
       run_for(frame_time_us);
       client_.poll(now_);
     }
-    return client_.state() == canopen::SdoClient::State::done ? canopen::AbortCode::none : client_.abort_code();
+    return client_.state() == NumberTransfer::State::done ? canopen::AbortCode::none : client_.abort_code();
   }
 
   /// The heartbeat of the host takes no time on this bus, and is in no log.
@@ -231,7 +230,7 @@ class TestBus {
   std::vector<CanFrame>* queue_ = nullptr;
   std::size_t sender_ = host;
   Microseconds frame_end_ = never;
-  canopen::SdoClient client_;
+  NumberTransfer client_;
   canopen::SdoTransfer transfer_;
   std::uint64_t events_ = 0;
 };

@@ -4,8 +4,8 @@
 
 #include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/gpio.hpp"
-#include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/hardware.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
 
 namespace {

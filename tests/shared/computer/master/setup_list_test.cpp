@@ -8,8 +8,8 @@
 #include "robot.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/sdo_server.hpp"
-#include "shared/computer/master/sdo_client.hpp"
 #include "shared/fixed/random.hpp"
+#include "tests/support/number_transfer.hpp"
 
 namespace proleg::canopen {
 namespace {
@@ -225,14 +225,15 @@ TEST(SetupList, GivesAModuleTheWholeConfiguration) {
     }
     const unsigned joint = random.next() % joints;
     test::DeviceMemory device;
-    SdoClient client;
+    test::NumberTransfer client;
     for (const SdoRequest& write : robot.writes(joint)) {
       const std::uint8_t node = robot.nodes[joint];
       const std::optional<CanFrame> answer =
           SdoServer(node, device).receive(0, client.write(0, node, write.address, write.size, write.value));
       ASSERT_TRUE(answer && client.receive(*answer));
-      ASSERT_EQ(client.state(), SdoClient::State::done) << describe(client.abort_code()) << " at " << std::hex
-                                                        << write.address.index << ":" << unsigned{write.address.sub};
+      ASSERT_EQ(client.state(), test::NumberTransfer::State::done)
+          << describe(client.abort_code()) << " at " << std::hex << write.address.index << ":"
+          << unsigned{write.address.sub};
     }
     std::vector<std::uint8_t> nodes;
     EXPECT_EQ(configuration_crc(read_back(device, robot.nodes[joint], nodes)), configuration_crc(robot.with_spans()));

@@ -10,7 +10,7 @@
 #include "changed_image.hpp"
 #include "firmware/module/module_identity.hpp"
 #include "shared/broadcast/image_sender.hpp"
-#include "sim/hardware_loop/module_making.hpp"
+#include "sim/hardware_loop/module_rack.hpp"
 #include "sim/live/live_robot.hpp"
 #include "sim/mcu/module/flashed_chip.hpp"
 #include "virtual_robot.hpp"

@@ -20,7 +20,6 @@
 
 #include "sim/mesh/convex_hull.hpp"
 #include "sim/mesh/mesh_checks.hpp"
-#include "sim/mesh/mesh_error.hpp"
 #include "sim/mesh/mesh_file.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "made_up.hpp"
 #include "memory_files.hpp"
-#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "tests/support/files.hpp"

@@ -14,28 +14,6 @@ namespace identifier = canopen::identifier;
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-namespace {
-
-/// Whether only the node may send with the identifier.
-bool is_reserved(std::uint16_t identifier, std::uint8_t node) {
-  if (identifier::node_of(identifier) != node) {
-    return false;
-  }
-  switch (identifier::base_of(identifier)) {
-    case identifier::emergency:
-    case identifier::state_frame:
-    case identifier::second_state:
-    case identifier::monitoring:
-    case identifier::sdo_answer:
-    case identifier::heartbeat:
-      return true;
-    default:
-      return false;
-  }
-}
-
-}  // namespace
-
 Module::Module(const ModuleIdentity& identity, const Ports& ports) : parts_(identity, ports) {}
 
 void Module::power_on(Microseconds now) {
@@ -64,7 +42,8 @@ void Module::handle(Microseconds now, const CanFrame& frame) {
   }
   if (frame.identifier == identifier::lss_request) {
     receive_lss(now, frame);
-  } else if (is_reserved(frame.identifier, parts_.identity.node)) {
+  } else if (identifier::node_of(frame.identifier) == parts_.identity.node &&
+             identifier::has_one_sender(frame.identifier)) {
     stop_after_collision(parts_, frame.identifier);
   } else if (state() != NmtState::boot_up) {
     dispatch(now, frame);

@@ -10,17 +10,7 @@ namespace {
 /// The node that has sent a frame; 0 if the identifier does not say it.
 std::uint8_t sender_of(const CanFrame& frame) {
   namespace identifier = canopen::identifier;
-  switch (identifier::base_of(frame.identifier)) {
-    case identifier::emergency:
-    case identifier::state_frame:
-    case identifier::second_state:
-    case identifier::monitoring:
-    case identifier::sdo_answer:
-    case identifier::heartbeat:
-      return identifier::node_of(frame.identifier);
-    default:
-      return 0;
-  }
+  return identifier::has_one_sender(frame.identifier) ? identifier::node_of(frame.identifier) : std::uint8_t{0};
 }
 
 }  // namespace

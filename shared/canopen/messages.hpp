@@ -44,6 +44,20 @@ inline constexpr std::uint16_t node_bits = 0x7F;
 [[nodiscard]] constexpr std::uint16_t base_of(std::uint16_t identifier) {
   return static_cast<std::uint16_t>(identifier & ~unsigned{node_bits});
 }
+/// Whether only one node may send with the identifier: node_of().
+[[nodiscard]] constexpr bool has_one_sender(std::uint16_t identifier) {
+  switch (base_of(identifier)) {
+    case emergency:
+    case state_frame:
+    case second_state:
+    case monitoring:
+    case sdo_answer:
+    case heartbeat:
+      return true;
+    default:
+      return false;
+  }
+}
 }  // namespace identifier
 
 /// Commands of NMT (CiA 301, table 5). node 0: all nodes.

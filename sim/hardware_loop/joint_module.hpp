@@ -21,7 +21,7 @@ class JointModule {
   /// Switches it on, or restarts it: only its identity and its flash remain, and the servo goes
   /// limp.
   virtual void power_on(BusTime now) = 0;
-  /// When it acts next.
+  /// Time at which the module acts next.
   [[nodiscard]] virtual BusTime next_event() const = 0;
   /// Does what is due. The module gets no input before `quiet_until`, which is later than now, so a program that takes
   /// time to execute may be executed up to there.

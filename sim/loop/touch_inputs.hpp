@@ -43,7 +43,7 @@ class TouchInputs {
     contacts_[joint] = 0;
   }
 
-  /// The same by link, as recordings have it.
+  /// Writes the latched contacts by link, as recordings have them.
   void write_links(std::span<std::uint8_t> link_contacts) const {
     for (std::size_t joint = 0; joint < contacts_.size(); ++joint) {
       write_link_contacts(link_contacts, joint, contacts_[joint]);

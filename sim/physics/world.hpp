@@ -93,7 +93,7 @@ class World {
   }
   /// Number of contact points at the start of the last step.
   [[nodiscard]] virtual std::size_t contact_count() const = 0;
-  /// In the last step; zeros before the first.
+  /// How contact points slid in the last step; zeros before the first step.
   [[nodiscard]] virtual ContactSliding contact_sliding() const = 0;
   /// The contact points of links with the environment at the start of the last step; none before the first, and none
   /// unless keep_contact_points() was called before that step. The reduced engine has none.

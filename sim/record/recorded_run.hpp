@@ -39,7 +39,7 @@ struct RecordedInternalValue {
 /// A parameter at the start or after a commit, or an internal value that was overwritten.
 struct RecordedSetting {
   std::uint32_t tick = 0;
-  bool commit = false;  ///< took effect at SYNC tick; otherwise: from the start
+  bool commit = false;  ///< whether the change took effect at the SYNC of its tick, not from the start
   std::uint32_t slot = 0;
   std::uint32_t joint = 0;
   std::string name;

@@ -15,7 +15,7 @@ struct Chain {
   std::vector<AngleLimits> kernel_limits;
   std::vector<Origin> link_origins;
   std::vector<Origin> joint_origins;
-  std::vector<bool> headward_first;  ///< of each joint: its file lists the link towards the head first
+  std::vector<bool> headward_first;  ///< by joint: whether its file lists the link towards the head first
   std::string joint_map;             ///< for the user: "joints from the head, ...: J5 (Head - 4Seg), ..."
 };
 

@@ -10,7 +10,7 @@ namespace random_stream {
 inline constexpr std::uint64_t crystals = 1'000'000;  ///< of the modules, plus the joint
 inline constexpr std::uint64_t boards = 2'000'000;    ///< plus the joint
 inline constexpr std::uint64_t touch_sensors = 3'000'000;
-inline constexpr std::uint64_t friction = 4'000'000;  ///< this and the following: spreads of an optimiser's trials
+inline constexpr std::uint64_t friction = 4'000'000;  ///< first of the streams with the spreads of trials
 inline constexpr std::uint64_t mass = 5'000'000;
 inline constexpr std::uint64_t servo_gain = 6'000'000;
 inline constexpr std::uint64_t latency = 7'000'000;

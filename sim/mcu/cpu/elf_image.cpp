@@ -96,7 +96,7 @@ Elf32_Ehdr read_header(const Reader& reader) {
   if (header.e_phentsize != sizeof(Elf32_Phdr) || header.e_shentsize != sizeof(Elf32_Shdr)) {
     reader.fail("table entries of unknown size", "a linked ARM program");
   }
-  constexpr unsigned max_segments = 32;  // ours have four; a damaged count is rarely small
+  constexpr unsigned max_segments = 32;  // an image of a module has four segments; a damaged count is rarely small
   if (header.e_phnum == 0 || header.e_phnum > max_segments) {
     reader.fail(std::to_string(header.e_phnum) + " program headers", "1 to " + std::to_string(max_segments));
   }

@@ -67,7 +67,7 @@ class BxCan final : public RegisterBlock, private BusListener {
   /// Carries out the requests of times up to now, which must be Bus::now().
   void submit(BusTime now);
 
-  /// Index of its controller on the bus.
+  /// Index of this peripheral's controller on the bus.
   [[nodiscard]] std::size_t controller() const { return controller_.index(); }
 
  private:

@@ -119,7 +119,7 @@ std::vector<DbcChoice> statuswords() {
   return choices;
 }
 
-// Messages to and from all.
+// Messages that all nodes send or receive.
 
 DbcMessage nmt_message() {
   return {identifier::nmt,

@@ -13,7 +13,7 @@ struct BareOptions {
   std::string image;                ///< a file
   std::optional<std::string> node;  ///< of the board record that is written; without it none is
   bool dry_run = false;             ///< only shows the commands
-  // add_bare_options() declares these.
+  // The options that add_bare_options() declares:
   std::optional<std::string> probe;
   std::optional<std::string> port;
   std::optional<std::string> bootloader;

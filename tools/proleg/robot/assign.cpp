@@ -36,7 +36,7 @@ struct AssignOptions : ScenarioOptions {
 struct AssignSettings {
   std::vector<Place> places;
   host::JointMotionOptions motion;
-  bool asks = true;  ///< before node ids are changed
+  bool asks = true;  ///< whether the user is asked before node ids are changed
   bool json = false;
 };
 

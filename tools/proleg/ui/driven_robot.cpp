@@ -14,7 +14,7 @@
 namespace proleg::tools {
 namespace {
 
-/// No end.
+/// End of a run that the user ends.
 constexpr std::uint32_t last_tick = 0xFFFF'FFFF;
 /// Commands for direct positions in a tick of 10 ms: they and the state frames of 60 modules fit on the bus.
 constexpr std::size_t commands_per_tick = 16;

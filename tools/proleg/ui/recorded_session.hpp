@@ -22,7 +22,7 @@ namespace proleg::tools {
 
 struct RecordedSessionOptions {
   std::filesystem::path folder;
-  std::optional<std::string> file;  ///< in the folder: viewers open it at once
+  std::optional<std::string> file;  ///< recording in the folder that viewers open at once
   bool is_alone = false;            ///< there is no robot until a recording is continued
 };
 

@@ -1,8 +1,15 @@
 #pragma once
 
+// How people and programs get to the page: its address with the token, and what other computers need.
+
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
+
+#include "host/server/server_certificate.hpp"
+#include "tools/proleg/common/command_line.hpp"
 
 namespace proleg::tools {
 
@@ -30,5 +37,18 @@ class PageAddress {
   std::filesystem::path file_;
   std::filesystem::path link_;  ///< an HTML file that leads to the page
 };
+
+/// The options for a page that other computers may open.
+struct LanOptions {
+  bool lan = false;
+  std::optional<std::string> certificate;
+  std::optional<std::string> key;
+};
+
+void add_lan_options(CommandLine& command_line, LanOptions& options);
+
+/// What the server shows to other computers; null without --lan. Prints warnings. Throws InputError, BadInput.
+[[nodiscard]] std::shared_ptr<const host::ServerCertificate> open_certificate(const LanOptions& options,
+                                                                              const std::string& program);
 
 }  // namespace proleg::tools

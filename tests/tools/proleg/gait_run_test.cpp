@@ -1,4 +1,4 @@
-#include "tools/proleg/robot/live_changes.hpp"
+#include "tools/proleg/robot/gait_run.hpp"
 
 #include <gtest/gtest.h>
 

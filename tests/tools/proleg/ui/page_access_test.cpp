@@ -1,6 +1,7 @@
-#include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/page_access.hpp"
 
 #include <gtest/gtest.h>
+
 #include <sys/wait.h>
 
 #include <cerrno>

@@ -301,10 +301,16 @@ void SdoTransfer::receive_segment(const CanFrame& frame) {
     }
     return;
   }
-  if (!store(std::span(frame.data).subspan(1, segment_bytes - sdo::unused_in_segment(frame)))) {
+  const std::size_t bytes = segment_bytes - sdo::unused_in_segment(frame);
+  const bool is_last = (command & sdo::no_more_segments) != 0;
+  if (bytes == 0 && !is_last) {  // an upload of such segments would never end
+    fail(AbortCode::unknown_command);
     return;
   }
-  if ((command & sdo::no_more_segments) != 0) {
+  if (!store(std::span(frame.data).subspan(1, bytes))) {
+    return;
+  }
+  if (is_last) {
     end_upload();
   } else {
     request(make(sdo::request_upload_segment | toggle_));

@@ -58,8 +58,6 @@ bool has_vector_table(Bytes bytes) {
   return holds;
 }
 
-using Bytes = std::span<const std::uint8_t>;
-
 constexpr const char* an_image = "an image (.pimg)";
 constexpr const char* damaged = ": the file is damaged, copy or build it again";
 

@@ -15,6 +15,8 @@
 #include "host/remote/device_listener.hpp"
 #include "host/transport/descriptor.hpp"
 
+struct libevdev;
+
 namespace proleg::host {
 
 /// Capabilities of an input device that the kernel reports in /sys/class/input/eventN/device. Every user may read this
@@ -34,12 +36,6 @@ struct InputCapabilities {
 
 /// Whether the device is a gamepad, a joystick, or a part of a Wiimote.
 [[nodiscard]] bool is_remote_control(const InputCapabilities& capabilities);
-
-}  // namespace proleg::host
-
-struct libevdev;
-
-namespace proleg::host {
 
 /// One event device of the kernel, /dev/input/eventN.
 class EventDevice {

@@ -44,7 +44,7 @@ inline constexpr std::uint16_t node_bits = 0x7F;
 [[nodiscard]] constexpr std::uint16_t base_of(std::uint16_t identifier) {
   return static_cast<std::uint16_t>(identifier & ~unsigned{node_bits});
 }
-/// Whether only one node may send with the identifier: node_of().
+/// Whether only one node may send with the identifier: node_of(). Not for identifiers of node 0, such as SYNC.
 [[nodiscard]] constexpr bool has_one_sender(std::uint16_t identifier) {
   switch (base_of(identifier)) {
     case emergency:

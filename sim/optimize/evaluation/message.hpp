@@ -2,7 +2,7 @@
 
 // Tasks and results as bytes, for other processes of this program, on this computer or others of its kind. Numbers are
 // written with their lowest byte first, doubles as their bit pattern, so that every value arrives unchanged.
-// Messages go between a process and the children that it forks.
+// The sockets carry them between a process and the children that it forks.
 
 #include <cstddef>
 #include <optional>

@@ -8,6 +8,10 @@
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
+namespace pagmo {
+class population;
+}
+
 namespace proleg::optimize {
 
 /// The bounds of the variables.
@@ -41,14 +45,6 @@ struct DelugeChain {
 /// The random numbers of a chain's candidate; number: from 0. They depend on nothing else, so a candidate can be
 /// predicted. They are drawn in this order: the variable (Move::one only); then U for each variable that moves.
 [[nodiscard]] Pcg32 candidate_noise(std::uint64_t seed, std::uint32_t chain, std::uint64_t number);
-
-}  // namespace proleg::optimize
-
-namespace pagmo {
-class population;
-}
-
-namespace proleg::optimize {
 
 /// The modified great deluge algorithm of the thesis (section 3.4.2) as a user-defined algorithm of pagmo, for any
 /// problem with one objective and a box of finite bounds. pagmo minimises, this algorithm maximises: the level of a

@@ -80,10 +80,6 @@ class CommandLine {
   std::vector<std::string> algorithms_;
 };
 
-}  // namespace proleg::tools
-
-namespace proleg::tools {
-
 inline constexpr std::uint32_t max_workers = 1024;
 
 /// Parses --workers; by default one for each processor. Throws InputError.

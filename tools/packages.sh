@@ -9,7 +9,7 @@ host_packages=(
   libassimp-dev libqhull-dev  # meshes of links and worlds
   libboost-dev  # Boost.Asio: serial lines, sockets
   libevdev-dev  # gamepads
-  libssl-dev    # TLS of the page
+  libssl-dev    # TLS of the page; SHA-256
   sqlite3  # not for the build: shows the contents of recordings
 )
 

@@ -9,35 +9,35 @@ namespace {
 /// Least sliding speed, m/s. Below it, the direction of the velocity may be an error of the solver.
 constexpr double min_sliding_speed = 1e-3;
 
-Eigen::Vector3d point_velocity(dGeomID shape, const Eigen::Vector3d& point) {
-  const dBodyID body = dGeomGetBody(shape);
+/// Velocity of a point of a body, [m/s]: v + w x (point - centre of mass). No body is at rest. As dBodyGetPointVel(),
+/// which takes twice as long.
+inline Eigen::Vector3d point_velocity(dBodyID body, const Eigen::Vector3d& point) {
   if (body == nullptr) {
     return Eigen::Vector3d::Zero();
   }
-  dVector3 velocity;
-  dBodyGetPointVel(body, point.x(), point.y(), point.z(), velocity);
-  return {velocity[0], velocity[1], velocity[2]};
+  const dReal* middle = dBodyGetPosition(body);
+  const dReal* velocity = dBodyGetLinearVel(body);
+  const dReal* turning = dBodyGetAngularVel(body);
+  const double x = point.x() - middle[0];
+  const double y = point.y() - middle[1];
+  const double z = point.z() - middle[2];
+  return {velocity[0] + (turning[1] * z - turning[2] * y), velocity[1] + (turning[2] * x - turning[0] * z),
+          velocity[2] + (turning[0] * y - turning[1] * x)};
 }
 
-Eigen::Vector3d tangential(const Eigen::Vector3d& vector, const Eigen::Vector3d& normal) {
+inline Eigen::Vector3d tangential(const Eigen::Vector3d& vector, const Eigen::Vector3d& normal) {
   return vector - vector.dot(normal) * normal;
 }
 
-/// Sliding velocity of shape a relative to shape b.
-Eigen::Vector3d sliding_velocity(dGeomID a, dGeomID b, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
-  return tangential(point_velocity(a, point) - point_velocity(b, point), normal);
-}
-
 /// A direction in the plane of contact that turns with the link.
-Eigen::Vector3d axis_of_link(dGeomID a, dGeomID b, const Eigen::Vector3d& normal) {
-  const dBodyID body = dGeomGetBody(a) != nullptr ? dGeomGetBody(a) : dGeomGetBody(b);
+Eigen::Vector3d axis_of_link(dBodyID body, const Eigen::Vector3d& normal) {
   const dReal* rotation = dBodyGetRotation(body);  // 3 rows of 4
   const Eigen::Vector3d x = tangential({rotation[0], rotation[4], rotation[8]}, normal);
   const Eigen::Vector3d y = tangential({rotation[1], rotation[5], rotation[9]}, normal);
   return x.squaredNorm() > y.squaredNorm() ? x : y;
 }
 
-void set_first_axis(dContact& contact, const Eigen::Vector3d& direction) {
+inline void set_first_axis(dContact& contact, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d axis = direction.normalized();
   contact.surface.mode |= dContactFDir1;
   contact.fdir1[0] = axis.x();
@@ -53,34 +53,38 @@ void ContactFriction::begin_step() {
   point_count_ = 0;
 }
 
-const ContactFriction::Pair* ContactFriction::before(dGeomID a, dGeomID b) const {
+void ContactFriction::begin_pair(dGeomID a, dGeomID b, Between between) {
   const auto found = std::ranges::find_if(pairs_before_, [&](const Pair& pair) { return pair.a == a && pair.b == b; });
-  return found == pairs_before_.end() ? nullptr : &*found;
+  before_ = found == pairs_before_.end() ? nullptr : &*found;
+  pairs_.push_back({a, b, dGeomGetBody(a), dGeomGetBody(b), between});
 }
 
-std::size_t ContactFriction::pair_of(dGeomID a, dGeomID b, Between between) {
-  // The engine reports all points of a pair one after another.
-  if (pairs_.empty() || pairs_.back().a != a || pairs_.back().b != b) {
-    pairs_.push_back({a, b, between});
+/// Sliding velocity of the first shape of a pair relative to the second.
+inline Eigen::Vector3d ContactFriction::sliding_velocity(const Pair& pair, const Eigen::Vector3d& point,
+                                                         const Eigen::Vector3d& normal) {
+  return tangential(point_velocity(pair.body_a, point) - point_velocity(pair.body_b, point), normal);
+}
+
+/// Notes a point of the present pair. It counts when observe() has its joint.
+inline ContactFriction::Point& ContactFriction::note_point(const dContact& contact) {
+  if (point_count_ == points_.size()) {
+    points_.emplace_back();
   }
-  return pairs_.size() - 1;
+  Point& point = points_[point_count_];
+  point.pair = pairs_.size() - 1;
+  point.position = {contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]};
+  point.normal = {contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]};
+  point.velocity = sliding_velocity(pairs_.back(), point.position, point.normal);
+  return point;
 }
 
-void ContactFriction::note_point(const dContact& contact, dGeomID a, dGeomID b, Between between) {
-  next_.pair = pair_of(a, b, between);
-  next_.position = {contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]};
-  next_.normal = {contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]};
-  next_.velocity = sliding_velocity(a, b, next_.position, next_.normal);
-}
-
-void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across,
-                                  dGeomID a, dGeomID b, Between between) {
+void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across) {
   constexpr double least_projection = 0.1;
-  note_point(contact, a, b, between);
+  const Point& point = note_point(contact);
   contact.surface.mode = dContactApprox1 | dContactMu2;
   contact.surface.mu = along;
   contact.surface.mu2 = across;
-  const Eigen::Vector3d direction = tangential(axis, next_.normal);
+  const Eigen::Vector3d direction = tangential(axis, point.normal);
   if (direction.norm() > least_projection) {
     set_first_axis(contact, direction);
   } else {
@@ -88,42 +92,33 @@ void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis
   }
 }
 
-void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between) {
-  note_point(contact, a, b, between);
-  const Eigen::Vector3d& normal = next_.normal;
+void ContactFriction::set_surface(dContact& contact, double coefficient) {
+  const Point& point = note_point(contact);
   // In this mode mu is a coefficient; without it mu would be a force.
   contact.surface.mode = dContactApprox1;
   contact.surface.mu = coefficient;
   if (coefficient <= 0.0) {
     return;
   }
-  const Pair* const last = before(a, b);
-  const Eigen::Vector3d& velocity = next_.velocity;
-  const double speed = velocity.norm();
+  const double speed = point.velocity.norm();
   if (speed > min_sliding_speed) {
-    set_first_axis(contact, velocity);
-    if (last != nullptr && last->normal_force > 0.0) {
+    set_first_axis(contact, point.velocity);
+    if (before_ != nullptr && before_->normal_force > 0.0) {
       contact.surface.mode |= dContactSlip2;
       contact.surface.slip2 =
-          speed * static_cast<double>(last->points) / (coefficient * last->normal_force);  // m/s per N
+          speed * static_cast<double>(before_->points) / (coefficient * before_->normal_force);  // m/s per N
     }
     return;
   }
-  const Eigen::Vector3d friction = last != nullptr ? tangential(last->friction, normal) : Eigen::Vector3d::Zero();
-  set_first_axis(contact, friction.squaredNorm() > 0.0 ? friction : axis_of_link(a, b, normal));
+  const Eigen::Vector3d friction =
+      before_ != nullptr ? tangential(before_->friction, point.normal) : Eigen::Vector3d::Zero();
+  const Pair& pair = pairs_.back();
+  set_first_axis(contact, friction.squaredNorm() > 0.0
+                              ? friction
+                              : axis_of_link(pair.body_a != nullptr ? pair.body_a : pair.body_b, point.normal));
 }
 
-void ContactFriction::observe(dJointID joint) {
-  if (point_count_ == points_.size()) {
-    points_.emplace_back();
-  }
-  Point& point = points_[point_count_++];
-  point.pair = next_.pair;
-  point.position = next_.position;
-  point.normal = next_.normal;
-  point.velocity = next_.velocity;
-  dJointSetFeedback(joint, &point.feedback);
-}
+void ContactFriction::observe(dJointID joint) { dJointSetFeedback(joint, &points_[point_count_++].feedback); }
 
 void ContactFriction::end_step() {
   sliding_ = {};
@@ -136,7 +131,7 @@ void ContactFriction::end_step() {
     pair.normal_force += normal_force;
     pair.friction += tangential(force, point.normal);
     if (pair.between != Between::links) {
-      const Eigen::Vector3d velocity = sliding_velocity(pair.a, pair.b, point.position, point.normal);
+      const Eigen::Vector3d velocity = sliding_velocity(pair, point.position, point.normal);
       if (pair.between == Between::robot_and_world) {
         sliding_.normal_force += normal_force;
         sliding_.force_times_speed += normal_force * velocity.norm();

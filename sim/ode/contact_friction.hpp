@@ -37,12 +37,13 @@ class ContactFriction {
     links,            ///< counts for nothing
     objects,          ///< an object that moves, and another or the environment: only friction_power
   };
+  /// Must be called before the contact points of two shapes that touch.
+  void begin_pair(dGeomID a, dGeomID b, Between between);
   /// Sets the surface of a contact point whose friction is not the same in every direction: the engine limits it along
   /// two fixed axes. axis: the body's axis, in the world; along, across: coefficients along it and across it.
-  void set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across, dGeomID a, dGeomID b,
-                   Between between);
-  /// Sets the surface of a contact point, without its geometry. a, b: the shapes that touch.
-  void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between);
+  void set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across);
+  /// Sets the surface of a contact point, without its geometry.
+  void set_surface(dContact& contact, double coefficient);
   /// Notes the joint of the contact of the last set_surface(), which must be attached to its bodies.
   void observe(dJointID joint);
   /// Must be called after the step, before its contact joints are destroyed.
@@ -58,12 +59,12 @@ class ContactFriction {
   }
 
  private:
-  void note_point(const dContact& contact, dGeomID a, dGeomID b, Between between);
-
-  /// Two shapes that touch.
+  /// Two shapes that touch, and their bodies; the environment has no body.
   struct Pair {
     dGeomID a;
     dGeomID b;
+    dBodyID body_a;
+    dBodyID body_b;
     Between between;
     std::size_t points = 0;
     double normal_force = 0.0;                           ///< sum of its points, N
@@ -78,14 +79,15 @@ class ContactFriction {
     dJointFeedback feedback;
   };
 
-  [[nodiscard]] const Pair* before(dGeomID a, dGeomID b) const;
-  [[nodiscard]] std::size_t pair_of(dGeomID a, dGeomID b, Between between);
+  Point& note_point(const dContact& contact);
+  [[nodiscard]] static Eigen::Vector3d sliding_velocity(const Pair& pair, const Eigen::Vector3d& point,
+                                                        const Eigen::Vector3d& normal);
 
   std::vector<Pair> pairs_before_;  ///< pairs of the step before, with their forces
   std::vector<Pair> pairs_;         ///< pairs of this step
   std::deque<Point> points_;        ///< points, not all in use; the engine keeps pointers to their feedback
   std::size_t point_count_ = 0;
-  Point next_{};  ///< point of the last set_surface()
+  const Pair* before_ = nullptr;  ///< the present pair in the step before, if it touched then
   ContactSliding sliding_;
 };
 

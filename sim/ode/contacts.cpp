@@ -131,36 +131,42 @@ void Contacts::collide(dGeomID a, dGeomID b) {
 }
 
 void Contacts::add(dGeomID a, dGeomID b, std::span<const dContactGeom> points) {
-  const int link_a = data_of(a).link;
-  const int link_b = data_of(b).link;
+  if (points.empty()) {
+    return;
+  }
+  const ShapeData& data_a = data_of(a);
+  const ShapeData& data_b = data_of(b);
+  const dBodyID body_a = dGeomGetBody(a);
+  const dBodyID body_b = dGeomGetBody(b);
+  const double along = friction_of(data_a.friction, data_b.friction, unspecified_friction_);
+  const bool has_axis = data_a.friction_across || data_b.friction_across;
+  friction_.begin_pair(a, b, between(data_a, data_b));
   for (const dContactGeom& point : points) {
     dContact contact;  // not initialised: the engine reads only what the mode of the surface names
     contact.geom = point;
-    set_surface(contact, a, b);
+    if (has_axis) {
+      set_surface_with_axis(contact, along, a, b);
+    } else {
+      friction_.set_surface(contact, along);
+    }
     const dJointID joint = dJointCreateContact(world_, group_.get(), &contact);
-    dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
+    dJointAttach(joint, body_a, body_b);
     friction_.observe(joint);
-    note_touch(link_a, link_b, point);
-    note_touch(link_b, link_a, point);
+    note_touch(data_a.link, data_b.link, point);
+    note_touch(data_b.link, data_a.link, point);
   }
   count_ += points.size();
 }
 
-void Contacts::set_surface(dContact& contact, dGeomID a, dGeomID b) {
+/// For bodies whose friction has another coefficient across an axis. If both have such an axis, the first one decides.
+void Contacts::set_surface_with_axis(dContact& contact, double along, dGeomID a, dGeomID b) {
   const ShapeData& data_a = data_of(a);
   const ShapeData& data_b = data_of(b);
-  const double along = friction_of(data_a.friction, data_b.friction, unspecified_friction_);
-  const ContactFriction::Between who = between(data_a, data_b);
-  if (!data_a.friction_across && !data_b.friction_across) {
-    friction_.set_surface(contact, along, a, b, who);
-    return;
-  }
-  // If both bodies have such an axis, the first one decides.
   const bool first = data_a.friction_across.has_value();
   const double across =
       friction_of((first ? data_a : data_b).friction_across, (first ? data_b : data_a).friction, unspecified_friction_);
   const dReal* rotation = dBodyGetRotation(dGeomGetBody(first ? a : b));  // 3 rows of 4
-  friction_.set_surface(contact, {rotation[1], rotation[5], rotation[9]}, along, across, a, b, who);
+  friction_.set_surface(contact, {rotation[1], rotation[5], rotation[9]}, along, across);
 }
 
 void Contacts::note_touch(int link, int other, const dContactGeom& contact) {

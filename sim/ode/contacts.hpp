@@ -99,7 +99,7 @@ class Contacts {
   static void on_near(void* self, dGeomID a, dGeomID b) { static_cast<Contacts*>(self)->collide(a, b); }
   void collide(dGeomID a, dGeomID b);
   void add(dGeomID a, dGeomID b, std::span<const dContactGeom> points);
-  void set_surface(dContact& contact, dGeomID a, dGeomID b);
+  void set_surface_with_axis(dContact& contact, double along, dGeomID a, dGeomID b);
   void note_touch(int link, int other, const dContactGeom& contact);
   void note_point(std::size_t link, const dContactGeom& contact);
   void sum_forces();

@@ -6,13 +6,13 @@ namespace proleg::sim {
 namespace {
 
 /// Rotates a vector. rotation: 3 rows of 4 numbers, as the engine has it.
-Eigen::Vector3d rotated(const dReal* rotation, const Eigen::Vector3d& vector) {
+inline Eigen::Vector3d rotated(const dReal* rotation, const Eigen::Vector3d& vector) {
   return {rotation[0] * vector.x() + rotation[1] * vector.y() + rotation[2] * vector.z(),
           rotation[4] * vector.x() + rotation[5] * vector.y() + rotation[6] * vector.z(),
           rotation[8] * vector.x() + rotation[9] * vector.y() + rotation[10] * vector.z()};
 }
 
-double dot(const dReal* a, const Eigen::Vector3d& b) { return a[0] * b.x() + a[1] * b.y() + a[2] * b.z(); }
+inline double dot(const dReal* a, const Eigen::Vector3d& b) { return a[0] * b.x() + a[1] * b.y() + a[2] * b.z(); }
 
 }  // namespace
 
@@ -26,6 +26,9 @@ void HingeMotor::attach(dJointID hinge, dBodyID body, const Joint& joint, const 
   set_max_torque(joint.max_torque);
   set_speed(0.0);
   dJointSetFeedback(hinge, &feedback_);
+  lower_stop_ = dJointGetHingeParam(hinge, dParamLoStop);
+  upper_stop_ = dJointGetHingeParam(hinge, dParamHiStop);
+  end_step();
 }
 
 void HingeMotor::set_max_torque(double torque) {
@@ -33,7 +36,16 @@ void HingeMotor::set_max_torque(double torque) {
   max_torque_ = torque;
 }
 
-void HingeMotor::note_axis() {
+void HingeMotor::begin_step() {
+  // The engine notes in a step with stops that the angle is at none of them. Therefore it keeps them one step longer.
+  const bool is_at_stop = angle_ <= lower_stop_ || angle_ >= upper_stop_;
+  if (const bool needs_stops = is_at_stop || was_at_stop_; needs_stops != has_stops_) {
+    has_stops_ = needs_stops;
+    dJointSetHingeParam(hinge_, dParamLoStop, needs_stops ? lower_stop_ : -dInfinity);
+    dJointSetHingeParam(hinge_, dParamHiStop, needs_stops ? upper_stop_ : dInfinity);
+  }
+  was_at_stop_ = is_at_stop;
+
   const dReal* rotation = dBodyGetRotation(body_);
   axis_ = rotated(rotation, axis_in_link_);
   moment_ = rotated(rotation, moment_in_link_);

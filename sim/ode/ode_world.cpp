@@ -112,11 +112,20 @@ class OdeWorld final : public World {
       dBodySetAngularVel(body, 0.0, 0.0, 0.0);
     }
     contacts_->clear();
+    for (HingeMotor& motor : motors_) {
+      motor.end_step();
+    }
   }
 
-  [[nodiscard]] double joint_angle(std::size_t joint) const override { return dJointGetHingeAngle(joints_[joint]); }
+  [[nodiscard]] double joint_angle(std::size_t joint) const override { return motors_[joint].angle(); }
 
   [[nodiscard]] double motor_torque(std::size_t joint) const override { return motors_[joint].torque(); }
+  void read_joints(std::span<double> angles, std::span<double> torques) const override {
+    for (std::size_t joint = 0; joint < angles.size(); ++joint) {
+      angles[joint] = motors_[joint].angle();
+      torques[joint] = motors_[joint].torque();
+    }
+  }
 
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
     return pose_of(bodies_[link]) * Pose{-mass_centers_[link], Eigen::Quaterniond::Identity()};
@@ -208,7 +217,7 @@ class OdeWorld final : public World {
       contacts_->find(object_space_.get());
     }
     for (HingeMotor& motor : motors_) {
-      motor.note_axis();
+      motor.begin_step();
     }
     if (stepper_ == Stepper::direct) {
       dWorldStep(world_.get(), step_s_);
@@ -216,6 +225,9 @@ class OdeWorld final : public World {
       dWorldQuickStep(world_.get(), step_s_);
     }
     contacts_->end_step();
+    for (HingeMotor& motor : motors_) {
+      motor.end_step();
+    }
   }
 
   /// Gives up the threading implementation. An error that the engine raises in the middle of a step leaves jobs in it,
@@ -318,7 +330,6 @@ class OdeWorld final : public World {
                           joint.lower_limit - (can_turn && joint.lower_limit == 0 ? start_distance : 0));
       dJointSetHingeParam(hinge, dParamHiStop,
                           joint.upper_limit + (can_turn && joint.upper_limit == 0 ? start_distance : 0));
-      joints_.push_back(hinge);
       motors_[i].attach(hinge, bodies_[i], joint, robot.links[i]);
     }
   }
@@ -352,7 +363,6 @@ class OdeWorld final : public World {
   std::vector<dBodyID> objects_;                 ///< bodies of the objects that move
   std::vector<dBodyID> all_bodies_;              ///< bodies of links and objects
   std::vector<Eigen::Vector3d> object_centers_;  ///< centres of mass, in the frames of the objects
-  std::vector<dJointID> joints_;
   std::vector<HingeMotor> motors_;  ///< by joint
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;

@@ -1,14 +1,26 @@
 #include "shared/computer/hash/sha256.hpp"
 
-#include "shared/fixed/little_endian.hpp"
+#include <openssl/evp.h>
+
+#include <stdexcept>
 
 namespace proleg {
+namespace {
 
-// The results of libsodium's SHA-256 functions are always 0 and are not checked.
+using Digest = std::array<unsigned char, 32>;
+
+/// Checks the result of a function of libcrypto: 1 is success. SHA-256 fails only without memory.
+void check(int result) {
+  if (result != 1) {
+    throw std::runtime_error("libcrypto: cannot compute a SHA-256");
+  }
+}
+
+}  // namespace
 
 std::string sha256_hex(std::string_view text) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest;
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(text.data()), text.size());
+  Digest digest;
+  check(EVP_Digest(text.data(), text.size(), digest.data(), nullptr, EVP_sha256(), nullptr));
   return hexadecimal_digits(digest);
 }
 
@@ -22,15 +34,10 @@ std::string hexadecimal_digits(std::span<const unsigned char> bytes) {
   return text;
 }
 
-ValueHash::ValueHash() { crypto_hash_sha256_init(&state_); }
+void ValueHash::Free::operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
 
-void ValueHash::append(std::int32_t value) {
-  write_little_endian(buffer_, buffered_, sizeof(value), static_cast<std::uint32_t>(value));
-  buffered_ += sizeof(value);
-  if (buffered_ == buffer_.size()) {
-    crypto_hash_sha256_update(&state_, buffer_.data(), buffered_);
-    buffered_ = 0;
-  }
+ValueHash::ValueHash() : context_(EVP_MD_CTX_new()) {
+  check(context_ == nullptr ? 0 : EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
 }
 
 void ValueHash::append(std::span<const std::int32_t> values) {
@@ -39,12 +46,18 @@ void ValueHash::append(std::span<const std::int32_t> values) {
   }
 }
 
+void ValueHash::append_buffer() {
+  check(EVP_DigestUpdate(context_.get(), buffer_.data(), buffered_));
+  buffered_ = 0;
+}
+
 std::string ValueHash::hex() const {
   // Finishing destroys the state, so a copy is finished.
-  crypto_hash_sha256_state state = state_;
-  crypto_hash_sha256_update(&state, buffer_.data(), buffered_);
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest;
-  crypto_hash_sha256_final(&state, digest.data());
+  const std::unique_ptr<EVP_MD_CTX, Free> copy(EVP_MD_CTX_new());
+  check(copy == nullptr ? 0 : EVP_MD_CTX_copy_ex(copy.get(), context_.get()));
+  check(EVP_DigestUpdate(copy.get(), buffer_.data(), buffered_));
+  Digest digest;
+  check(EVP_DigestFinal_ex(copy.get(), digest.data(), nullptr));
   return hexadecimal_digits(digest);
 }
 

@@ -161,9 +161,10 @@ class PlateInTheEngine {
   void collide(dGeomID a, dGeomID b) {
     std::array<dContact, 8> points{};
     const int count = dCollide(a, b, 8, &points[0].geom, sizeof(dContact));
+    friction_of_contacts_.begin_pair(a, b, ContactFriction::Between::robot_and_world);
     for (int i = 0; i < count; ++i) {
       dContact& point = points[static_cast<std::size_t>(i)];
-      friction_of_contacts_.set_surface(point, friction_, a, b, ContactFriction::Between::robot_and_world);
+      friction_of_contacts_.set_surface(point, friction_);
       const dJointID joint = dJointCreateContact(world_, contacts_, &point);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       friction_of_contacts_.observe(joint);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "firmware/bootloader/program_objects.hpp"
 #include "shared/fixed/crc32.hpp"
 
 namespace proleg::bootloader {

@@ -56,8 +56,6 @@ enum class NextStep : std::uint8_t {
   serve_bus,
 };
 
-[[nodiscard]] NextStep next_step(const Slots& slots, const Handover& left);
-
 /// What must be left for the next start when the program is started.
 [[nodiscard]] constexpr Handover started_after(const Handover& left) {
   return {HandoverAction::started, 1 + (left.action == HandoverAction::started ? left.argument : 0)};
@@ -66,6 +64,14 @@ enum class NextStep : std::uint8_t {
 /// Whether the program has started badly too often, and must not be started any more.
 [[nodiscard]] constexpr bool starts_badly(const Handover& left) {
   return left.action == HandoverAction::started && left.argument >= max_bad_starts;
+}
+
+[[nodiscard]] inline NextStep next_step(const Slots& slots, const Handover& left) {
+  if (left.action == HandoverAction::stay || left.action == HandoverAction::install || starts_badly(left)) {
+    return NextStep::serve_bus;
+  }
+  const bool may_run = left.action == HandoverAction::start || slots.is_confirmed(FlashSlot::a);
+  return may_run && !slots.image_in(FlashSlot::a).empty() ? NextStep::start_program : NextStep::prepare;
 }
 
 }  // namespace proleg::bootloader

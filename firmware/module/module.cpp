@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "firmware/module/board_control.hpp"
-#include "firmware/module/host_requests.hpp"
+#include "firmware/module/motion_control.hpp"
 #include "firmware/module/network_control.hpp"
-#include "firmware/module/tick_control.hpp"
 #include "firmware/module/watches.hpp"
 
 namespace proleg::firmware {

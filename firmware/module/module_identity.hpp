@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "shared/fixed/crc32.hpp"
+
 namespace proleg::firmware {
 
 /// Causes of the start of a program.
@@ -27,7 +29,13 @@ struct ModuleIdentity {
 };
 
 /// The serial number of object 0x1018, which has 32 bits: the CRC-32 of the unique id, little-endian.
-[[nodiscard]] std::uint32_t serial_number(const ModuleIdentity& identity);
+[[nodiscard]] inline std::uint32_t serial_number(const ModuleIdentity& identity) {
+  Crc32 crc;
+  for (const std::uint32_t word : identity.unique_id) {
+    crc.add_little_endian(word, 4);
+  }
+  return crc.value();
+}
 
 /// Time from the start of the module to its boot-up, 1,000 to 16,000: one of two modules with the same node id that are
 /// switched on together receives the other's message.

@@ -1,6 +1,6 @@
 #include "firmware/module/network_control.hpp"
 
-#include "firmware/module/tick_control.hpp"
+#include "firmware/module/motion_control.hpp"
 
 namespace proleg::firmware {
 namespace {

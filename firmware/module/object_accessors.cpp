@@ -1,8 +1,7 @@
-#include "firmware/module/object_accessors.hpp"
+#include "firmware/module/device_objects.hpp"
 
 #include <type_traits>
 
-#include "firmware/module/abort_code.hpp"
 #include "firmware/module/board_control.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"

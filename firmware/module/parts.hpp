@@ -1,14 +1,12 @@
 #pragma once
 
-#include "firmware/module/board_store.hpp"
-#include "firmware/module/bus_recovery.hpp"
+#include "firmware/module/board_record.hpp"
 #include "firmware/module/drive.hpp"
 #include "firmware/module/gateway.hpp"
 #include "firmware/module/program_update.hpp"
 #include "firmware/module/servo_monitor.hpp"
 #include "firmware/module/state_receiver.hpp"
-#include "firmware/module/sync_producer.hpp"
-#include "firmware/module/tick_keeper.hpp"
+#include "firmware/module/sync.hpp"
 #include "firmware/module/timeouts.hpp"
 #include "shared/can/can_port.hpp"
 #include "shared/canopen/lss_slave.hpp"
@@ -50,8 +48,8 @@ struct ReportedRequests {
   std::optional<canopen::CommitMessage> commit{};  ///< the last one that was rejected
 };
 
-/// The parts of a module: together they are the whole state of the program. Functions on them are in
-/// network_control.hpp, tick_control.hpp, watches.hpp and host_requests.hpp; Module calls them.
+/// The parts of a module: together they are the whole state of the program. Functions on them are in board_control.hpp,
+/// motion_control.hpp, network_control.hpp and watches.hpp; Module calls them.
 struct Parts {
   Parts(const ModuleIdentity& module_identity, const Ports& ports);
   Parts(const Parts&) = delete;

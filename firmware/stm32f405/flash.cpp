@@ -1,15 +1,69 @@
 #include "firmware/stm32f405/flash.hpp"
 
+#include <cstring>
+
 #include "firmware/stm32f405/flash_layout.hpp"
-#include "firmware/stm32f405/flash_operations.hpp"
+#include "firmware/stm32f405/registers/flash.hpp"
+#include "firmware/stm32f405/registers/timer.hpp"
+#include "firmware/stm32f405/reset.hpp"
 #include "shared/canopen/declared_objects.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
 
-constexpr unsigned first_sector = 1;
+using namespace flash_interface;
 
-/// Time after which an erase has failed: twice the maximum of the data sheet.
+/// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
+/// Returns the status register. It may call no function and read only registers and the stack, because everything else
+/// is in flash.
+[[gnu::section(".ram_code"), gnu::noinline, gnu::noclone]] std::uint32_t operate(std::uint32_t control,
+                                                                                 std::uintptr_t address,
+                                                                                 std::uint32_t word,
+                                                                                 std::uint32_t timeout_us) {
+  std::uint32_t primask = 0;
+  asm volatile("mrs %0, primask\n\tcpsid i" : "=r"(primask) : : "memory");
+  const std::uint32_t start = tim5.cnt().read();
+  cr.write(control);
+  if (address != 0) {
+    Register(address).write(word);
+  } else {
+    cr.write(control | cr_strt);
+  }
+  asm volatile("dsb" : : : "memory");  // BSY is set from here on
+  std::uint32_t status = sr.read();
+  while ((status & sr_bsy) != 0 && tim5.cnt().read() - start < timeout_us) {
+    feed_watchdog();
+    status = sr.read();
+  }
+  cr.write(cr_lock);
+  asm volatile("msr primask, %0" : : "r"(primask) : "memory");
+  return status;
+}
+
+bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std::uint32_t timeout_us) {
+  if (!wait_until_clear(sr, sr_bsy, 1)) {
+    return false;  // an operation that exceeded its timeout is still running
+  }
+  if (cr.has(cr_lock)) {  // wrong keys lock the register until the next reset
+    keyr.write(keyr_key1);
+    keyr.write(keyr_key2);
+  }
+  sr.write(sr_errors | sr_eop);
+  return (operate(control, address, word, timeout_us) & (sr_bsy | sr_errors)) == 0;
+}
+
+/// Clears the data cache, which may hold the data before the erase (RM0090, section 3.5.2). Programming keeps it up to
+/// date.
+void clear_data_cache() {
+  acr.clear(acr_dcen);
+  acr.set(acr_dcrst);
+  acr.clear(acr_dcrst);
+  acr.set(acr_dcen);
+}
+
+constexpr unsigned first_sector = 1;  // of the board records
+
+/// Time after which an erase of 16 KiB has failed: twice the maximum of the data sheet.
 constexpr std::uint32_t erase_timeout_us = 1'000'000;
 // A client of the module still waits when a flash operation that does not end is reported.
 static_assert(erase_timeout_us + firmware::BoardRecord::size / 4 * program_timeout_us < canopen::storing_time_us);
@@ -19,6 +73,23 @@ constexpr std::uint32_t address_of(unsigned sector) {
 }
 
 }  // namespace
+
+bool erase_sector(unsigned sector, std::uint32_t timeout_us) {
+  const bool done = run(cr_ser | sector << cr_snb_position | cr_psize_32, 0, 0, timeout_us);
+  clear_data_cache();
+  return done;
+}
+
+bool program_words(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  for (std::size_t i = 0; i < bytes.size(); i += 4) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, &bytes[i], sizeof(word));
+    if (!run(cr_pg | cr_psize_32, address + i, word, program_timeout_us)) {
+      return false;
+    }
+  }
+  return true;
+}
 
 bool BoardRecordFlash::erase(unsigned sector) {
   return sector < sector_count && erase_sector(first_sector + sector, erase_timeout_us);

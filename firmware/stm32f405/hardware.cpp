@@ -7,7 +7,6 @@
 #include "firmware/stm32f405/vector_table.hpp"
 
 namespace proleg::stm32f405 {
-
 namespace {
 
 /// Memory for Hardware without an initial value, so that the zeros of which it mainly consists need no flash.

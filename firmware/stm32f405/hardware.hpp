@@ -1,15 +1,13 @@
 #pragma once
 
 #include "firmware/stm32f405/can.hpp"
+#include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/console.hpp"
-#include "firmware/stm32f405/contacts.hpp"
 #include "firmware/stm32f405/flash.hpp"
 #include "firmware/stm32f405/gateway_line.hpp"
-#include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/program_place.hpp"
 #include "firmware/stm32f405/sensors.hpp"
 #include "firmware/stm32f405/servo.hpp"
-#include "firmware/stm32f405/supply.hpp"
 
 namespace proleg::stm32f405 {
 

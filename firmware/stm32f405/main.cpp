@@ -3,12 +3,11 @@
 #include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/factory_data.hpp"
 #include "firmware/stm32f405/faults.hpp"
-#include "firmware/stm32f405/gpio.hpp"
 #include "firmware/stm32f405/module_task.hpp"
+#include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/reset.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
-#include "firmware/stm32f405/watchdog.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::stm32f405 {

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "firmware/stm32f405/watchdog.hpp"
+#include "firmware/stm32f405/reset.hpp"
 
 namespace proleg::stm32f405 {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 // The reference board, board id 1: the use of its pins and the frequencies of its clocks, as docs/board.md describes
-// them.
+// them, and the functions that set pins.
 
 #include <array>
 #include <cstdint>
@@ -50,4 +50,23 @@ inline constexpr unsigned console_function = 7;
 inline constexpr std::uint32_t console_baud = 115'200;
 
 }  // namespace board
+
+// Modes as in MODER and pulls as in PUPDR (RM0090, section 8.4).
+enum class PinMode : std::uint8_t { input, output, alternate, analog };
+enum class Pull : std::uint8_t { none, up, down };
+
+void set_mode(Pin pin, PinMode mode);
+void set_pull(Pin pin, Pull pull);
+/// Sets edges of 10 ns instead of 100 (data sheet, I/O AC characteristics, OSPEEDR = 01).
+void set_fast_edges(Pin pin);
+/// Selects the function for PinMode::alternate. function: AF0 to AF15, data sheet, table 9.
+void connect_function(Pin pin, unsigned function);
+/// Connects a pin with a peripheral. function: AF0 to AF15, data sheet, table 9.
+void connect(Pin pin, unsigned function);
+void set_low(Pin pin);
+
+/// Enables the clocks of the ports and sets all pins of the board: the servo's pin is low, the others are inputs or
+/// belong to their peripherals.
+void start_pins();
+
 }  // namespace proleg::stm32f405

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstring>
 
+#include "firmware/stm32f405/flash.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
-#include "firmware/stm32f405/flash_operations.hpp"
 #include "firmware/stm32f405/handover.hpp"
 #include "firmware/stm32f405/reset.hpp"
 #include "shared/fixed/little_endian.hpp"

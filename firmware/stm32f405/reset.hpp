@@ -1,7 +1,10 @@
 #pragma once
 
+// Resets of the chip: the cause of the last one, the program's own, and those by the independent watchdog.
+
 #include "firmware/module/module_identity.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
+#include "firmware/stm32f405/registers/watchdog.hpp"
 
 namespace proleg::stm32f405 {
 
@@ -20,5 +23,13 @@ namespace proleg::stm32f405 {
 
 /// Resets the chip as its reset pin does, except that RCC_CSR names software as the cause. RAM keeps its contents.
 [[noreturn]] void reset_chip();
+
+/// Starts the independent watchdog, or changes its time, 1 to 2,000 ms. It resets the chip when it was not fed for this
+/// time. Its clock is LSI: nominally 32 kHz, actually 17 to 47 kHz, so 200 ms are 136 to 376 (data sheet, table 36). It
+/// cannot be stopped. False if it runs, but with the time that it had before, initially 512 ms.
+[[nodiscard]] bool start_watchdog(std::uint32_t milliseconds);
+
+/// Starts the watchdog's time again.
+[[gnu::always_inline]] inline void feed_watchdog() { iwdg::kr.write(iwdg::kr_feed); }
 
 }  // namespace proleg::stm32f405

@@ -1,9 +1,11 @@
 #include "firmware/stm32f405/sensors.hpp"
 
+#include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/factory_data.hpp"
-#include "firmware/stm32f405/microsecond_clock.hpp"
+#include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/adc.hpp"
 #include "firmware/stm32f405/registers/dma.hpp"
+#include "firmware/stm32f405/registers/gpio.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
 
@@ -27,6 +29,16 @@ constexpr std::uint32_t on =
     adc1::cr2_adon | adc1::cr2_dma | adc1::cr2_dds | adc1::cr2_extsel_tim3_trgo | adc1::cr2_exten_rising;
 
 }  // namespace
+
+std::uint8_t Contacts::read() {
+  // All four inputs are read at once, so that they are from the same instant.
+  constexpr unsigned first = board::contacts[0].number;
+  static_assert(board::contacts[1].port == board::contacts[0].port && board::contacts[1].number == first + 1);
+  static_assert(board::contacts[2].port == board::contacts[0].port && board::contacts[2].number == first + 2);
+  static_assert(board::contacts[3].port == board::contacts[0].port && board::contacts[3].number == first + 3);
+  constexpr std::uint32_t all = 15;
+  return static_cast<std::uint8_t>(~(GpioPort(board::contacts[0].port).idr().read() >> first) & all);
+}
 
 void Sensors::start() {
   temperature_ = factory::temperature_calibration();
@@ -107,6 +119,17 @@ bool Sensors::take_others() {
   adc1::sr.write(~adc1::sr_jeoc);
   adc1::cr2.write(on | adc1::cr2_jswstart);
   return true;
+}
+
+void Supply::start() {
+  rcc::apb1enr.set(rcc::apb1enr_pwr);
+  static_cast<void>(rcc::apb1enr.read());
+  pwr::cr.change(pwr::cr_pls_mask, pwr::cr_pls_2v8);
+  pwr::cr.set(pwr::cr_pvde);
+  exti::rtsr.set(exti::line_pvd);
+  exti::ftsr.set(exti::line_pvd);
+  exti::imr.set(exti::line_pvd);
+  has_dropped_.store(is_low(), std::memory_order_relaxed);  // no edge comes if the voltage is low already
 }
 
 }  // namespace proleg::stm32f405

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "firmware/stm32f405/gpio.hpp"
+#include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/gpio.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::stm32f405 {
 namespace {

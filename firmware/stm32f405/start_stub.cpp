@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "firmware/stm32f405/flash_layout.hpp"
-#include "firmware/stm32f405/jump.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
 
 namespace proleg::stm32f405 {
 namespace {

@@ -1,13 +1,15 @@
 #pragma once
 
+// The vector table of a program, and the start of a program by its vector table.
+
 #include <array>
 #include <cstdint>
 
 #include "firmware/stm32f405/registers/core.hpp"
 
-// The functions in the vector table.
-
 extern "C" {
+
+// The functions in the vector table.
 
 [[noreturn]] void reset_handler();  ///< defined in start.cpp
 void fault_handler();               ///< defined in faults.cpp
@@ -24,10 +26,6 @@ void dma1_stream6_handler();
 /// the drivers) defines both.
 void pend_sv_handler();
 [[noreturn]] void run_program();
-
-}  // extern "C"
-
-extern "C" {
 
 extern const std::uint32_t stack_top[];  ///< the linker script defines it
 
@@ -53,5 +51,14 @@ struct VectorTable {
   std::array<Handler, interrupt_count> interrupts{};
 };
 static_assert(sizeof(VectorTable<5>) == sizeof(VectorTable<5>::Handler) * (16 + 5));
+
+/// Starts the program whose vector table is at this address, with its stack.
+[[noreturn, gnu::always_inline]] inline void jump_to(std::uint32_t vector_table) {
+  const std::uint32_t stack = Register(vector_table).read();
+  const std::uint32_t entry = Register(vector_table + 4).read();
+  scb::vtor.write(vector_table);
+  asm volatile("dsb\n\tisb\n\tmsr msp, %0\n\tbx %1" : : "r"(stack), "r"(entry) : "memory");
+  __builtin_unreachable();
+}
 
 }  // namespace proleg::stm32f405

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "host/dynamixel/control_table.hpp"
+#include "host/dynamixel/line.hpp"
 #include "host/dynamixel/packet.hpp"
-#include "host/dynamixel/serial_line.hpp"
 
 namespace proleg::host {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "host/dynamixel/chain_settings.hpp"
-#include "host/dynamixel/serial_line.hpp"
+#include "host/dynamixel/line.hpp"
 #include "host/dynamixel/servo_chain.hpp"
 
 using proleg::host::ChainSettings;

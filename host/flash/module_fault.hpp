@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/flash/flash_verdict.hpp"
+#include "host/flash/module_program.hpp"
 
 namespace proleg::host {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "host/flash/module_query.hpp"
+#include "host/flash/module_program.hpp"
 #include "host/robot/bus_user.hpp"
 #include "shared/broadcast/image_sender.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <poll.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -26,11 +28,24 @@ struct AxisRange {
 };
 
 /// The position of an axis, -1 to 1; 0 in the middle of its range.
-[[nodiscard]] double normalised(const AxisRange& range, std::int32_t value);
+[[nodiscard]] inline double normalised(const AxisRange& range, std::int32_t value) {
+  const double half = (static_cast<double>(range.maximum) - range.minimum) / 2;
+  if (half <= 0) {
+    return 0;  // some drivers declare axes without a range
+  }
+  const double flat = std::clamp<double>(range.flat, 0, half / 2);
+  const double offset = static_cast<double>(value) - (static_cast<double>(range.maximum) + range.minimum) / 2;
+  const double size = std::clamp((std::abs(offset) - flat) / (half - flat), 0.0, 1.0);
+  return std::copysign(size, size > 0 ? offset : 1.0);
+}
 
 /// Whether an element counts as pressed. The position of a button is 0 or 1; an axis is pressed beyond a half.
 /// was_pressed: the last result. The limit has a hysteresis, so that a trembling hand presses once.
-[[nodiscard]] bool is_pressed(double position, bool was_pressed);
+[[nodiscard]] inline bool is_pressed(double position, bool was_pressed) {
+  constexpr double press = 0.5;
+  constexpr double release = 0.4;
+  return position >= (was_pressed ? release : press);
+}
 
 /// Number that a device gets when it is plugged in, from 1; no number is used twice.
 using DeviceId = std::uint32_t;

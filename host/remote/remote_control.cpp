@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/remote/binding_file.hpp"
+#include "host/remote/binding.hpp"
 
 namespace proleg::host {
 namespace {

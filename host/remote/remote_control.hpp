@@ -12,10 +12,8 @@
 #include <vector>
 
 #include "host/remote/binding.hpp"
+#include "host/remote/bound_elements.hpp"
 #include "host/remote/device_listener.hpp"
-#include "host/remote/parameter_motion.hpp"
-#include "host/remote/remote_buttons.hpp"
-#include "host/remote/remote_target.hpp"
 
 namespace proleg::host {
 

@@ -1,12 +1,12 @@
-#include "host/robot/bus_findings.hpp"
+#include "host/robot/findings.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
 
-#include "shared/canopen/bus_load.hpp"
 #include "shared/canopen/power_state.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::host {

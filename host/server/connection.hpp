@@ -1,11 +1,13 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <chrono>
 #include <memory>
 
 #include "host/server/request_policy.hpp"
-#include "host/server/server_types.hpp"
+#include "host/server/robot_session.hpp"
 #include "host/server/session_link.hpp"
 
 namespace proleg::host {
@@ -37,5 +39,14 @@ class ConnectionServer {
 [[nodiscard]] inline ServerTime server_now() {
   return std::chrono::duration_cast<ServerTime>(std::chrono::steady_clock::now().time_since_epoch());
 }
+
+enum class ConnectionUse { any, only_stop };
+
+/// Opens a connection that handles requests one after the other, after the handshake of TLS if `tls` is not null. A
+/// request for a WebSocket makes it a ViewerConnection. only_stop: it handles one request, and refuses any request
+/// other than POST /stop with 503.
+[[nodiscard]] std::shared_ptr<Connection> open_http_connection(std::shared_ptr<ConnectionServer> server,
+                                                               boost::asio::ip::tcp::socket socket,
+                                                               boost::asio::ssl::context* tls, ConnectionUse use);
 
 }  // namespace proleg::host

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/server/server_types.hpp"
+#include "host/server/robot_session.hpp"
 
 namespace proleg::host {
 

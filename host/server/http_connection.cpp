@@ -1,7 +1,7 @@
 // Boost.Beast takes long to compile: this source, client_stream.cpp and viewer_connection.cpp are compiled by
 // themselves.
 
-#include "host/server/http_connection.hpp"
+#include "host/server/connection.hpp"
 
 #include <array>
 #include <boost/asio/write.hpp>

@@ -8,10 +8,9 @@
 #include <set>
 #include <string>
 
-#include "host/server/document_store.hpp"
-#include "host/server/notice_log.hpp"
-#include "host/server/server_types.hpp"
-#include "host/server/tick_history.hpp"
+#include "host/server/robot_session.hpp"
+#include "host/server/shared_messages.hpp"
+#include "host/server/telemetry.hpp"
 
 namespace proleg::host {
 

@@ -2,18 +2,17 @@
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 
-#include "host/server/access_token.hpp"
 #include "host/server/client_message.hpp"
 #include "host/server/control_lease.hpp"
+#include "host/server/request_policy.hpp"
 #include "host/server/robot_session.hpp"
-#include "host/server/signal_layout.hpp"
+#include "host/server/telemetry.hpp"
 #include "host/server/viewer.hpp"
 
 namespace proleg::host {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/server/http_connection.hpp"
+#include "host/server/connection.hpp"
 #include "host/server/session_link.hpp"
 
 namespace proleg::host {

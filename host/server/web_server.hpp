@@ -13,12 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "host/server/access_token.hpp"
 #include "host/server/connection.hpp"
 #include "host/server/page_files.hpp"
+#include "host/server/request_policy.hpp"
 #include "host/server/robot_session.hpp"
 #include "host/server/server_certificate.hpp"
-#include "host/server/server_types.hpp"
 #include "host/server/session_link.hpp"
 
 namespace proleg::host {

@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "host/transport/can_node.hpp"
-#include "host/transport/pseudo_terminal.hpp"
-#include "host/transport/slcan_session.hpp"
-#include "host/transport/tcp_listener.hpp"
+#include "host/transport/bus_clients.hpp"
+#include "host/transport/listeners.hpp"
 
 namespace proleg::host {
 

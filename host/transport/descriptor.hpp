@@ -1,5 +1,9 @@
 #pragma once
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstring>
 #include <utility>
 
 namespace proleg::host {
@@ -20,7 +24,11 @@ class Descriptor {
   [[nodiscard]] int number() const { return number_; }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
   [[nodiscard]] int release() { return std::exchange(number_, -1); }
-  void close();
+  void close() {
+    if (is_open()) {
+      ::close(release());
+    }
+  }
 
  private:
   int number_ = -1;
@@ -28,9 +36,16 @@ class Descriptor {
 
 /// Makes reads and writes return at once from now on, and keeps programs that are started from inheriting the
 /// descriptor. Returns false if there is no such descriptor; errno says why.
-[[nodiscard]] bool make_private(const Descriptor& descriptor);
+[[nodiscard]] inline bool make_private(const Descriptor& descriptor) {
+  const int flags = fcntl(descriptor.number(), F_GETFL);
+  return flags >= 0 && fcntl(descriptor.number(), F_SETFL, flags | O_NONBLOCK) == 0 &&
+         fcntl(descriptor.number(), F_SETFD, FD_CLOEXEC) == 0;
+}
 
 /// The text of an error of the system, such as "Permission denied" for EACCES.
-[[nodiscard]] const char* system_text(int error);
+[[nodiscard]] inline const char* system_text(int error) {
+  const char* const text = strerrordesc_np(error);
+  return text != nullptr ? text : "unknown error";
+}
 
 }  // namespace proleg::host

@@ -8,8 +8,7 @@
 #include <string_view>
 
 #include "host/transport/byte_stream.hpp"
-#include "host/transport/pseudo_terminal.hpp"
-#include "host/transport/tcp_listener.hpp"
+#include "host/transport/listeners.hpp"
 
 namespace proleg::host {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/transport/event_loop.hpp"
-#include "host/transport/link.hpp"
+#include "host/transport/open_transport.hpp"
 
 namespace proleg::host {
 namespace {

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "host/transport/link.hpp"
+#include "host/transport/open_transport.hpp"
 #include "host/transport/serial_device.hpp"
 #include "shared/computer/text/text.hpp"
 

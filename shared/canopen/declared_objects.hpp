@@ -9,7 +9,7 @@
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/object.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "shared/kernel/motion_limiter.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::canopen {
 

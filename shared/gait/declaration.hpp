@@ -76,9 +76,23 @@ struct Declaration {
 
 [[nodiscard]] constexpr bool is_user_algorithm(std::uint8_t id) { return id >= first_user_id && id <= last_user_id; }
 
+/// Position of the item with this name, or -1.
+template <typename Named>
+[[nodiscard]] constexpr int find_by_name(std::span<const Named> items, std::string_view name) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name) {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
 /// Position of the parameter or internal value with this name, or -1.
-[[nodiscard]] int find_parameter(const Declaration& declaration, std::string_view name);
-[[nodiscard]] int find_internal_value(const Declaration& declaration, std::string_view name);
+[[nodiscard]] constexpr int find_parameter(const Declaration& declaration, std::string_view name) {
+  return find_by_name(declaration.parameters, name);
+}
+[[nodiscard]] constexpr int find_internal_value(const Declaration& declaration, std::string_view name) {
+  return find_by_name(declaration.internal_values, name);
+}
 
 /// The ends of the range of a phase, which is all of int32_t.
 inline constexpr std::int32_t phase_minimum = std::numeric_limits<std::int32_t>::min();

@@ -22,7 +22,9 @@ class SensingModule : public ActuationModule {
  public:
   [[nodiscard]] bool senses_contacts() const final { return true; }
   void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
-               std::int32_t* next) const final;
+               std::int32_t* next) const final {
+    advance_sensing(surroundings.contacts, surroundings, tuning, state, next);
+  }
 
  protected:
   ~SensingModule() = default;

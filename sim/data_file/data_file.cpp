@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/output/output_check.hpp"
+#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {

@@ -10,7 +10,6 @@
 
 #include "shared/gait/actuation_module.hpp"
 #include "shared/gait/registry.hpp"
-#include "sim/data_file/data_frame_text.hpp"
 #include "sim/data_file/robot_frames.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/tsv.hpp"

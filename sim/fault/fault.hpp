@@ -1,7 +1,9 @@
 #pragma once
 
-// The faults of a run with hardware in the loop, as data. docs/faults.md comes from the declarations.
+// The faults of a run with hardware in the loop: as data, as the text of a file, and drawn at random. docs/faults.md
+// comes from the declarations.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,6 +13,7 @@
 
 #include "shared/can/can_frame.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 
@@ -94,5 +97,38 @@ struct FaultDeclaration {
 
 /// Shortest text of a time: "1.2s", "400ms", "50us".
 [[nodiscard]] std::string time_word(std::uint64_t us);
+
+/// Reads a fault schedule (docs/faults.md): a fault in each line, "#" starts a comment; JOINT is a name of the robot or
+/// "*" for one fault at each joint. Throws InputError that names file and line: for an unknown kind, joint or form, for
+/// a time at or after the end of the run, and for two faults of one kind at one place at the same time.
+[[nodiscard]] FaultSchedule read_faults(const std::string& path, const RobotModel& robot, std::uint64_t run_us);
+
+/// Reads a fault schedule from text. path: name for messages.
+[[nodiscard]] FaultSchedule parse_faults(const std::string& text, const std::string& path, const RobotModel& robot,
+                                         std::uint64_t run_us);
+
+/// Parses a frame as cansend of can-utils does: "080#05", three hexadecimal digits up to 7FF, up to 8 bytes in
+/// hexadecimal.
+[[nodiscard]] std::optional<CanFrame> parse_frame(std::string_view word);
+
+/// Text of a file with the faults, which read_faults() reads.
+[[nodiscard]] std::string faults_text(const FaultSchedule& schedule, const RobotModel& robot);
+
+/// Settings for random schedules.
+struct RandomFaults {
+  std::uint64_t seed = 0;
+  std::uint64_t run_us = 5'000'000;  ///< at least min_random_run_us
+  bool has_chips = false;            ///< whether to draw faults that only a virtual chip can play
+  bool only_at_ticks = false;        ///< whether act_at_ticks() must be true
+};
+
+/// Time between the end of all random faults and the end of a run, so that each module comes to rest in a safe state.
+inline constexpr std::uint64_t rest_after_faults_us = 2'000'000;
+/// Shortest run with random faults.
+inline constexpr std::uint64_t min_random_run_us = rest_after_faults_us + 500'000;
+
+/// Draws one to four faults of any kind, which depend only on the seed and the robot. Times, durations and places are
+/// random; each kind has mild and severe cases.
+[[nodiscard]] FaultSchedule random_faults(const RandomFaults& settings, const Scenario& scenario);
 
 }  // namespace proleg::sim

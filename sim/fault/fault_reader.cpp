@@ -1,4 +1,4 @@
-#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/fault.hpp"
 
 #include <algorithm>
 #include <cmath>

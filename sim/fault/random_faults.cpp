@@ -1,4 +1,4 @@
-#include "sim/fault/random_faults.hpp"
+#include "sim/fault/fault.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "shared/canopen/messages.hpp"
 #include "shared/fixed/random.hpp"
-#include "sim/scenario/random_streams.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 namespace {

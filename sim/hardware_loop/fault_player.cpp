@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "shared/fixed/random.hpp"
-#include "shared/gait/contact_debouncer.hpp"
-#include "sim/scenario/random_streams.hpp"
+#include "shared/gait/joint_readings.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "shared/canopen/bus_load.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/fixed/random.hpp"
 #include "sim/hardware_loop/fault_player.hpp"
@@ -13,7 +13,6 @@
 #include "sim/hardware_loop/hardware_report.hpp"
 #include "sim/hardware_loop/host_node.hpp"
 #include "sim/hardware_loop/module_rack.hpp"
-#include "sim/hardware_loop/module_values.hpp"
 #include "sim/hardware_loop/plant_ticks.hpp"
 #include "sim/hardware_loop/reference_gait.hpp"
 #include "sim/hardware_loop/state_frame_monitor.hpp"

@@ -16,7 +16,7 @@
 #include "sim/hardware_loop/crystal.hpp"
 #include "sim/hardware_loop/joint_module.hpp"
 #include "sim/scenario/losses.hpp"
-#include "sim/serial/serial_host.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
 

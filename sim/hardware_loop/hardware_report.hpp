@@ -9,10 +9,10 @@
 #include "shared/computer/durations/durations.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "shared/kernel/servo_schedule.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/difference.hpp"
-#include "sim/loop/world_hash.hpp"
+#include "sim/loop/plant.hpp"
 
 namespace proleg::sim {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "shared/computer/master/master_text.hpp"
+#include "shared/computer/master/master_report.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::sim {

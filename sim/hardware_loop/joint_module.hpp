@@ -9,7 +9,7 @@
 #include "firmware/module/tick_record.hpp"
 #include "shared/canopen/power_state.hpp"
 #include "sim/bus/controller.hpp"
-#include "sim/serial/serial_receiver.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
 

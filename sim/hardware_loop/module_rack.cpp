@@ -11,8 +11,8 @@
 #include "shared/fixed/random.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/hardware_loop/native_module.hpp"
-#include "sim/loop/touch_inputs.hpp"
-#include "sim/scenario/random_streams.hpp"
+#include "sim/loop/module_readings.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "firmware/module/ports.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/serial/serial_receiver.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "shared/kernel/servo_schedule.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/bus/controller.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/pulse_player.hpp"

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+// What the module of a joint reads of its sensors: the touch sensors, and the inclination and acceleration of its link.
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +12,55 @@
 #include "sim/sensor/attached_sensors.hpp"
 
 namespace proleg::sim {
+
+// The module of a joint has the touch sensors of the link behind it, and the head's module those of link 0 as well.
+// link_contacts: per link, bit 0 rear, bit 1 front. Contacts of a joint: bits 0 to 3 as in the state frame's flags.
+
+/// The contacts of a joint.
+[[nodiscard]] inline std::uint8_t joint_contacts(std::span<const std::uint8_t> link_contacts, std::size_t joint) {
+  const unsigned behind = link_contacts[joint + 1];
+  const unsigned head = joint == 0 ? unsigned{link_contacts[0]} << 2U : 0U;
+  return static_cast<std::uint8_t>(behind | head);
+}
+
+/// The reverse: writes the contacts of a joint to its links. Other bits of `contacts` are ignored.
+inline void write_link_contacts(std::span<std::uint8_t> link_contacts, std::size_t joint, unsigned contacts) {
+  link_contacts[joint + 1] = contacts & StateFrame::rear_link_contact_bits;
+  if (joint == 0) {
+    link_contacts[0] = static_cast<std::uint8_t>((contacts & StateFrame::contact_bits) >> 2U);
+  }
+}
+
+/// The touch sensors of all joints, debounced at each SYNC as the modules do it.
+class TouchInputs {
+ public:
+  explicit TouchInputs(std::size_t joints) : debouncers_(joints), contacts_(joints) {}
+
+  /// At SYNC: the debounced contacts of a joint.
+  std::uint8_t sample(std::span<const std::uint8_t> link_contacts, std::size_t joint) {
+    contacts_[joint] = debouncers_[joint].sample(joint_contacts(link_contacts, joint));
+    return contacts_[joint];
+  }
+  /// The module of the joint restarts.
+  void reset(std::size_t joint) {
+    debouncers_[joint].reset();
+    contacts_[joint] = 0;
+  }
+
+  /// Writes the latched contacts by link, as recordings have them.
+  void write_links(std::span<std::uint8_t> link_contacts) const {
+    for (std::size_t joint = 0; joint < contacts_.size(); ++joint) {
+      write_link_contacts(link_contacts, joint, contacts_[joint]);
+    }
+  }
+
+  /// The last sample, by joint.
+  [[nodiscard]] std::span<const std::uint8_t> contacts() const { return contacts_; }
+
+ private:
+  std::vector<ContactDebouncer> debouncers_;
+  std::vector<std::uint8_t> contacts_;
+};
 
 /// Inclination and acceleration of the link behind each joint, for algorithms that read them. No cost without such an
 /// algorithm.

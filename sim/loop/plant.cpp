@@ -7,13 +7,13 @@
 #include <sstream>
 #include <utility>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/mujoco/mujoco_world.hpp"
 #include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/reduced_world.hpp"
 #include "sim/robot/servo.hpp"
-#include "sim/scenario/random_streams.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/computer/hash/sha256.hpp"
 #include "shared/fixed/random.hpp"
 #include "shared/gait/joint_readings.hpp"
 #include "sim/loop/module_readings.hpp"
@@ -184,6 +186,29 @@ class Plant {
   std::vector<double> angles_;               ///< rad
   std::vector<double> torques_;              ///< Nm
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
+};
+
+/// Hash of the states of a world after ticks. Two runs on any two machines had the same motion if their hashes are
+/// equal.
+class WorldHash {
+ public:
+  void append(const World& world) {
+    for (const double number : world.state()) {
+      has_states_ = true;
+      const auto bits = std::bit_cast<std::uint64_t>(number);
+      hash_.append(static_cast<std::int32_t>(bits));
+      hash_.append(static_cast<std::int32_t>(bits >> 32U));
+    }
+  }
+
+  /// As ValueHash::hex(); nothing if the engine does not give the same states on every machine.
+  [[nodiscard]] std::optional<std::string> hex() const {
+    return has_states_ ? std::optional(hash_.hex()) : std::nullopt;
+  }
+
+ private:
+  ValueHash hash_;
+  bool has_states_ = false;
 };
 
 }  // namespace proleg::sim

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "shared/kernel/servo_schedule.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/robot/servo.hpp"
 

@@ -9,11 +9,9 @@
 
 #include "shared/computer/hash/sha256.hpp"
 #include "sim/loop/gait.hpp"
-#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/module_readings.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/pulse_player.hpp"
-#include "sim/loop/touch_inputs.hpp"
-#include "sim/loop/world_hash.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/record/recorder.hpp"
@@ -101,5 +99,10 @@ class Simulation {
   ValueHash servo_hash_;
   WorldHash world_hash_;
 };
+
+/// The rigid motion of a move: from where the links are to where it puts them. A robot that would be inside or
+/// below the environment is put on top of it. Throws InputError if that takes more than a metre, if nothing is below
+/// that place, or if it is more than 10 m above the ground.
+[[nodiscard]] Pose placement(const RobotMove& move, std::span<const Pose> links, const Scenario& scenario);
 
 }  // namespace proleg::sim

@@ -12,8 +12,8 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/loop/gait.hpp"
-#include "sim/loop/touch_inputs.hpp"
-#include "sim/record/internal_values.hpp"
+#include "sim/loop/module_readings.hpp"
+#include "sim/record/recorded_run.hpp"
 
 namespace proleg::sim {
 namespace {

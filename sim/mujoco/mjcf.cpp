@@ -1,4 +1,4 @@
-#include "sim/mujoco/mjcf.hpp"
+#include "sim/mujoco/mujoco_world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,6 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/mujoco/mjcf.hpp"
 #include "sim/mujoco/mujoco_model.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/robot/bounds.hpp"

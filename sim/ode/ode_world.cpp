@@ -363,7 +363,7 @@ class OdeWorld final : public World {
   std::vector<dBodyID> objects_;                 ///< bodies of the objects that move
   std::vector<dBodyID> all_bodies_;              ///< bodies of links and objects
   std::vector<Eigen::Vector3d> object_centers_;  ///< centres of mass, in the frames of the objects
-  std::vector<HingeMotor> motors_;  ///< by joint
+  std::vector<HingeMotor> motors_;               ///< by joint
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
   std::optional<double> lowest_ground_;

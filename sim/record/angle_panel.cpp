@@ -1,4 +1,4 @@
-#include "sim/record/angle_panel.hpp"
+#include "sim/record/figure_panels.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 
 namespace proleg::sim {

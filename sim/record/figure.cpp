@@ -6,16 +6,12 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/record/angle_panel.hpp"
 #include "sim/record/figure_contents.hpp"
-#include "sim/record/figure_page.hpp"
+#include "sim/record/figure_panels.hpp"
 #include "sim/record/marks.hpp"
-#include "sim/record/path_panel.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/recorded_scenario.hpp"
-#include "sim/record/robot_views.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/record/time_panels.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {

@@ -7,7 +7,7 @@
 
 namespace proleg::sim {
 
-/// Draws a recording as an SVG picture: the robot in a stride (robot_views.hpp), set-points and measured angles of the
+/// Draws a recording as an SVG picture: the robot in a stride (RobotViews), set-points and measured angles of the
 /// joints and the contacts of the links in the window, with changes, restarts and losses, and the path of the chain's
 /// centre (mean of the positions of its links) over the whole run, from above.
 /// Throws InputError if fewer than two ticks lie in the window.

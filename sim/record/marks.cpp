@@ -8,7 +8,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/record/figure_page.hpp"
+#include "sim/record/plot_frame.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -1,10 +1,10 @@
-#include "sim/record/path_panel.hpp"
+#include "sim/record/figure_panels.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "sim/record/figure_page.hpp"
+#include "sim/record/plot_frame.hpp"
 
 namespace proleg::sim {
 namespace {

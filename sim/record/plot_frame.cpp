@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/record/figure_page.hpp"
-
 namespace proleg::sim {
 namespace {
 

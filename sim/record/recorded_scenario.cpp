@@ -6,8 +6,8 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "shared/kernel/fingerprint.hpp"
-#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/sources.hpp"
 
 namespace proleg::sim {
 

@@ -7,7 +7,7 @@
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/record/internal_values.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/record/run_tables.hpp"
 #include "sim/record/schema.hpp"

@@ -8,9 +8,8 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "sim/record/internal_values.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/record/recording_rows.hpp"
-#include "sim/record/recording_sensors.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {

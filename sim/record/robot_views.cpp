@@ -1,11 +1,11 @@
-#include "sim/record/robot_views.hpp"
+#include "sim/record/figure_panels.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "sim/measure/stride.hpp"
-#include "sim/record/figure_page.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {

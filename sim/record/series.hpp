@@ -45,4 +45,17 @@ inline constexpr std::size_t max_series = 21;
 /// those that are most like it, for more than max_series columns, and if fewer than two rows are in the window.
 [[nodiscard]] SeriesSet collect_series(const WriteTable& table, const SeriesRequest& request);
 
+/// Name of a column without its unit and the part behind the dot, and the unit: "angle_deg.J1" is {"angle", "deg"}. The
+/// types of the thesis's data files have no unit in their names; theirs are those of docs/recordings.md.
+struct Quantity {
+  std::string name;
+  std::string unit;  ///< empty: a number without unit
+};
+[[nodiscard]] Quantity quantity_of(std::string_view column);
+
+/// Draws series as an SVG picture: a panel for each unit, all over the same axis, each with a legend. If the one unit
+/// is that of the axis too (a path, y over x), both axes have the same scale. Infinite numbers and those that are none
+/// are gaps.
+[[nodiscard]] std::string draw_series(const SeriesSet& set, std::string_view title, std::string_view subtitle);
+
 }  // namespace proleg::sim

@@ -1,4 +1,4 @@
-#include "sim/record/series_figure.hpp"
+#include "sim/record/series.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 
 namespace proleg::sim {

@@ -1,4 +1,4 @@
-#include "sim/record/time_panels.hpp"
+#include "sim/record/figure_panels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/robot/attached_sensor.hpp"
 

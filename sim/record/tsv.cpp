@@ -7,7 +7,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -1,9 +1,8 @@
 #pragma once
 
-// A robot as data: links, hinge joints and servos, in metres, kilograms, radians and newtons. It is
-// independent of the physics engine and of file formats.
+// A robot as data: links, hinge joints and servos, in metres, kilograms, radians and newtons, independent of the
+// physics engine and of file formats; and what drives the real one, modules or a plug-in.
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/kernel/motion_limiter.hpp"
+#include <Eigen/Geometry>
+
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/robot/attached_sensor.hpp"
 #include "sim/robot/pose.hpp"
 #include "sim/robot/triangle_mesh.hpp"
@@ -164,5 +165,34 @@ inline LinkEnds link_ends(const RobotModel& robot, std::size_t link) {
   }
   return a.value_or(b.value_or(unspecified));
 }
+
+/// The <robot_control> of a robot's file: the plug-in that drives a robot without Proleg's modules. The simulation
+/// ignores it; only the plug-in knows which parameters there are.
+struct RobotControlEntry {
+  struct Parameter {
+    std::string name;
+    std::string value;
+    std::optional<std::uint32_t> joint;  ///< kernel order; nothing: for all joints
+    int line = 0;
+
+    friend bool operator==(const Parameter&, const Parameter&) = default;
+  };
+
+  std::string plugin;  ///< a name, or a path relative to the folder of the file
+  std::string file;    ///< as messages show it
+  std::string folder;  ///< of the file
+  int line = 0;        ///< of the element
+  std::vector<Parameter> parameters;
+};
+
+inline constexpr std::uint8_t max_module_node = 126;  ///< the highest CANopen node id that a module can have
+
+/// The module that drives a joint.
+struct ModulePlace {
+  std::uint8_t node = 1;                ///< CANopen node id, 1 to max_module_node; unique in the robot
+  std::optional<std::uint32_t> serial;  ///< the serial number that the module must have; nothing: any
+
+  friend bool operator==(const ModulePlace&, const ModulePlace&) = default;
+};
 
 }  // namespace proleg::sim

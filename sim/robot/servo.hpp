@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {

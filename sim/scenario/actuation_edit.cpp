@@ -7,10 +7,10 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/actuation_reader.hpp"
-#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/tag_scanner.hpp"
 
 namespace proleg::sim {

@@ -1,10 +1,12 @@
 #pragma once
 
+// The environment of a robot, and where the robot starts in it.
+
 #include <string>
 #include <vector>
 
 #include "sim/environment/environment_model.hpp"
-#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/sources.hpp"
 
 namespace proleg::sim {
 
@@ -15,5 +17,12 @@ namespace proleg::sim {
 /// then by C about its z axis. Without the comment the robot starts at the origin. Adds to remarks and warnings.
 [[nodiscard]] EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources,
                                                 std::vector<std::string>& remarks, std::vector<std::string>& warnings);
+
+/// Raises the start pose until no link of the robot, with all joint angles 0, is inside an object; what is above the
+/// robot or beside it does not count. An object whose top is more than half a metre above the robot's lowest point is a
+/// wall, unless it is under the start position (its bounds, seen from above, contain that): the robot is not lifted
+/// onto it. A robot below everything is lifted onto the lowest of it. Never lowers the robot. A remark says how far it
+/// was raised, and onto what.
+void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks);
 
 }  // namespace proleg::sim

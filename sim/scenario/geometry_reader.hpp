@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads what a <Body> consists of: its <Geom>s and its <Mass>.
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +10,7 @@
 
 #include "sim/robot/bounds.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {
@@ -31,16 +33,13 @@ struct ReadGeometry {
 [[nodiscard]] ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& sources,
                                          std::vector<std::string>& remarks);
 
-/// What <Mass> may use of the solids of a body. The overlap of two solids counts twice.
-struct SolidProperties {
-  double volume = 0.0;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< of volume, in the frame of the body
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre, at density 1
-};
-
-[[nodiscard]] SolidProperties solid_properties(const std::vector<Geometry>& geometries);
-
-/// Inertia about the centre of a box with these half sides and mass 1.
-[[nodiscard]] Eigen::Matrix3d box_inertia(const Eigen::Vector3d& half_sides);
+/// Reads a <Mass>. Its types:
+///   custom     <total>; <com>, by default the centre of the body's geometries; <inertia>, nine numbers row by row,
+///              about the centre of mass, by default of the geometries at uniform density scaled to the total
+///   box        <total> or <density>, <extents> (half sides), <com> (by default the body's origin)
+///   mimicgeom  <total> or <density>; all else from the geometries
+/// Throws InputError for a mass outside 1e-6 to 1e4 kg and for an inertia that is not
+/// symmetric and clearly positive definite.
+[[nodiscard]] MassProperties read_mass(const XmlElement& element, const std::vector<Geometry>& geometries);
 
 }  // namespace proleg::sim

@@ -10,7 +10,8 @@
 
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/sources.hpp"
+#include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {
 

@@ -6,12 +6,10 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/mesh/convex_hull.hpp"
-#include "sim/mesh/height_mesh.hpp"
 #include "sim/mesh/mesh_checks.hpp"
 #include "sim/mesh/mesh_file.hpp"
-#include "sim/mesh/mesh_solid.hpp"
-#include "sim/scenario/file_source.hpp"
+#include "sim/mesh/mesh_geometry.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/tag_scanner.hpp"
 #include "sim/scenario/values.hpp"
 

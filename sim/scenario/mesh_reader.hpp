@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/robot/robot_model.hpp"
-#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/sources.hpp"
 
 namespace proleg::sim {
 

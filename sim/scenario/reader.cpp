@@ -13,8 +13,7 @@
 #include "sim/scenario/environment_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
 #include "sim/scenario/robot_reader.hpp"
-#include "sim/scenario/source_set.hpp"
-#include "sim/scenario/start_lift.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

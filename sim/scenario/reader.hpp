@@ -5,8 +5,8 @@
 // file, to the folder of the top-level file:
 //
 //   <simulation>
-//     <robot>caterpillar.robot.xml</robot>                    robot_reader.hpp, kinbody_reader.hpp, joint_reader.hpp,
-//                                                             geometry_reader.hpp, mass_reader.hpp
+//     <robot>caterpillar.robot.xml</robot>                    robot_reader.hpp, kinbody_reader.hpp,
+//                                                             geometry_reader.hpp
 //     <actuation>uniform.actuation.xml</actuation>            actuation_reader.hpp
 //     <environment>flat.environment.xml</environment>         environment_reader.hpp
 //     <simulationProperties>...</simulationProperties>        optional
@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/scenario.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {

@@ -10,7 +10,6 @@
 #include "sim/scenario/kinbody_reader.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/plausibility.hpp"
-#include "sim/scenario/sensor_reader.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

@@ -1,13 +1,14 @@
 #pragma once
 
+// Reads the file of a robot, and the parts of it that describe what drives the robot and what it senses.
+
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/robot/robot_hardware.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {
@@ -25,6 +26,17 @@ namespace proleg::sim {
 /// then kernel joint j has the module with node id j + 1. The result is in kernel order.
 [[nodiscard]] std::vector<ModulePlace> read_modules(const XmlElement& robot, const RobotModel& model);
 
+/// Reads the sensors of a robot, in the order of the file:
+///   <AttachedSensor name="eye">
+///     <link>Head</link>  (of a ServoCurrent: <joint>)
+///     <translation>, <rotationaxis>, <quat>: the sensor's frame in that of the link
+///     <sensor type="BaseLaser2D">...</sensor>  (or file="laser.sensor.xml", a file with this element)
+///   </AttachedSensor>
+/// A sensor whose <power> is 0 is left out. Throws InputError for links and joints that the robot does not have, values
+/// out of range, and a second sensor of the same name or at the same input.
+[[nodiscard]] std::vector<AttachedSensor> read_sensors(const XmlElement& robot, const RobotModel& model,
+                                                       SourceSet& sources, std::vector<std::string>& remarks);
+
 struct RobotDescription {
   RobotModel model;
   std::vector<AngleLimits> kernel_limits;          ///< kernel order
@@ -35,9 +47,8 @@ struct RobotDescription {
 
 /// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our
 ///   <servo><gain>50</gain><period unit="ms">1</period><latency unit="ms">0</latency></servo>
-/// (gain in 1/s; what is missing is as in ServoModel), the modules, the
-/// plug-in and the sensors (sensor_reader.hpp). Adds the joint map to the remarks. step_s:
-/// of the physics; bounds the gain.
+/// (gain in 1/s; what is missing is as in ServoModel), the modules, the plug-in and the sensors. Adds the joint map to
+/// the remarks. step_s: of the physics; bounds the gain.
 [[nodiscard]] RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSet& sources,
                                           std::vector<std::string>& remarks);
 

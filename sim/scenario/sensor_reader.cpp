@@ -1,4 +1,4 @@
-#include "sim/scenario/sensor_reader.hpp"
+#include "sim/scenario/robot_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 #include "tests/identity/identity_case.hpp"
 
 #include "shared/gait/registry.hpp"
-#include "shared/kernel/motion_limiter.hpp"
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "tests/identity/sensing_probe.hpp"
 
 namespace proleg::identity {

@@ -6,7 +6,6 @@
 
 #include <span>
 
-#include "shared/computer/master/lss_exchange.hpp"
 #include "shared/computer/master/lss_master.hpp"
 
 namespace proleg::canopen {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shared/canopen/bus_load.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 
 namespace proleg::canopen {
 

@@ -1,10 +1,14 @@
 #pragma once
 
-// The reports of the master: why a robot does not run (Problem), and events on the way (Event).
+// The reports of the master: why a robot does not run (Problem), and events on the way (Event); and their text of one
+// line for a person, which the simulator's host node and the host programs print.
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "shared/can/can_port.hpp"
@@ -106,3 +110,17 @@ class EventLog {
 };
 
 }  // namespace proleg::canopen
+
+namespace proleg {
+
+/// The name of a node in a message: "node 3 (J3)".
+using NodeName = std::function<std::string(std::uint8_t node)>;
+
+/// Text of the problem that ended the start, or of the first problem in flight: the module, what was found and what was
+/// expected. problem: with a code other than `none`.
+[[nodiscard]] std::string problem_text(const canopen::Problem& problem, const NodeName& name);
+
+/// Text of an event.
+[[nodiscard]] std::string event_text(const canopen::Event& event, const NodeName& name);
+
+}  // namespace proleg

@@ -11,7 +11,7 @@
 #include "shared/canopen/robot_configuration.hpp"
 #include "shared/computer/master/sdo_client_pool.hpp"
 #include "shared/kernel/kernel_configuration.hpp"
-#include "shared/kernel/motion_limiter.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::canopen {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "sim/bus/controller.hpp"
-#include "sim/mcu/cpu/local_time.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
 
+#include "sim/mcu/peripherals/chip_identity.hpp"
 #include "sim/mcu/peripherals/peripheral.hpp"
 
 namespace proleg::sim {
@@ -12,11 +14,28 @@ namespace proleg::sim {
 class PeripheralMap {
  public:
   /// Adds a peripheral at its base(). It must outlive the map.
-  void add(Peripheral& peripheral);
+  void add(Peripheral& peripheral) {
+    const std::uint32_t end = peripheral.base() + peripheral.size();
+    for (std::uint32_t address = peripheral.base(); address < end; address += block_bytes) {
+      blocks_.at((address - start) / block_bytes) = &peripheral;
+    }
+  }
 
   /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess if the address has no
   /// peripheral, and for an access that is not a whole word. size: bytes.
-  [[nodiscard]] std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const;
+  [[nodiscard]] std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const {
+    const std::uint32_t block = (address - start) / block_bytes;
+    Peripheral* const peripheral = block < block_count ? blocks_[block] : nullptr;
+    if (peripheral == nullptr || address - peripheral->base() >= peripheral->size()) {
+      throw UnmodelledAccess(describe_address(address) + " is not modelled");
+    }
+    const std::uint32_t offset = address - peripheral->base();
+    if (size != 4 || offset % 4 != 0) {
+      throw UnmodelledAccess(peripheral->register_name(offset / 4 * 4) + ": an access of " + std::to_string(size * 8) +
+                             " bits is not modelled");
+    }
+    return {peripheral, offset};
+  }
 
  private:
   static constexpr std::uint32_t start = 0x4000'0000;

@@ -18,7 +18,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/mcu/cpu/cpu.hpp"
 #include "sim/mcu/peripherals/peripheral.hpp"
-#include "sim/serial/serial_receiver.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
 

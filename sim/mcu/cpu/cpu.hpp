@@ -24,7 +24,6 @@
 #include <vector>
 
 #include "sim/mcu/cpu/cpu_surroundings.hpp"
-#include "sim/mcu/cpu/local_time.hpp"
 
 namespace proleg::sim {
 

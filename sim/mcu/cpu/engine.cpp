@@ -5,7 +5,6 @@
 #include <string>
 
 #include "sim/mcu/cpu/cpu_surroundings.hpp"
-#include "sim/mcu/cpu/memory_instruction.hpp"
 #include "sim/mcu/cpu/thumb.hpp"
 
 namespace proleg::sim {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sim/mcu/cpu/local_time.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_tick.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sim/mcu/cpu/local_time.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 

@@ -8,7 +8,6 @@
 
 #include "sim/bus/bus.hpp"
 #include "sim/mcu/peripherals/bxcan_receiver.hpp"
-#include "sim/mcu/peripherals/bxcan_requests.hpp"
 #include "sim/mcu/peripherals/bxcan_transmitter.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
 

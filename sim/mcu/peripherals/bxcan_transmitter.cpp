@@ -1,5 +1,7 @@
 #include "sim/mcu/peripherals/bxcan_transmitter.hpp"
 
+#include <algorithm>
+
 namespace proleg::sim {
 namespace {
 
@@ -15,6 +17,23 @@ constexpr unsigned tme_shift = 26;
 constexpr unsigned low_shift = 29;
 
 }  // namespace
+
+void BxCanRequests::add(BusTime time, Kind kind, std::uint32_t value) {
+  pending_.push_back({empty() ? time : std::max(time, pending_.back().time), kind, value});
+}
+
+void BxCanRequests::postpone(const Request& request, BusTime time) {
+  pending_.push_front({time, request.kind, request.value});
+}
+
+std::optional<BxCanRequests::Request> BxCanRequests::take_due(BusTime now) {
+  if (empty() || pending_.front().time > now) {
+    return std::nullopt;
+  }
+  const Request request = pending_.front();
+  pending_.pop_front();
+  return request;
+}
 
 std::uint32_t BxCanMailboxes::read(std::size_t number, std::uint32_t word) const {
   const Mailbox& mailbox = mailboxes_.at(number);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/mcu/cpu/local_time.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/mcu/cpu/local_time.hpp"
+#include "sim/mcu/cpu/cpu_surroundings.hpp"
 
 namespace proleg::sim {
 

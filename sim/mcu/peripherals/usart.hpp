@@ -9,7 +9,7 @@
 
 #include "sim/mcu/peripherals/dma.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
-#include "sim/serial/serial_receiver.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "sim/optimize/evaluation/fitness_source.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/evaluation/task_pipeline.hpp"
 
 namespace proleg::optimize {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/loop/simulation_batch.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/evaluation/task_pipeline.hpp"
 
 namespace proleg::optimize {

@@ -7,7 +7,6 @@
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
-#include "sim/optimize/evaluation/store_rows.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
 
 namespace proleg::optimize {

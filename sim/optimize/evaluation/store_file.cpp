@@ -14,7 +14,7 @@
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
-#include "sim/optimize/experiment/experiment_parts.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -1,11 +1,15 @@
 #pragma once
 
-// The tables of a store. Comments inside the SQL are kept in the file: `.schema` in the sqlite3 shell shows them.
+// The tables of a store and their rows. Comments inside the SQL are kept in the file: `.schema` in the sqlite3 shell
+// shows them.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "shared/computer/sqlite/sqlite.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg::optimize {
@@ -34,5 +38,23 @@ struct StoreColumns {
 /// Columns of the tables trial and evaluation, in the order in which the store gives them their values.
 [[nodiscard]] std::vector<std::string> trial_columns(const StoreColumns& columns);
 [[nodiscard]] std::vector<std::string> evaluation_columns(const StoreColumns& columns);
+
+// Rows of a store's tables: the order of their columns is that of trial_columns() and evaluation_columns(). All throw
+// SqliteError.
+
+/// statement: replace_row("trial", ...). seed: of the trial.
+void save_trial_row(Statement& statement, const Task& task, std::uint64_t seed, const TrialResult& result,
+                    std::uint32_t worker);
+
+/// The result in a row of the table trial; nothing if the row is of another candidate or limit than the task's.
+[[nodiscard]] std::optional<TrialResult> read_trial(Statement& statement, const Task& task);
+
+/// statement: replace_row("evaluation", ...).
+void save_evaluation_row(Statement& statement, const Experiment& experiment, const StoreColumns& columns,
+                         const Evaluation& evaluation);
+
+/// The evaluation in a row of the table evaluation.
+[[nodiscard]] Evaluation read_evaluation(Statement& statement, const Experiment& experiment,
+                                         const StoreColumns& columns);
 
 }  // namespace proleg::optimize

@@ -1,6 +1,7 @@
 #pragma once
 
-// An optimisation experiment, as its *.optimise.xml file describes it; the settings of its method section come first.
+// An optimisation experiment, as its *.optimise.xml file describes it: its objectives, the settings of its method
+// section, and all else; and its parts as text, of which its fingerprint is made.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,13 +11,42 @@
 #include <variant>
 #include <vector>
 
-#include "sim/optimize/experiment/fitness.hpp"
+#include "sim/measure/measure.hpp"
 #include "sim/optimize/experiment/search_space.hpp"
 #include "sim/optimize/experiment/trials.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::optimize {
+
+/// A measure and its factor in a weighted sum.
+struct Term {
+  sim::Measure measure = sim::Measure::distance;
+  double weight = 1.0;
+};
+
+enum class Goal : std::uint8_t { maximise, minimise };
+
+/// Rates a candidate: a weighted sum of measures. An optimiser with several objectives searches for the candidates that
+/// no other dominates.
+struct Objective {
+  std::string name;         ///< unique; for columns and axes; by default the name of a single measure
+  std::vector<Term> terms;  ///< at least one
+  Goal goal = Goal::maximise;
+  /// Score of a candidate whose run failed or lacks a measure.
+  double failed = 0.0;
+
+  /// The score of a run; `failed` if it is not a finite number.
+  [[nodiscard]] double score(const sim::MeasureValues& measures) const;
+  /// Whether a score can be below 0, because of a failed run, a weight below 0, or a measure with both signs.
+  [[nodiscard]] bool may_be_negative() const;
+  /// Whether score a is better than b.
+  [[nodiscard]] bool better(double a, double b) const { return goal == Goal::maximise ? a > b : a < b; }
+  /// Unit of the score: the unit of its measure; empty for a sum.
+  [[nodiscard]] std::string_view unit() const;
+  /// The number that pagmo minimises: the score or its negative. The same function turns a cost into the score.
+  [[nodiscard]] double cost(double score) const { return goal == Goal::maximise ? -score : score; }
+};
 
 /// Where a search starts: at random candidates only, or with the scenario's own values among the first ones.
 enum class Start : std::uint8_t { random, scenario };
@@ -127,5 +157,18 @@ struct Experiment {
 
 /// Short name of a method: great-deluge, genetic, or pagmo's name.
 [[nodiscard]] std::string method_name(const MethodSettings& method);
+
+/// A part of an experiment as exact text: two experiments agree in the part if the texts are equal.
+struct ExperimentPart {
+  std::string name;  ///< for messages: "method", "search space"
+  std::string text;
+};
+
+/// All parts that determine the results, except the scenario. The fingerprint is made of them, and a store keeps them
+/// to name differences.
+[[nodiscard]] std::vector<ExperimentPart> parts_of(const Experiment& experiment);
+
+/// Text of an objective: weight * measure + ...
+[[nodiscard]] std::string terms_text(const Objective& objective);
 
 }  // namespace proleg::optimize

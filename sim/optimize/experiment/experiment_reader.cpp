@@ -9,10 +9,8 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
-#include "sim/optimize/experiment/fitness.hpp"
-#include "sim/optimize/experiment/genome_reader.hpp"
-#include "sim/optimize/experiment/method_reader.hpp"
-#include "sim/scenario/source_set.hpp"
+#include "sim/optimize/experiment/section_readers.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/values.hpp"
 #include "sim/scenario/xml_document.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/optimize/experiment/genome_reader.hpp"
+#include "sim/optimize/experiment/section_readers.hpp"
 
 #include <algorithm>
 #include <map>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/optimize/experiment/value_reader.hpp"
+#include "sim/optimize/experiment/value_set.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/values.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/optimize/experiment/method_reader.hpp"
+#include "sim/optimize/experiment/section_readers.hpp"
 
 #include <algorithm>
 #include <initializer_list>

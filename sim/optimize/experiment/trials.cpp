@@ -5,8 +5,7 @@
 
 #include "shared/fixed/random.hpp"
 #include "sim/optimize/experiment/search_space.hpp"
-#include "sim/optimize/experiment/seeds.hpp"
-#include "sim/scenario/random_streams.hpp"
+#include "sim/scenario/scenario.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {

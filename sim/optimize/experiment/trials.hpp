@@ -1,5 +1,7 @@
 #pragma once
 
+// The trials of a candidate: how they differ from the scenario, and the seeds of an experiment.
+
 #include <cstdint>
 
 #include "sim/scenario/scenario.hpp"
@@ -53,5 +55,20 @@ void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed);
 /// Seed of a trial, which depends only on these numbers.
 [[nodiscard]] std::uint64_t trial_seed(std::uint64_t experiment_seed, std::uint32_t run, std::uint64_t individual,
                                        std::uint32_t trial);
+
+/// Scatters the 64 bits of a number, one to one: a bijection whose every output bit depends on every input bit (the
+/// output function of SplitMix64: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators",
+/// OOPSLA 2014).
+[[nodiscard]] constexpr std::uint64_t scatter(std::uint64_t bits) {
+  bits += 0x9E3779B97F4A7C15U;  // without this addition 0 would give 0
+  bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
+  return bits ^ (bits >> 31U);
+}
+
+/// Seed of the random numbers of an optimiser in a run of an experiment. It differs from the seeds of the trials.
+[[nodiscard]] constexpr std::uint64_t method_seed(std::uint64_t experiment_seed, std::uint32_t run) {
+  return scatter(scatter(experiment_seed ^ 0x6D6574686F64U) + run);
+}
 
 }  // namespace proleg::optimize

@@ -1,16 +1,20 @@
 #pragma once
 
-// The values of a dimension as decimal numbers, and their raw values in a module. All arithmetic is with whole numbers,
-// so min + n * step is exactly the number that a person would write, for every n.
+// The values of a dimension: as decimal numbers, as raw values in a module, and as an experiment file gives them. All
+// arithmetic is with whole numbers, so min + n * step is exactly the number that a person would write, for every n.
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "shared/fixed/unit.hpp"
+#include "shared/gait/declaration.hpp"
+#include "sim/scenario/xml_document.hpp"
 
 namespace proleg::optimize {
 
@@ -65,5 +69,13 @@ class DecimalRange {
 
 /// The raw values of ascending numbers, in their order, each once.
 [[nodiscard]] std::vector<std::int32_t> raw_values(const std::vector<Decimal>& numbers, Unit unit);
+
+/// Returns the raw values of a joint, in ascending order of the numbers in the file. Throws InputError.
+using ValuesOfJoint = std::function<std::vector<std::int32_t>(std::size_t joint)>;
+
+/// Reads the values that a <genomeConfig> allows a parameter: a range with a step (valueSpace 1) or a list (0). The
+/// file has one set for all joints, or one for each of `joints`, in its order. The sets are not empty and within the
+/// parameter's declared range. `config` must outlive the result.
+[[nodiscard]] ValuesOfJoint read_values(const sim::XmlElement& config, const Parameter& parameter, std::size_t joints);
 
 }  // namespace proleg::optimize

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/optimize/evaluation/fitness_source.hpp"
-#include "sim/optimize/experiment/fitness.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg::optimize {
 

@@ -16,10 +16,9 @@
 #include <ga/GASimpleGA.h>
 #include <ga/garandom.h>
 
-#include "sim/optimize/experiment/seeds.hpp"
+#include "sim/optimize/experiment/trials.hpp"
 
 namespace proleg::optimize {
-
 namespace {
 
 using Genome = GA1DArrayAlleleGenome<int>;

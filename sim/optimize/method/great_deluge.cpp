@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/optimize/experiment/seeds.hpp"
+#include "sim/optimize/experiment/trials.hpp"
 #include "sim/optimize/method/gait_problem.hpp"
 
 namespace proleg::optimize {

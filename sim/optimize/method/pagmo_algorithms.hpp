@@ -1,12 +1,13 @@
 #pragma once
 
-// The algorithms of pagmo 2.18 that search without derivatives, and the needs of each.
+// The algorithms of pagmo 2.18 that search without derivatives, the needs of each, and a search with one of them.
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
 namespace pagmo {
@@ -45,5 +46,13 @@ struct PagmoAlgorithm {
 
 /// Finds an algorithm by its name; null if none has it.
 [[nodiscard]] const PagmoAlgorithm* find_pagmo_algorithm(std::string_view name);
+
+/// Implements search() for an experiment whose method is PagmoSettings that check_method() accepts, and that has more
+/// than one candidate.
+///
+/// It returns "generations used up", or earlier "converged": when the algorithm has no further requests. An algorithm
+/// that stagnates also converges when the whole population is one candidate, or when all requests of a generation lie
+/// within half a step of each value set.
+[[nodiscard]] std::string search_with_pagmo(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
 }  // namespace proleg::optimize

@@ -1,4 +1,3 @@
-#include "sim/optimize/method/pagmo_method.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,7 @@
 #include <pagmo/problem.hpp>
 #include <vector>
 
-#include "sim/optimize/experiment/seeds.hpp"
+#include "sim/optimize/experiment/trials.hpp"
 #include "sim/optimize/method/gait_problem.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 

@@ -7,10 +7,8 @@
 #include "sim/optimize/method/genetic.hpp"
 #include "sim/optimize/method/great_deluge.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
-#include "sim/optimize/method/pagmo_method.hpp"
 
 namespace proleg::optimize {
-
 namespace {
 
 [[noreturn]] void refuse(const Experiment& experiment, const std::string& found, const std::string& expected) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/record/figure_page.hpp"
 #include "sim/record/outline.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
 
 namespace proleg::optimize {

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/report/scores.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
 

@@ -20,9 +20,9 @@
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/scenario.hpp"
+#include "sim/scenario/sources.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::optimize {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/environment/physics_engine.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/environment/environment_model.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/scenario/settings.hpp"

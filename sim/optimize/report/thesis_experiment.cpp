@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/optimize/report/rank_test.hpp"
+#include "sim/optimize/report/method_runs.hpp"
 #include "sim/optimize/report/scores.hpp"
-#include "sim/optimize/report/thesis_tables.hpp"
+#include "sim/optimize/report/thesis_data.hpp"
 #include "sim/record/svg.hpp"
 
 namespace proleg::optimize {

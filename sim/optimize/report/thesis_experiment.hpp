@@ -1,6 +1,6 @@
 #pragma once
 
-// Tables and figures of an experiment of the thesis (thesis_experiments.hpp), made from our runs, with the thesis's
+// Tables and figures of an experiment of the thesis (thesis_data.hpp), made from our runs, with the thesis's
 // numbers beside them. The score is the distance in metres, and more is better. Tables have the judged distances, if
 // these exist; the figures show the courses of the searches.
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/optimize/report/best_curves.hpp"
-#include "sim/optimize/report/thesis_experiments.hpp"
+#include "sim/optimize/report/method_runs.hpp"
+#include "sim/optimize/report/thesis_data.hpp"
 
 namespace proleg::optimize {
 

@@ -6,11 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/optimize/report/best_curves.hpp"
+#include "sim/optimize/report/method_runs.hpp"
 #include "sim/optimize/report/scores.hpp"
+#include "sim/optimize/report/thesis_data.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
-#include "sim/optimize/report/thesis_tables.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
 

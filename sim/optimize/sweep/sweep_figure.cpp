@@ -8,7 +8,6 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/optimize/sweep/sweep.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
 

@@ -8,10 +8,10 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/sweep/sweep.hpp"
-#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
+#include "sim/scenario/sources.hpp"
 
 namespace proleg::optimize {
 namespace {

@@ -6,7 +6,6 @@
 
 #include <memory>
 
-#include "firmware/bootloader/program_objects.hpp"
 #include "shared/broadcast/image_sender.hpp"
 #include "shared/computer/master/lss_master.hpp"
 #include "shared/computer/master/sdo_transfer.hpp"

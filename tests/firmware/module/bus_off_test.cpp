@@ -1,6 +1,6 @@
 // A module that goes bus-off stops its servo, recovers after pauses that grow, and reports it.
 
-#include "firmware/module/bus_recovery.hpp"
+#include "firmware/module/timeouts.hpp"
 #include "test_robot.hpp"
 
 namespace proleg {

@@ -3,8 +3,8 @@
 #include <random>
 
 #include "module_chain.hpp"
-#include "shared/gait/contact_debouncer.hpp"
-#include "shared/kernel/servo_schedule.hpp"
+#include "shared/gait/joint_readings.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "test_robot.hpp"
 
 namespace proleg {
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(OfPeriods, Pulses,
                          testing::Combine(testing::Values(1'000, 3'000, 7'001, 20'000),
                                           testing::Values(4'999, 10'000)));
 
-// The formulas are those of docs/protocol.md, as shared/kernel/servo_schedule.hpp has them.
+// The formulas are those of docs/protocol.md, as shared/kernel/servo_pulses.hpp has them.
 TEST_P(Pulses, AreThoseOfTheScheduleAtTheirTimesAfterSync) {
   const auto [servo_us, tick_us] = GetParam();
   constexpr std::uint32_t last = 150;

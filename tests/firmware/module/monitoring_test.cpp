@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "shared/canopen/bus_load.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 #include "test_robot.hpp"
 
 namespace proleg {

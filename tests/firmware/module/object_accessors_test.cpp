@@ -1,7 +1,5 @@
 // The table of accessors: every declared entry has a row, and an entry without one is rejected.
 
-#include "firmware/module/object_accessors.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "firmware/module/abort_code.hpp"
+#include "firmware/module/device_objects.hpp"
 #include "test_robot.hpp"
 
 namespace proleg {

@@ -21,9 +21,6 @@ class Power : public testing::Test {
 
   Power() { robot.set_up_and_start(); }
 
-  void controlword(std::uint16_t value) {
-    ASSERT_EQ(robot.bus.write(node, object::controlword, value), AbortCode::none);
-  }
   void move() {
     robot.enable(0);
     robot.run(20);  // a fifth of a period of the sine
@@ -84,8 +81,8 @@ TEST_F(Power, PulsesStartInTheNextIntervalAfterTheServoWasEnabled) {
   robot.run(10);
   robot.sync(11);
   const Microseconds sync = robot.bus.now();
-  controlword(0x0006);
-  controlword(0x0007);
+  robot.write_controlword(0x0006);
+  robot.write_controlword(0x0007);
   robot.bus.run_until(sync + 4'000);
   robot.it().receive(sync + 4'000, encode(canopen::Command{node, 0x000F, 0}));
   EXPECT_EQ(robot.it().pulse_count(), 0U);
@@ -102,7 +99,7 @@ TEST_F(Power, EveryOtherPowerStateIsOffAndSwitchesOffOnce) {
     other.enable(0);
     other.run(20);
     ASSERT_TRUE(other.it().is_pulsing());
-    ASSERT_EQ(other.bus.write(node, object::controlword, word), AbortCode::none);
+    other.write_controlword(word);
     EXPECT_FALSE(other.it().is_pulsing());
     const std::size_t commands = other.it().pulses.size();
     other.run(21, 60);
@@ -113,7 +110,7 @@ TEST_F(Power, EveryOtherPowerStateIsOffAndSwitchesOffOnce) {
 
 TEST_F(Power, AQuickStopRampsToTheSafePoseWhileTicksContinue) {
   move();
-  controlword(0x0002);
+  robot.write_controlword(0x0002);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   const std::uint32_t tick = robot.kernel().tick();
   robot.run(tick, tick + 5);
@@ -142,7 +139,7 @@ TEST_F(Power, ALostTickRampsToTheSafePoseAndOnlyTheHostEndsThat) {
   EXPECT_TRUE(robot.module().synchronised());
   EXPECT_EQ(robot.it().pulse_count(), pulses);
   for (const std::uint16_t word : std::to_array<std::uint16_t>({0x0080, 0x0006, 0x0007, 0x000F})) {
-    controlword(word);
+    robot.write_controlword(word);
   }
   robot.run(311, 312);
   EXPECT_GT(robot.it().pulse_count(), pulses);
@@ -169,7 +166,7 @@ TEST_F(Power, WhoLeavesOperationalIsNotEnabledWhenItReturns) {
 
 TEST_F(Power, AQuickStopEndsWithOperational) {
   move();
-  controlword(0x0002);
+  robot.write_controlword(0x0002);
   robot.bus.run_for(50'000);
   ASSERT_TRUE(robot.it().is_pulsing());
   robot.command(NmtCommand::enter_pre_operational);
@@ -178,18 +175,18 @@ TEST_F(Power, AQuickStopEndsWithOperational) {
 
 TEST_F(Power, AQuickStopEndsOnlyByDecision) {
   move();
-  controlword(0x0002);
+  robot.write_controlword(0x0002);
   robot.bus.run_for(2'000'000);
-  controlword(0x000F);
+  robot.write_controlword(0x000F);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
-  controlword(0x0080);
+  robot.write_controlword(0x0080);
   EXPECT_EQ(robot.module().power(), PowerState::switch_on_disabled);
   expect_no_pulses();
 }
 
 TEST_F(Power, AQuickStopOfAServoWithoutPulsesStaysOff) {
   robot.enable(0);
-  controlword(0x0002);
+  robot.write_controlword(0x0002);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   expect_no_pulses(2'000'000);
 }
@@ -307,9 +304,8 @@ TEST_F(Power, WhatAQuickStopAndALostConnectionDoIsToldAndCannotBeChanged) {
 TEST_F(Power, ThePositionDemandIsTheSetPointOfTheTick) {
   move();
   EXPECT_EQ(robot.bus.value(node, object::position_demand), static_cast<std::uint32_t>(robot.kernel().setpoint(0)));
-  ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
-  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(12))),
-            AbortCode::none);
+  robot.write(object::mode, canopen::mode_direct_position);
+  robot.write(object::target_position, static_cast<std::uint32_t>(test::degrees(12)));
   robot.run(21, 21);
   EXPECT_EQ(robot.bus.value(node, object::position_demand), static_cast<std::uint32_t>(test::degrees(12)));
 }
@@ -323,17 +319,16 @@ TEST_F(Power, CommandsByPdoCountInOperationalOnly) {
 
 TEST_F(Power, AJumpOfTheTargetBecomesARampWithinTheLimits) {
   robot.command(NmtCommand::enter_pre_operational);
-  ASSERT_EQ(robot.bus.write(node, object::upper_limit, static_cast<std::uint32_t>(test::degrees(30))), AbortCode::none);
-  ASSERT_EQ(robot.bus.write(node, object::command_speed, 300), AbortCode::none);
+  robot.write(object::upper_limit, static_cast<std::uint32_t>(test::degrees(30)));
+  robot.write(object::command_speed, 300);
   robot.start();
-  ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
+  robot.write(object::mode, canopen::mode_direct_position);
   EXPECT_EQ(robot.bus.value(node, object::mode_display), 8U);
   robot.enable(0);
   robot.tick(0);
   robot.run(0, 5);
   const std::size_t from = robot.it().pulses.size();
-  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(80))),
-            AbortCode::none);
+  robot.write(object::target_position, static_cast<std::uint32_t>(test::degrees(80)));
   robot.run(6, 40);
   const std::vector<test::Pulse> pulses(robot.it().pulses.begin() + static_cast<std::ptrdiff_t>(from) - 1,
                                         robot.it().pulses.end());
@@ -352,17 +347,16 @@ TEST_F(Power, AJumpOfTheTargetBecomesARampWithinTheLimits) {
 
 TEST_F(Power, AModeBeginsWhereTheServoIs) {
   robot.enable(0);
-  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(-70))),
-            AbortCode::none);
+  robot.write(object::target_position, static_cast<std::uint32_t>(test::degrees(-70)));
   robot.run(20);
-  ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
+  robot.write(object::mode, canopen::mode_direct_position);
   EXPECT_EQ(robot.bus.value(node, object::target_position), static_cast<std::uint32_t>(robot.kernel().setpoint(0)))
       << "no earlier target counts";
   const std::int32_t held = servo_command(robot.kernel().setpoint(0));
   robot.run(21, 40);
   EXPECT_EQ(last_width(), held);
   // The joint returns to the gait, along a line of one tick if that is slow enough.
-  ASSERT_EQ(robot.bus.write(node, object::mode, static_cast<std::uint32_t>(canopen::mode_gait)), AbortCode::none);
+  robot.write(object::mode, static_cast<std::uint32_t>(canopen::mode_gait));
   robot.run(41, 60);
   EXPECT_NEAR(last_width(), servo_command(robot.kernel().setpoint(0)), 60);
 }

@@ -8,8 +8,6 @@ namespace proleg {
 namespace {
 
 namespace object = canopen::object;
-using canopen::AbortCode;
-using canopen::Emergency;
 using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::PowerState;
@@ -42,14 +40,11 @@ class RampIn : public testing::Test {
     values.push_back({0, 0, static_cast<std::uint8_t>(number), false, raw(Unit::degree, degrees)});
   }
   void measure(int degrees) { robot.it().meters.readings.angle = raw(Unit::degree, degrees); }
-  void write(const canopen::Object& entry, std::uint32_t value) {
-    ASSERT_EQ(robot.bus.write(node, entry, value), AbortCode::none);
-  }
   /// Enters Operational, with power and without a tick.
   void enable(std::uint32_t ramp_speed = speed) {
     robot.boot();
     robot.configure(0);
-    write(object::ramp_in_speed, ramp_speed);
+    robot.write(object::ramp_in_speed, ramp_speed);
     power();
   }
   void power() {
@@ -151,7 +146,7 @@ TEST_F(RampIn, IsOffUnlessTheHostSetsASpeed) {
   robot.sync(0);
   EXPECT_EQ(width(), width_of(-10)) << "at once";
   // A reset ends it.
-  write(object::ramp_in_speed, 45);
+  robot.write(object::ramp_in_speed, 45);
   robot.command(NmtCommand::reset_node);
   robot.bus.run_for(20'000);
   EXPECT_EQ(robot.bus.value(node, object::ramp_in_speed), 0U);
@@ -194,8 +189,8 @@ TEST_F(RampIn, AHostThatDiesEndsItWithAQuickStop) {
 TEST_F(RampIn, WithoutAHeartbeatTheMissingSyncEndsIt) {
   robot.boot();
   robot.configure(0);
-  write(object::host_heartbeat, 0);
-  write(object::ramp_in_speed, speed);
+  robot.write(object::host_heartbeat, 0);
+  robot.write(object::ramp_in_speed, speed);
   power();
   robot.bus.run_for(450'000);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
@@ -206,12 +201,12 @@ TEST_F(RampIn, WithoutAHeartbeatTheMissingSyncEndsIt) {
 TEST_F(RampIn, AQuickStopOfTheHostGoesToTheSafePose) {
   enable();
   run_with_host(100'000);
-  write(object::controlword, 0x0002);
+  robot.write_controlword(0x0002);
   run_with_host(1'000'000);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   EXPECT_EQ(width(), servo_center);
   EXPECT_FALSE(has_arrived());
-  write(object::controlword, 0);
+  robot.write_controlword(0);
   EXPECT_FALSE(robot.it().is_pulsing());
 }
 
@@ -237,7 +232,7 @@ TEST_F(RampIn, LeavingOperationalEndsIt) {
 TEST_F(RampIn, DoesNotBeginWithoutANewReading) {
   robot.boot();
   robot.configure(0);
-  write(object::ramp_in_speed, speed);
+  robot.write(object::ramp_in_speed, speed);
   robot.it().meters.readings.are_new = false;
   robot.bus.run_for(20'000);
   power();
@@ -252,7 +247,7 @@ TEST_F(RampIn, AModuleThatDoesNotMeasureWaitsForTheTickAsEver) {
   other.it().meters.readings.angle = raw(Unit::degree, 30);  // noise: there is no potentiometer
   other.boot();
   other.configure(0);
-  ASSERT_EQ(other.bus.write(node, object::ramp_in_speed, speed), AbortCode::none);
+  other.write(object::ramp_in_speed, speed);
   other.start();
   other.enable(0);
   other.bus.run_for(100'000);
@@ -262,9 +257,9 @@ TEST_F(RampIn, AModuleThatDoesNotMeasureWaitsForTheTickAsEver) {
 TEST_F(RampIn, InDirectPositionGoesToTheTarget) {
   robot.boot();
   robot.configure(0);
-  write(object::ramp_in_speed, speed);
-  write(object::mode, static_cast<std::uint32_t>(canopen::mode_direct_position));
-  write(object::target_position, static_cast<std::uint32_t>(raw(Unit::degree, 15)));
+  robot.write(object::ramp_in_speed, speed);
+  robot.write(object::mode, static_cast<std::uint32_t>(canopen::mode_direct_position));
+  robot.write(object::target_position, static_cast<std::uint32_t>(raw(Unit::degree, 15)));
   power();
   run_with_host(400'000);
   EXPECT_TRUE(has_arrived());

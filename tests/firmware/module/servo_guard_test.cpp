@@ -1,6 +1,6 @@
 // Rules for all pulses, whatever computes the angles and whenever a pulse is requested.
 
-#include "firmware/module/servo_guard.hpp"
+#include "firmware/module/servo_driver.hpp"
 
 #include <gtest/gtest.h>
 

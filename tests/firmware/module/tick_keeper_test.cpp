@@ -1,6 +1,6 @@
 // The tick of a SYNC. The oracle knows the absolute tick of every SYNC.
 
-#include "firmware/module/tick_keeper.hpp"
+#include "firmware/module/sync.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What would be done to a module, before anything is sent to it.
 
-#include "host/flash/flash_verdict.hpp"
+#include "host/flash/module_program.hpp"
 
 #include <gtest/gtest.h>
 

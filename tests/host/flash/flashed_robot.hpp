@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host/flash/module_query.hpp"
+#include "host/flash/module_program.hpp"
 #include "host/flash/robot_update.hpp"
 #include "live_bus.hpp"
 #include "shipped.hpp"

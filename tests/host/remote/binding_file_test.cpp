@@ -1,4 +1,4 @@
-#include "host/remote/binding_file.hpp"
+#include "host/remote/binding.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/remote/remote_target.hpp"
+#include "host/remote/bound_elements.hpp"
 
 namespace proleg::host {
 

@@ -1,4 +1,4 @@
-#include "host/remote/parameter_motion.hpp"
+#include "host/remote/bound_elements.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/remote/binding_file.hpp"
+#include "host/remote/binding.hpp"
 #include "obedient_robot.hpp"
 
 namespace proleg::host {

@@ -1,12 +1,12 @@
 // All bits of the set-points: what the modules of a driven robot have computed, against kernels in this process.
 
-#include "host/robot/setpoint_check.hpp"
+#include "host/robot/robot_drive.hpp"
 
 #include <gtest/gtest.h>
 
 #include "driving_host.hpp"
 #include "shipped.hpp"
-#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/gait.hpp"
 
 namespace proleg::test {
 namespace {

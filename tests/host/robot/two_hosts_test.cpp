@@ -10,7 +10,7 @@
 
 #include "driving_host.hpp"
 #include "shipped.hpp"
-#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/gait.hpp"
 
 namespace proleg::test {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "host/robot_control/drive_loop.hpp"
 #include "scripted_plugin.hpp"
 #include "tests/support/message_of.hpp"
 

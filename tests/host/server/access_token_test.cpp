@@ -1,4 +1,4 @@
-#include "host/server/access_token.hpp"
+#include "host/server/request_policy.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "host/server/document_store.hpp"
+#include "host/server/shared_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/server/notice_log.hpp"
+#include "host/server/shared_messages.hpp"
 
 #include <gtest/gtest.h>
 

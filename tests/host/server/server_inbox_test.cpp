@@ -1,4 +1,4 @@
-#include "host/server/server_inbox.hpp"
+#include "host/server/session_link.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/server/session_requests.hpp"
+#include "host/server/robot_session.hpp"
 
 #include <gtest/gtest.h>
 

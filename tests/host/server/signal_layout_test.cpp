@@ -1,4 +1,4 @@
-#include "host/server/signal_layout.hpp"
+#include "host/server/telemetry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/server/tick_history.hpp"
+#include "host/server/telemetry.hpp"
 
 #include <gtest/gtest.h>
 

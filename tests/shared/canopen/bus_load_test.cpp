@@ -1,6 +1,6 @@
 // The worst case of the bus, from the bits of frames as ISO 11898-1 counts them.
 
-#include "shared/canopen/bus_load.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 
 #include <gtest/gtest.h>
 

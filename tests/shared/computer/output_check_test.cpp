@@ -1,4 +1,4 @@
-#include "shared/computer/output/output_check.hpp"
+#include "shared/computer/output/output.hpp"
 
 #include <gtest/gtest.h>
 

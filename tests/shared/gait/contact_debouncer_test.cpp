@@ -1,4 +1,4 @@
-#include "shared/gait/contact_debouncer.hpp"
+#include "shared/gait/joint_readings.hpp"
 
 #include <gtest/gtest.h>
 

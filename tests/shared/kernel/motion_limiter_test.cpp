@@ -1,6 +1,6 @@
 // The bounds of commanded angles. Oracle: the definition in degrees and seconds, in double precision.
 
-#include "shared/kernel/motion_limiter.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 #include <gtest/gtest.h>
 

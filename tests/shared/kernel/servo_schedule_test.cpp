@@ -1,4 +1,4 @@
-#include "shared/kernel/servo_schedule.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Errors on the bus, against the rules of ISO 11898-1 (fault confinement, error and interframe frames). The tests count
 // errors independently, from the rules alone.
 
-#include "sim/bus/fault_confinement.hpp"
+#include "sim/bus/controller.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/fault.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/fault/random_faults.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"

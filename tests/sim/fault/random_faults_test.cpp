@@ -1,4 +1,4 @@
-#include "sim/fault/random_faults.hpp"
+#include "sim/fault/fault.hpp"
 
 #include <gtest/gtest.h>
 

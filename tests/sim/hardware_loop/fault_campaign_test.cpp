@@ -11,8 +11,7 @@
 #include <string>
 
 #include "shipped.hpp"
-#include "sim/fault/fault_reader.hpp"
-#include "sim/fault/random_faults.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/hardware_loop/fault_run.hpp"
 #include "tests/support/from_environment.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shipped.hpp"
-#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/hardware_loop/hardware_loop.hpp"
 
 namespace proleg::sim {

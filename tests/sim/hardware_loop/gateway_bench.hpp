@@ -15,8 +15,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/hardware_loop/hardware_options.hpp"
 #include "sim/hardware_loop/native_module.hpp"
-#include "sim/serial/serial_host.hpp"
-#include "sim/serial/serial_sender.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
 

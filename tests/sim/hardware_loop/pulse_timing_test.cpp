@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "shipped.hpp"
 #include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/hardware_loop/plant_ticks.hpp"

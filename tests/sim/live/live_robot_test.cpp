@@ -14,7 +14,7 @@
 #include "shared/computer/master/master.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "shipped.hpp"
-#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/hardware_loop/master_input.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/scenario/reader.hpp"

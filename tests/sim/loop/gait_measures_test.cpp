@@ -9,8 +9,8 @@
 
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/measure/body_wave.hpp"
 #include "sim/measure/measure.hpp"
+#include "sim/measure/stride.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {

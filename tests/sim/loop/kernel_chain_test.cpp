@@ -1,4 +1,4 @@
-#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/gait.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "shared/gait/registry.hpp"
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/record/recorder.hpp"

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/robot/servo.hpp"

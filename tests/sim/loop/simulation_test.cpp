@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "shipped.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/scenario/settings.hpp"

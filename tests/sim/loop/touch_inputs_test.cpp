@@ -1,4 +1,4 @@
-#include "sim/loop/touch_inputs.hpp"
+#include "sim/loop/module_readings.hpp"
 
 #include <gtest/gtest.h>
 

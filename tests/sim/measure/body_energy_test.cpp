@@ -1,6 +1,6 @@
 // Energies of motions that can be computed by hand.
 
-#include "sim/measure/body_energy.hpp"
+#include "sim/measure/gait_meter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The figures are computed by hand from the equations of the thesis, for its gait of 40 and 30 degrees with 55 degrees
 // of phase difference.
 
-#include "sim/measure/body_wave.hpp"
+#include "sim/measure/stride.hpp"
 
 #include <gtest/gtest.h>
 

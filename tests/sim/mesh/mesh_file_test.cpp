@@ -7,29 +7,11 @@
 
 #include "sim/mesh/mesh_checks.hpp"
 #include "sim/mesh/mesh_file.hpp"
-#include "sim/mesh/mesh_solid.hpp"
+#include "sim/mesh/mesh_geometry.hpp"
 #include "tests/sim/mesh/mesh_shapes.hpp"
 
 namespace proleg::sim {
 namespace {
-
-constexpr const char* box_off = R"(OFF
-8 6 0
--0.1 -0.2 -0.3
--0.1 -0.2 0.3
--0.1 0.2 -0.3
--0.1 0.2 0.3
-0.1 -0.2 -0.3
-0.1 -0.2 0.3
-0.1 0.2 -0.3
-0.1 0.2 0.3
-4 0 1 3 2
-4 4 6 7 5
-4 0 4 5 1
-4 2 3 7 6
-4 0 2 6 4
-4 1 5 7 3
-)";
 
 constexpr const char* box_obj = R"(mtllib box.mtl
 v -0.1 -0.2 -0.3

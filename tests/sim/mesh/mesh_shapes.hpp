@@ -2,6 +2,7 @@
 
 // Meshes whose volume and inertia are known.
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -11,6 +12,25 @@
 #include "sim/robot/triangle_mesh.hpp"
 
 namespace proleg::sim {
+
+/// A closed box of 0.2 x 0.4 x 0.6, as text of an OFF file.
+inline constexpr const char* box_off = R"(OFF
+8 6 0
+-0.1 -0.2 -0.3
+-0.1 -0.2 0.3
+-0.1 0.2 -0.3
+-0.1 0.2 0.3
+0.1 -0.2 -0.3
+0.1 -0.2 0.3
+0.1 0.2 -0.3
+0.1 0.2 0.3
+4 0 1 3 2
+4 4 6 7 5
+4 0 4 5 1
+4 2 3 7 6
+4 0 2 6 4
+4 1 5 7 3
+)";
 
 /// A closed box. half_sides in m; middle: of the box.
 inline TriangleMesh box_mesh(const Eigen::Vector3d& half_sides,

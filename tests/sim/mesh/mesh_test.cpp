@@ -4,10 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "sim/mesh/convex_hull.hpp"
-#include "sim/mesh/height_mesh.hpp"
 #include "sim/mesh/mesh_checks.hpp"
-#include "sim/mesh/mesh_solid.hpp"
+#include "sim/mesh/mesh_geometry.hpp"
 #include "tests/sim/mesh/mesh_shapes.hpp"
 
 namespace proleg::sim {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -78,40 +77,6 @@ TEST(FrictionAcross, HoldsInOneDirectionAndSlidesInTheOther) {
     EXPECT_NEAR(distance, 0.5 * acceleration * seconds * seconds, 0.01) << heading;
   }
 }
-
-class Loads : public testing::TestWithParam<std::tuple<double, Stepper>> {
- protected:
-  double heading_ = std::get<0>(GetParam());
-  Stepper stepper_ = std::get<1>(GetParam());
-  Eigen::Vector2d direction_{std::cos(heading_ * degree), std::sin(heading_* degree)};
-};
-
-TEST_P(Loads, AboveTheFrictionAccelerateTheRobotByTheDifference) {
-  constexpr double load = 4.0;
-  for (const double friction : {0.0, 0.1, 0.3, 0.39}) {
-    const std::unique_ptr<World> world = make_ode_world(plate(), ground(friction, load, heading_), step_s, stepper_);
-    const Eigen::Vector2d start = position_after(*world, 0.2);
-    const Eigen::Vector2d middle = position_after(*world, 0.4);
-    const Eigen::Vector2d acceleration = (position_after(*world, 0.4) - 2.0 * middle + start) / (0.4 * 0.4);
-    const double expected = load - friction * gravity;
-    EXPECT_NEAR(acceleration.dot(direction_), expected, 0.02) << "friction " << friction;
-    EXPECT_LT((acceleration - acceleration.dot(direction_) * direction_).norm(), 0.02) << "friction " << friction;
-  }
-}
-
-TEST_P(Loads, BelowTheFrictionDoNotMoveTheRobot) {
-  for (const double share : {0.5, 0.95}) {
-    constexpr double friction = 0.4;
-    const std::unique_ptr<World> world =
-        make_ode_world(plate(), ground(friction, share * friction * gravity, heading_), step_s, stepper_);
-    const Eigen::Vector2d start = position_after(*world, 0.2);
-    EXPECT_LT((position_after(*world, 1.0) - start).norm(), 1e-3) << share << " of the friction";
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Headings, Loads,
-                         testing::Combine(testing::Values(0.0, 10.0, 30.0, 45.0, 67.5, 90.0, 135.0, 200.0),
-                                          testing::Values(Stepper::direct, Stepper::iterative)));
 
 /// A plate on the ground in the engine itself, which a test can push and turn.
 class PlateInTheEngine {

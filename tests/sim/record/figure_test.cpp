@@ -9,9 +9,9 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/record/figure_contents.hpp"
+#include "sim/record/figure_panels.hpp"
 #include "sim/record/marks.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/record/time_panels.hpp"
 #include "sim/scenario/reader.hpp"
 #include "small_run.hpp"
 #include "tests/support/files.hpp"

@@ -1,4 +1,4 @@
-#include "sim/record/internal_values.hpp"
+#include "sim/record/recorded_run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "shared/computer/sqlite/sqlite.hpp"
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_pulses.hpp"
 #include "sim/record/recording.hpp"
 #include "small_run.hpp"
 #include "tests/support/files.hpp"

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/record/series_figure.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::sim {

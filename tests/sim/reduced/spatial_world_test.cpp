@@ -18,7 +18,7 @@
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/chain_batch.hpp"
 #include "sim/reduced/robot_chain.hpp"
-#include "tests/sim/reduced/worlds.hpp"
+#include "tests/sim/physics/world_contract.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -28,6 +28,18 @@ std::unique_ptr<World> spatial_world(const RobotModel& robot, const EnvironmentM
   auto batch = std::make_shared<ChainBatch<Spatial>>(std::span(&chain, 1));
   return make_world({&robot, &environment, step_s, "test"}, std::move(chain), std::move(batch), 0);
 }
+
+const Engine spatial_engine{.name = "Spatial",
+                            .make = spatial_world,
+                            .position = 1e-7,
+                            .rest = 1e-4,
+                            .sliding = 1e-4,
+                            .joint = 1e-9,
+                            .stop = 1e-6};
+
+INSTANTIATE_TEST_SUITE_P(Spatial, WorldContract, testing::Values(spatial_engine), engine_name);
+INSTANTIATE_TEST_SUITE_P(Spatial, PulledPlate, testing::Combine(testing::Values(spatial_engine), headings),
+                         engine_and_heading);
 
 /// Every second joint turns about z.
 RobotModel snake(std::size_t links) {
@@ -46,30 +58,6 @@ void drive(World& world, std::size_t joints, double seconds, double amplitude, d
     const double speed = 20.0 * (angle - world.joint_angle(joint));
     world.set_joint_speed(joint, std::clamp(speed, -4.5, 4.5));
   }
-}
-
-TEST(SpatialWorld, StartsWithTheLinksWhereTheModelPutsThem) {
-  RobotModel robot = snake(4);
-  robot.links[1].mass.center = {0.001, 0.002, 0.003};
-  robot.links[2].pose.orientation = turn(0.4, {1, 2, 3});
-  EnvironmentModel environment;
-  environment.robot_pose = {{1, 2, 3}, turn(0.7, {3, -1, 2})};
-  const std::unique_ptr<World> world = spatial_world(robot, environment);
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    expect_near(world->link_pose(i), environment.robot_pose * robot.links[i].pose, 1e-7, "link " + std::to_string(i));
-  }
-  EXPECT_EQ(world->joint_angle(0), 0.0);
-  EXPECT_EQ(world->contact_count(), 0U);
-}
-
-TEST(SpatialWorld, ALinkInTheAirFallsFreely) {
-  const std::unique_ptr<World> world = spatial_world(chain(1), EnvironmentModel{});
-  constexpr double seconds = 0.5;
-  run(*world, seconds);
-  // Semi-implicit Euler falls g t^2 / 2 + g t h / 2.
-  EXPECT_NEAR(world->center_of_mass().z(), -gravity * seconds * (seconds + step_s) / 2, 1e-9);
-  EXPECT_TRUE(world->is_slower_than(gravity * seconds * 1.001, 1e-9));
-  EXPECT_FALSE(world->is_slower_than(gravity * seconds * 0.999, 1.0));
 }
 
 TEST(SpatialWorld, AMotorTurnsTheLinkInFrontAboutTheAxis) {
@@ -142,58 +130,9 @@ TEST(SpatialWorld, ATumblingBodyKeepsItsEnergy) {
   const double energy = world->energy();
   constexpr double seconds = 0.5;
   run(*world, seconds);
-  // What semi-implicit Euler loses in a free fall, see ALinkInTheAirFallsFreely.
+  // What semi-implicit Euler loses in a free fall, see WorldContract.
   const double lost = 0.2 * gravity * gravity * seconds * step_s / 2;
   EXPECT_NEAR(world->energy(), energy - lost, 0.005 * energy);
-}
-
-TEST(SpatialWorld, TheContactsCarryExactlyTheWeight) {
-  for (const std::size_t links : {1U, 3U, 6U}) {
-    for (const double heading : {0.0, 0.6}) {
-      EnvironmentModel environment = flat_ground(0.5, 0.02);
-      environment.robot_pose.orientation = turn(heading, Eigen::Vector3d::UnitZ());
-      const std::unique_ptr<World> world = spatial_world(snake(links), environment);
-      run(*world, 2.0);
-      double force = 0.0;
-      for (std::size_t link = 0; link < links; ++link) {
-        force += world->contact_force(link);
-        // A link that is alone has no front half.
-        EXPECT_EQ(world->link_contacts(link), links == 1 ? 2U : 3U) << "link " << link;
-      }
-      const double weight = 0.1 * gravity * static_cast<double>(links);
-      EXPECT_NEAR(force, weight, 1e-3 * weight);
-      EXPECT_NEAR(world->contact_sliding().normal_force, weight, 1e-3 * weight);
-      EXPECT_TRUE(world->is_slower_than(1e-4, 1e-3));
-      EXPECT_EQ(world->contact_count(), 4 * links);
-    }
-  }
-}
-
-TEST(SpatialWorld, ASlidingBoxStopsAfterTheDistanceOfCoulombAtEveryHeading) {
-  constexpr double friction = 0.3;
-  constexpr double slope = 0.6;  // m/s^2 more than friction holds
-  for (const double heading : {0.0, 0.3, std::numbers::pi / 4.0, 2.0}) {
-    EnvironmentModel environment = flat_ground(friction, 0.02);
-    const Eigen::Vector3d direction(std::cos(heading), std::sin(heading), 0.0);
-    environment.gravity += direction * (friction * gravity + slope);
-    const std::unique_ptr<World> world = spatial_world(chain(1), environment);
-    const Eigen::Vector3d start = world->center_of_mass();
-    run(*world, 1.0);
-    const Eigen::Vector3d way = world->center_of_mass() - start;
-    EXPECT_NEAR(way.dot(direction), slope / 2.0, 0.02 * slope) << heading;
-    EXPECT_LT(std::hypot(way.x(), way.y()) - way.dot(direction), 1e-3) << heading;
-  }
-}
-
-TEST(SpatialWorld, ABoxOnASlopeBelowTheFrictionStays) {
-  for (const double heading : {0.0, std::numbers::pi / 4.0}) {
-    EnvironmentModel environment = flat_ground(0.3, 0.02);
-    environment.gravity += Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0) * (0.29 * gravity);
-    const std::unique_ptr<World> world = spatial_world(chain(1), environment);
-    const Eigen::Vector3d start = world->center_of_mass();
-    run(*world, 1.0);
-    EXPECT_LT((world->center_of_mass() - start).norm(), 1e-3) << heading;
-  }
 }
 
 TEST(SpatialWorld, AMotorGivesNoMoreThanItsTorque) {
@@ -261,26 +200,6 @@ TEST(SpatialWorld, ASnakeGoesWhereItGoesInOde) {
     ASSERT_GT(distance, 0.05);
     EXPECT_LT((world->center_of_mass() - ode->center_of_mass()).norm(), 0.1 * distance) << phase;
   }
-}
-
-TEST(SpatialWorld, MovesToAnotherPlaceAndStartsThereAtRest) {
-  const RobotModel robot = snake(4);
-  const std::unique_ptr<World> world = spatial_world(robot, flat_ground(0.4, 0.02));
-  for (int step = 0; step < 500; ++step) {
-    drive(*world, 3, step * step_s, 0.6, 0.9);
-    world->step();
-  }
-  const Pose motion{{1, 2, 0.5}, turn(1.0, {1, 2, 3})};
-  std::vector<Pose> expected;
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    expected.push_back(motion * world->link_pose(i));
-  }
-  world->move_robot(motion);
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    expect_near(world->link_pose(i), expected[i], 1e-7, "link " + std::to_string(i));
-    EXPECT_EQ(world->link_contacts(i), 0U);
-  }
-  EXPECT_TRUE(world->is_slower_than(1e-12, 1e-12));
 }
 
 TEST(SpatialWorld, FailsInOneLineWhenLinksTouchThatAreNotNeighbours) {

@@ -6,30 +6,12 @@
 #include <string>
 
 #include "memory_files.hpp"
-#include "sim/scenario/file_source.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/sources.hpp"
+#include "tests/sim/mesh/mesh_shapes.hpp"
 
 namespace proleg::sim {
 namespace {
-
-/// A closed box of 0.2 x 0.4 x 0.6, as text of an OFF file.
-constexpr const char* box_off = R"(OFF
-8 6 0
--0.1 -0.2 -0.3
--0.1 -0.2 0.3
--0.1 0.2 -0.3
--0.1 0.2 0.3
-0.1 -0.2 -0.3
-0.1 -0.2 0.3
-0.1 0.2 -0.3
-0.1 0.2 0.3
-4 0 1 3 2
-4 4 6 7 5
-4 0 4 5 1
-4 2 3 7 6
-4 0 2 6 4
-4 1 5 7 3
-)";
 
 constexpr const char* head_geometry = "<Geom type=\"sphere\">\n        <radius>0.03</radius>\n      </Geom>";
 

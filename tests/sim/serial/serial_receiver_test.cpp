@@ -1,10 +1,8 @@
-#include "sim/serial/serial_receiver.hpp"
+#include "sim/serial/serial_line.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
-
-#include "sim/serial/serial_sender.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -1,10 +1,7 @@
 """An STM32F405 on a JTAG cable, for openocd's adapter remote_bitbang: the two TAPs of the chip (RM0090, section 38.5), the debug
 port and the memory access port (ADIv5), the debug registers of the core (ARMv7-M, section C1), and the flash."""
 
-import socket
-import threading
-
-from fake_stm32 import FLASH, SIZE, FlashRegisters
+from fake_stm32 import FLASH, SIZE, FlashRegisters, SocketChip
 
 # The state after a clock with TMS 0, and with TMS 1 (IEEE 1149.1).
 NEXT = {
@@ -168,43 +165,17 @@ class Cable:
             self.core_ir, self.boundary_ir = CORE_IDCODE, BOUNDARY_IDCODE
 
 
-class JtagChip:
-    """The chip behind a socket of the file system, until the end of a `with`. openocd needs `script` as its interface."""
+class JtagChip(SocketChip):
+    """openocd needs `script` as its interface."""
 
     def __init__(self, chip, folder):
+        super().__init__(folder / "jtag.socket")
         self.core = Core(chip)
-        self.path = folder / "jtag.socket"
         # Without work area openocd programs word by word: no code runs in the chip.
         self.script = (f"adapter driver remote_bitbang\nremote_bitbang port 0\nremote_bitbang host {self.path}\n"
                        "transport select jtag\nset WORKAREASIZE 0\n")
 
-    def __enter__(self):
-        self.listener = socket.socket(socket.AF_UNIX)
-        self.listener.bind(str(self.path))
-        self.listener.listen()
-        self.thread = threading.Thread(target=self.serve)
-        self.thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.listener.shutdown(socket.SHUT_RDWR)
-        self.thread.join()
-        self.listener.close()
-        self.path.unlink()
-
-    def serve(self):
-        while True:
-            try:
-                connection, _ = self.listener.accept()
-            except OSError:
-                return
-            with connection:
-                try:
-                    self.answer(connection)
-                except ConnectionError:
-                    pass
-
-    def answer(self, connection):
+    def answer_all(self, connection):
         cable, clock = Cable(DebugPort(self.core)), 0
         while True:
             received = connection.recv(65536)

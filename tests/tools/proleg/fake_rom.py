@@ -4,12 +4,11 @@ fake_libusb.cpp."""
 import errno
 import os
 import pty
-import socket
 import struct
 import threading
 import tty
 
-from fake_stm32 import FLASH, SIZE, sector_of
+from fake_stm32 import FLASH, SIZE, SocketChip, sector_of
 
 ACK, NACK = b"\x79", b"\x1f"
 GET, VERSION, DEVICE_ID, READ, GO, WRITE, ERASE = 0x00, 0x01, 0x02, 0x11, 0x21, 0x31, 0x44
@@ -150,48 +149,25 @@ STRINGS = {4: "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg", 5: "@Op
            6: "@OTP Memory /0x1FFF7800/01*512 e,01*016 e", 7: "@Device Feature/0xFFFF0000/01*004 e"}
 
 
-class DfuRom:
-    """Behind a socket of the file system, until the end of a `with`."""
-
+class DfuRom(SocketChip):
     def __init__(self, chip, folder):
-        self.chip, self.path = chip, folder / "dfu.socket"
+        super().__init__(folder / "dfu.socket")
+        self.chip = chip
         self.state, self.status, self.pointer, self.pending = IDLE, OK, FLASH, None
         self.alternates = []  # all that were chosen
 
-    def __enter__(self):
-        self.listener = socket.socket(socket.AF_UNIX)
-        self.listener.bind(str(self.path))
-        self.listener.listen()
-        self.thread = threading.Thread(target=self.serve)
-        self.thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.listener.shutdown(socket.SHUT_RDWR)
-        self.thread.join()
-        self.listener.close()
-        self.path.unlink()
-
-    def serve(self):
-        while True:
-            try:
-                connection, _ = self.listener.accept()
-            except OSError:
-                return
-            with connection, connection.makefile("rb") as stream:
-                try:
-                    while setup := stream.read(8):
-                        kind, request, value, _, length = struct.unpack("<BBHHH", setup)
-                        content = b"" if kind & 0x80 else stream.read(length)
-                        answer = (self.answer(request, value, length, content) if kind & CLASS
-                                  else self.answer_standard(request, value))
-                        if isinstance(answer, bytes):
-                            answer = answer[:length]
-                            connection.sendall(struct.pack("<i", len(answer)) + answer)
-                        else:
-                            connection.sendall(struct.pack("<i", answer))
-                except ConnectionError:
-                    pass
+    def answer_all(self, connection):
+        with connection.makefile("rb") as stream:
+            while setup := stream.read(8):
+                kind, request, value, _, length = struct.unpack("<BBHHH", setup)
+                content = b"" if kind & 0x80 else stream.read(length)
+                answer = (self.answer(request, value, length, content) if kind & CLASS
+                          else self.answer_standard(request, value))
+                if isinstance(answer, bytes):
+                    answer = answer[:length]
+                    connection.sendall(struct.pack("<i", len(answer)) + answer)
+                else:
+                    connection.sendall(struct.pack("<i", answer))
 
     def is_open(self):
         """No read protection."""

@@ -1,5 +1,8 @@
 """What an STM32F405 does when it is flashed, after RM0090, section 3: its flash refuses what the real one refuses."""
 
+import socket
+import threading
+
 FLASH = 0x08000000
 SECTORS = [16 * 1024] * 4 + [64 * 1024] + [128 * 1024] * 7
 SIZE = sum(SECTORS)
@@ -126,3 +129,37 @@ class FlashRegisters:
             self.status |= SEQUENCE_ERROR
         elif not self.chip.program(address, content):
             self.status |= PROTECTION_ERROR
+
+
+class SocketChip:
+    """A chip behind a socket of the file system, until the end of a `with`. `answer_all(connection)` of the derived class
+    serves one connection until the other side closes it."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __enter__(self):
+        self.listener = socket.socket(socket.AF_UNIX)
+        self.listener.bind(str(self.path))
+        self.listener.listen()
+        self.thread = threading.Thread(target=self.serve)
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.listener.shutdown(socket.SHUT_RDWR)
+        self.thread.join()
+        self.listener.close()
+        self.path.unlink()
+
+    def serve(self):
+        while True:
+            try:
+                connection, _ = self.listener.accept()
+            except OSError:
+                return
+            with connection:
+                try:
+                    self.answer_all(connection)
+                except ConnectionError:
+                    pass

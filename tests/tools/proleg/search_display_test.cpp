@@ -1,4 +1,4 @@
-#include "tools/proleg/search/search_display.hpp"
+#include "tools/proleg/search/optimisation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -89,6 +91,8 @@ void occupy_closed_streams() {
     }
   }
 }
+
+std::atomic<bool> interrupt_flag = false;  // it is lock-free, so a signal handler may set it
 
 }  // namespace
 
@@ -205,5 +209,16 @@ std::uint32_t parse_workers(const std::optional<std::string>& argument) {
   }
   return *count;
 }
+
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // An ignored signal remains ignored: nohup and scripts protect their jobs this way.
+    if (std::signal(signal, [](int) { interrupt_flag = true; }) == SIG_IGN) {
+      std::signal(signal, SIG_IGN);
+    }
+  }
+}
+
+bool interrupted() { return interrupt_flag; }
 
 }  // namespace proleg::tools

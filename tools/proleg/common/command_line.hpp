@@ -1,5 +1,7 @@
 #pragma once
 
+// The command line of a program, its exit status, and signals that end it.
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -84,5 +86,13 @@ inline constexpr std::uint32_t max_workers = 1024;
 
 /// Parses --workers; by default one for each processor. Throws InputError.
 [[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& argument);
+
+}  // namespace proleg::tools
+
+namespace proleg::tools {
+
+/// After this call SIGINT, SIGTERM and SIGHUP only make interrupted() true. Ignored signals remain ignored (nohup).
+void catch_interrupts();
+[[nodiscard]] bool interrupted();
 
 }  // namespace proleg::tools

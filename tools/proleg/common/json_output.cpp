@@ -2,9 +2,21 @@
 
 #include <nlohmann/json.hpp>
 
+#include "shared/computer/durations/durations.hpp"
+#include "shared/computer/text/text.hpp"
+
 namespace proleg::tools {
+namespace {
 
 using nlohmann::ordered_json;
+
+constexpr unsigned slow = 99;  // per cent
+
+std::optional<double> scaled(const std::optional<std::uint64_t>& duration, double factor) {
+  return duration ? std::optional(static_cast<double>(*duration) * factor) : std::nullopt;
+}
+
+}  // namespace
 
 Json::Json() : value_(std::make_unique<ordered_json>()) {}
 Json::~Json() = default;
@@ -67,5 +79,21 @@ void Json::add(std::string_view key, const Json& value) { (*value_)[std::string(
 void Json::append(const Json& value) { value_->push_back(*value.value_); }
 
 std::string Json::text() const { return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace); }
+
+std::string durations_text(const Durations& durations, double factor, const std::string& unit,
+                           const std::string& counted) {
+  if (durations.count() == 0) {
+    return "none";
+  }
+  return number_text(*scaled(durations.median(), factor)) + " " + unit + " (median), 99 % within " +
+         number_text(*scaled(durations.percentile(slow), factor)) + " " + unit + "; " +
+         std::to_string(durations.count()) + " " + counted;
+}
+
+Json durations_object(const Durations& durations, double factor) {
+  return {{"count", durations.count()},
+          {"median", scaled(durations.median(), factor)},
+          {"p99", scaled(durations.percentile(slow), factor)}};
+}
 
 }  // namespace proleg::tools

@@ -1,5 +1,7 @@
 #pragma once
 
+// JSON that a program prints, and durations as JSON and as text.
+
 #include <concepts>
 #include <initializer_list>
 #include <memory>
@@ -8,6 +10,10 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace proleg {
+class Durations;
+}
 
 namespace proleg::tools {
 
@@ -74,5 +80,13 @@ struct JsonMember {
   std::string_view key;
   Json value;
 };
+
+/// Text "0.31 ms (median), 99 % within 0.5 ms; 312 ", followed by the name of the counted things. factor: from the unit
+/// of the durations to `unit`. "none" without durations.
+[[nodiscard]] std::string durations_text(const Durations& durations, double factor, const std::string& unit,
+                                         const std::string& counted);
+
+/// Object for --json: count, median, p99; the last two are null without durations.
+[[nodiscard]] Json durations_object(const Durations& durations, double factor);
 
 }  // namespace proleg::tools

@@ -10,14 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "shared/computer/output/output_check.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/json_output.hpp"
 
 namespace proleg::tools {

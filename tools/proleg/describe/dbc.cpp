@@ -1,4 +1,4 @@
-#include "tools/proleg/describe/dbc.hpp"
+#include "tools/proleg/describe/object_files.hpp"
 
 #include <algorithm>
 #include <array>

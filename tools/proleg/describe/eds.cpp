@@ -1,4 +1,4 @@
-#include "tools/proleg/describe/eds.hpp"
+#include "tools/proleg/describe/object_files.hpp"
 
 #include <set>
 #include <string_view>

@@ -15,8 +15,7 @@
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/describe/dbc.hpp"
-#include "tools/proleg/describe/eds.hpp"
+#include "tools/proleg/describe/object_files.hpp"
 
 namespace {
 

@@ -10,11 +10,10 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/gait/declaration.hpp"
-#include "sim/record/internal_values.hpp"
 #include "sim/record/marks.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/record/recorded_scenario.hpp"
 #include "sim/scenario/names.hpp"
-#include "tools/proleg/document/parameter_table.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 
 namespace proleg::tools {

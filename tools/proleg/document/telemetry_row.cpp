@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "sim/record/internal_values.hpp"
+#include "sim/record/recorded_run.hpp"
 #include "sim/robot/attached_sensor.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"

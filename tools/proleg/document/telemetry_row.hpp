@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/server/signal_layout.hpp"
+#include "host/server/telemetry.hpp"
 #include "shared/fixed/unit.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/record/recording.hpp"

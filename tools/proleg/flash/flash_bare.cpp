@@ -22,7 +22,6 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/program_run.hpp"
 
 namespace proleg::tools {

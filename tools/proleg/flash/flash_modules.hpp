@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host/flash/flash_verdict.hpp"
+#include "host/flash/module_program.hpp"
 #include "host/robot/parameter_file.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 

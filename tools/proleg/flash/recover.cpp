@@ -9,7 +9,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/flash/recovery.hpp"
 #include "tools/proleg/robot/bus_access.hpp"

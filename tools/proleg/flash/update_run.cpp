@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/proleg/common/interrupt.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/flash/flash_modules.hpp"
 
 namespace proleg::tools {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/flash/flash_verdict.hpp"
+#include "host/flash/module_program.hpp"
 #include "host/flash/robot_update.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 

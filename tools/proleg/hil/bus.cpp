@@ -21,7 +21,6 @@
 #include "sim/bus/candump_log.hpp"
 #include "sim/live/live_robot.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/hil/broken_modules.hpp"
 #include "tools/proleg/hil/gateway_line.hpp"

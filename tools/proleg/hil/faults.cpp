@@ -7,8 +7,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/fault/fault_reader.hpp"
-#include "sim/fault/random_faults.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/record/recording.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"

@@ -8,8 +8,7 @@
 
 #include "host/transport/line_server.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "sim/serial/serial_host.hpp"
-#include "sim/serial/serial_sender.hpp"
+#include "sim/serial/serial_line.hpp"
 
 namespace proleg::tools {
 

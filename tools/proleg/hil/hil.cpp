@@ -18,7 +18,7 @@
 #include "sim/scenario/module_sensors.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/hil/hil_faults.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
 #include "tools/proleg/hil/hil_options.hpp"

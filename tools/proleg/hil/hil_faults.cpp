@@ -8,12 +8,11 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/fault/fault_reader.hpp"
-#include "sim/fault/random_faults.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/hardware_loop/fault_run.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/hil/hil_report.hpp"
 
 namespace proleg::tools {

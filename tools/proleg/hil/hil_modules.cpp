@@ -1,6 +1,7 @@
 #include "tools/proleg/hil/hil_modules.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -12,14 +13,16 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/hardware_loop/module_rack.hpp"
 #include "sim/hardware_loop/native_program.hpp"
+#include "sim/mcu/chip/stm32f405.hpp"
+#include "sim/mcu/debug/gdb_server.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/hil/debugger.hpp"
 
 namespace proleg::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using DebugEvent = sim::Stm32f405::DebugEvent;
 
 constexpr const char* trace_title = "node\ttick\tto_state_frame\twhole_tick\n";
 
@@ -55,6 +58,82 @@ sim::FirmwareImage read_image(const std::optional<std::string>& name) {
 }
 
 }  // namespace
+
+/// Attaches gdb to one virtual module of `proleg hil`. While the program is stopped, the simulation is stopped too.
+class Debugger {
+ public:
+  /// Keeps the arguments; attach() opens the port.
+  Debugger(std::uint16_t port, unsigned joint, std::filesystem::path image);
+
+  [[nodiscard]] unsigned joint() const { return joint_; }
+  /// Opens the port and waits until gdb connects or the user interrupts. The program then stops at its first
+  /// instruction. Throws std::runtime_error if the port is not free.
+  void attach(sim::Stm32f405& chip);
+
+ private:
+  /// Handles an event. Returns true to execute a single step. Throws std::runtime_error if gdb ended the program.
+  [[nodiscard]] bool on_debug_event(DebugEvent event);
+
+  std::uint16_t port_;
+  unsigned joint_;
+  std::filesystem::path image_;
+  std::optional<sim::CpuTarget> target_;
+  std::optional<sim::GdbServer> server_;
+  bool must_stop_first_ = false;  ///< gdb has connected and has not seen the first stop yet
+  std::chrono::steady_clock::time_point last_poll_;
+};
+
+Debugger::Debugger(std::uint16_t port, unsigned joint, std::filesystem::path image)
+    : port_(port), joint_(joint), image_(std::move(image)) {}
+
+void Debugger::attach(sim::Stm32f405& chip) {
+  target_.emplace(chip.cpu());
+  server_.emplace(port_, *target_);
+  std::cerr << "proleg hil: waits for: gdb-multiarch " << image_.string() << " -ex 'target remote :" << server_->port()
+            << "'\n";
+  must_stop_first_ = server_->wait_for_client(interrupted);
+  chip.set_debug_hook([this](DebugEvent event) { return on_debug_event(event); });
+}
+
+bool Debugger::on_debug_event(DebugEvent event) {
+  sim::StopReason reason{};
+  switch (event) {
+    case DebugEvent::about_to_run: {
+      constexpr std::chrono::milliseconds poll_period(5);
+      const auto now = std::chrono::steady_clock::now();
+      if (must_stop_first_) {
+        must_stop_first_ = false;
+        reason = sim::StopReason::attached;
+      } else if (now - last_poll_ >= poll_period) {
+        last_poll_ = now;
+        if (!server_->interrupt_requested()) {
+          return false;
+        }
+        reason = sim::StopReason::interrupt;
+      } else {
+        return false;
+      }
+      break;
+    }
+    case DebugEvent::breakpoint:
+      reason = sim::StopReason::breakpoint;
+      break;
+    case DebugEvent::step:
+      reason = sim::StopReason::step;
+      break;
+    case DebugEvent::fault:
+      reason = sim::StopReason::fault;
+      break;
+  }
+  switch (server_->serve(reason, interrupted)) {
+    case sim::Resume::step:
+      return true;
+    case sim::Resume::kill:
+      throw std::runtime_error("gdb ended the program");
+    default:
+      return false;
+  }
+}
 
 /// The table of a module's instruction counts, in a file or on standard error.
 struct HilModules::InstructionTrace {

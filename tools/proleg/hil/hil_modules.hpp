@@ -2,13 +2,13 @@
 
 // The modules of `proleg hil`, which run on this computer or on virtual chips.
 
-#include <filesystem>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "shared/computer/output/output_check.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/mcu/module/flashed_chip.hpp"
 #include "tools/proleg/common/command_line.hpp"

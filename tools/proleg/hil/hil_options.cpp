@@ -4,7 +4,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/scenario/names.hpp"
 
 namespace proleg::tools {

@@ -5,10 +5,9 @@
 
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/build_id.hpp"
-#include "tools/proleg/common/durations_text.hpp"
+#include "tools/proleg/common/json_output.hpp"
 
 namespace proleg::tools {
-
 namespace {
 
 /// Prints the course of one run: the schedule, the events of each module with their times, and the end of each module.

@@ -4,11 +4,14 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -20,6 +23,14 @@ namespace {
 
 using namespace proleg;
 using namespace proleg::tools;
+
+void create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
+  }
+}
 
 struct NewOptions {
   std::string what;
@@ -84,6 +95,24 @@ int write_robot(const NewOptions& options) {
 }
 
 }  // namespace
+
+void proleg::tools::write_new_files(const std::filesystem::path& folder, std::span<const NewFile> files) {
+  if (folder.empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
+  for (const NewFile& file : files) {
+    if (std::filesystem::exists(folder / file.name)) {
+      throw BadInput((folder / file.name).string() +
+                     ": found an existing file, expected none; --out FOLDER names another folder");
+    }
+  }
+  for (const NewFile& file : files) {
+    const std::filesystem::path path = folder / file.name;
+    create_folder(path.parent_path());
+    write_file(path, file.text);
+    std::cout << "written  " << path.string() << '\n';
+  }
+}
 
 int main(int argc, char** argv) {
   const std::string_view what = argc > 1 ? argv[1] : "";

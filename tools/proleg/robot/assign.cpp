@@ -15,8 +15,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/robot/assign_bus.hpp"
-#include "tools/proleg/robot/assign_dialogue.hpp"
+#include "tools/proleg/robot/assign_steps.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/robot/node_numbering.hpp"
 

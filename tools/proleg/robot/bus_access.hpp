@@ -1,17 +1,22 @@
 #pragma once
 
-// For the subcommands that use a bus.
+// For the subcommands that use a bus: how they find and open it, and how they read and write objects of modules.
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "host/robot/bus_connection.hpp"
 #include "host/robot/bus_scan.hpp"
+#include "host/robot/object_word.hpp"
 #include "host/robot/sdo_queue.hpp"
+#include "shared/kernel/kernel_configuration.hpp"
 #include "tools/proleg/common/command_line.hpp"
 
 namespace proleg::tools {
@@ -94,5 +99,24 @@ class HostPresence final : public host::BusUser {
   bool is_active_ = true;
   Microseconds next_ = 0;
 };
+
+/// The algorithms in the slots of modules, as far as words need them.
+class AlgorithmTable {
+ public:
+  /// Which object a word is for a module. Throws InputError if its algorithm has no such parameter.
+  [[nodiscard]] canopen::Object object(std::uint8_t node, const host::ObjectWord& word) const;
+
+ private:
+  friend AlgorithmTable read_algorithms(BusAccess&, host::SdoQueue&, std::span<const std::uint8_t>,
+                                        std::span<const host::ObjectWord>);
+  std::map<std::uint8_t, std::array<std::uint8_t, max_slots>> ids_;  ///< by node
+};
+
+/// Reads them, if a word is the name of a parameter. Throws std::runtime_error if a module does not answer.
+[[nodiscard]] AlgorithmTable read_algorithms(BusAccess& bus, host::SdoQueue& queue, std::span<const std::uint8_t> nodes,
+                                             std::span<const host::ObjectWord> words);
+
+/// The number that travelled, sign-extended.
+[[nodiscard]] std::int64_t raw_number(const canopen::Object& object, const host::SdoResult& result);
 
 }  // namespace proleg::tools

@@ -13,7 +13,7 @@
 #include "host/robot/state_text.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
-#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/common/durations_text.hpp"
+#include "tools/proleg/common/json_output.hpp"
 
 namespace proleg::tools {
 namespace {

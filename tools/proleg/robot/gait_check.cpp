@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/touch_inputs.hpp"
+#include "sim/loop/module_readings.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/robot/robot_drive.hpp"
-#include "host/robot/setpoint_check.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "sim/loop/gait.hpp"
 #include "sim/record/recorder.hpp"

@@ -9,7 +9,7 @@
 #include "host/robot/state_text.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master/change_plan.hpp"
-#include "shared/computer/master/master_text.hpp"
+#include "shared/computer/master/master_report.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/scenario/settings.hpp"
 

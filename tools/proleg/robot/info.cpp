@@ -11,10 +11,9 @@
 #include "host/robot/state_text.hpp"
 #include "shared/canopen/object_name.hpp"
 #include "shared/gait/registry.hpp"
-#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/object_access.hpp"
 
 namespace {
 

@@ -7,7 +7,6 @@
 
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 

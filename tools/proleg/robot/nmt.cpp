@@ -16,9 +16,8 @@
 #include "shared/canopen/messages.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/object_access.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include "host/robot/bus_user.hpp"
 #include "host/robot/node_plan.hpp"
-#include "shared/computer/master/master_text.hpp"
+#include "shared/computer/master/master_report.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {

@@ -15,9 +15,8 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/kernel_configuration.hpp"
-#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/object_access.hpp"
 
 namespace {
 

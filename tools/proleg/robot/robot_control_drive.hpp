@@ -7,7 +7,6 @@
 #include <functional>
 #include <string>
 
-#include "host/robot_control/drive_loop.hpp"
 #include "host/robot_control/gait_driver.hpp"
 #include "host/robot_control/robot_control.hpp"
 #include "sim/loop/gait.hpp"

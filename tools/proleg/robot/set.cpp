@@ -7,9 +7,8 @@
 #include "host/robot/object_word.hpp"
 #include "shared/canopen/object_name.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/common/interrupt.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/robot/object_access.hpp"
 
 namespace {
 

@@ -16,13 +16,11 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
-#include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/data_file/data_file.hpp"
 #include "sim/record/figure.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/series.hpp"
-#include "sim/record/series_figure.hpp"
 #include "sim/record/tsv.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"

@@ -22,7 +22,7 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 
 namespace {
 

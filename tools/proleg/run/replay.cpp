@@ -13,7 +13,7 @@
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 
 namespace {
 

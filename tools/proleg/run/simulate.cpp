@@ -15,8 +15,8 @@
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
-#include "tools/proleg/run/simulation_results.hpp"
+#include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/run/simulation_texts.hpp"
 
 namespace {
 

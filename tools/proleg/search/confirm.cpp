@@ -11,10 +11,9 @@
 #include "sim/optimize/confirm/gait_confirmation.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 
 namespace {
 

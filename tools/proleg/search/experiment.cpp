@@ -16,18 +16,15 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/environment/physics_engine.hpp"
+#include "sim/environment/environment_model.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/result_folder.hpp"
-#include "tools/proleg/search/experiment_gaits.hpp"
 #include "tools/proleg/search/experiment_methods.hpp"
 #include "tools/proleg/search/gait_checks.hpp"
-#include "tools/proleg/search/repetitions.hpp"
 
 namespace {
 

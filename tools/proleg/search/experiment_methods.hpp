@@ -1,6 +1,7 @@
 #pragma once
 
-// The methods that take part in an experiment of the thesis, and the experiment that each of them searches.
+// The methods that take part in an experiment of the thesis, the experiment that each of them searches, and its
+// repetitions.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/report/method_runs.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
 #include "tools/proleg/search/optimisation.hpp"
 
@@ -49,5 +51,21 @@ struct MethodChoice {
 /// and BadInput if a search would write over its own files.
 [[nodiscard]] std::vector<ChosenMethod> choose_methods(const optimize::ThesisExperiment& thesis,
                                                        const MethodChoice& choice);
+
+inline constexpr std::uint32_t max_repetitions = 1000;
+
+struct MethodResult {
+  optimize::MethodRuns runs;
+  std::vector<std::string> endings;
+  std::optional<optimize::Evaluation> best;
+  double wall_s = 0.0;
+};
+
+/// Runs the repetitions side by side, with shared workers; evaluations in the folder's store are not simulated again.
+/// The result has fewer repetitions if the user interrupts. It does not depend on the number of workers. repetitions:
+/// at most max_repetitions. Throws BadInput, and std::runtime_error if no evaluation of a repetition has a score.
+[[nodiscard]] MethodResult run_repetitions(const std::string& name, const optimize::Experiment& experiment,
+                                           std::uint32_t repetitions, std::uint32_t workers,
+                                           const std::filesystem::path& folder);
 
 }  // namespace proleg::tools

@@ -1,18 +1,22 @@
 #pragma once
 
-// Checks the best gaits of an experiment in other worlds: whether a search found a gait, or the accidents of one world.
+// Checks the gaits of an experiment of the thesis, those without a search and the best of each method, in other worlds:
+// whether a search found a gait, or the accidents of one world.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "sim/optimize/confirm/perturbed_worlds.hpp"
-#include "sim/optimize/experiment/fitness.hpp"
+#include "sim/optimize/confirm/gait_confirmation.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
 #include "sim/optimize/report/crossing_figure.hpp"
+#include "sim/optimize/report/thesis_experiment.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/search/experiment_methods.hpp"
 
 namespace proleg::tools {
 
@@ -36,7 +40,7 @@ inline constexpr std::uint32_t checked_worlds = 20;
 /// that goes farther has a reflex that makes it larger, also without an obstacle.
 inline constexpr double level_tolerance = 0.15;
 
-/// Thrown if the user has interrupted a check (tools/proleg/common/interrupt.hpp).
+/// Thrown if the user has interrupted a check.
 class CheckInterrupted {};
 
 /// Distance of a scenario's robot in m, in the scenario's engine; NaN if the physics failed. distance: the objective of
@@ -57,5 +61,22 @@ class CheckInterrupted {};
 /// The four stages of figure 6.8 in a run of the scenario: the robot's middle on the second hill, in the pit behind it,
 /// at its end, and on the last hill. They are fewer if the robot does not get there. Throws CheckInterrupted.
 [[nodiscard]] std::vector<optimize::CrossingStage> crossing_stages(sim::Scenario scenario);
+
+/// The figures of check_gaits().
+inline constexpr std::array<std::string_view, 2> gait_check_figures{"figure_6_8.svg", "figure_7_3.svg"};
+
+[[nodiscard]] std::vector<optimize::Reference> reference_distances(const optimize::ThesisExperiment& thesis,
+                                                                   const optimize::Experiment& experiment,
+                                                                   const std::filesystem::path& scenarios);
+
+/// Checks the references on the obstacle, the best of each method, and its best that keeps the level, if it has one:
+/// each in its own world, in other worlds and on level ground. Writes figures 6.8, the crossing of the best, and 7.3,
+/// all distances on a ruler, to the folder, and the gaits that keep the level to those of the methods. results: one for
+/// each chosen method. The experiment must have a level ground. Throws CheckInterrupted.
+[[nodiscard]] std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis,
+                                                   const std::vector<ChosenMethod>& chosen,
+                                                   const std::vector<MethodResult>& results,
+                                                   const std::filesystem::path& scenarios,
+                                                   const std::filesystem::path& folder);
 
 }  // namespace proleg::tools

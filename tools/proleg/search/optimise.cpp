@@ -114,22 +114,6 @@ void keep_stored_evaluations(optimize::Store& store, Experiment& experiment) {
   store.save_search(experiment.evaluations, build_id);
 }
 
-/// The files of a stored experiment.
-class StoredFiles final : public sim::FileSource {
- public:
-  explicit StoredFiles(const std::vector<sim::SourceFile>& sources) : sources_(sources) {}
-
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
-    const auto found = std::ranges::find_if(sources_, [&](const sim::SourceFile& source) {
-      return std::filesystem::path(source.path).lexically_normal() == path.lexically_normal();
-    });
-    return found == sources_.end() ? std::nullopt : std::optional(found->text);
-  }
-
- private:
-  const std::vector<sim::SourceFile>& sources_;
-};
-
 Experiment read_stored(const OptimiseOptions& options) {
   if (!options.resume) {
     throw BadInput("found no FILE, expected an experiment (*.optimise.xml), or --resume FOLDER");
@@ -142,7 +126,10 @@ Experiment read_stored(const OptimiseOptions& options) {
   }
   try {
     const optimize::StoredExperiment stored = optimize::read_stored_experiment(store_path(*options.resume));
-    StoredFiles files(stored.sources);
+    sim::SourceTexts files;
+    for (const sim::SourceFile& source : stored.sources) {
+      files.add(source.path, source.text);
+    }
     Experiment experiment = optimize::read_experiment(stored.path, files, stored.scenario);
     experiment.seed = stored.seed;
     experiment.evaluations = stored.evaluations;

@@ -7,7 +7,7 @@
 
 #include "shared/computer/output/output.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/command_line.hpp"

@@ -23,8 +23,7 @@
 #include <vector>
 
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 
 namespace proleg::tools {
 namespace {

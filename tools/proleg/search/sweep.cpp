@@ -25,7 +25,7 @@
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/proleg/common/terminal_line.hpp"
+#include "tools/proleg/common/terminal.hpp"
 
 namespace {
 

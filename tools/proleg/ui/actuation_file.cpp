@@ -6,10 +6,9 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/output/output.hpp"
-#include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
-#include "tools/proleg/ui/operation.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 namespace {

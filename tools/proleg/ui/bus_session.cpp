@@ -13,10 +13,9 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/document/robot_document.hpp"
-#include "tools/proleg/ui/bus_document.hpp"
-#include "tools/proleg/ui/operation.hpp"
+#include "tools/proleg/ui/bus_view.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
-#include "tools/proleg/ui/robot_row.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -16,10 +16,10 @@
 #include "host/robot/bus_scan.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
+#include "tools/proleg/ui/bus_view.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
-#include "tools/proleg/ui/robot_row.hpp"
-#include "tools/proleg/ui/session_thread.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 

@@ -6,10 +6,10 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/loop/robot_placement.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/settings.hpp"
-#include "tools/proleg/run/simulation_results.hpp"
+#include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
 
 namespace proleg::tools {

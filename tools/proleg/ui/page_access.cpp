@@ -11,7 +11,7 @@
 #include <system_error>
 #include <thread>
 
-#include "host/server/access_token.hpp"
+#include "host/server/request_policy.hpp"
 #include "shared/computer/errors/input_error.hpp"
 
 namespace proleg::tools {

@@ -13,7 +13,7 @@
 #include "shared/computer/change/change.hpp"
 #include "shared/kernel/kernel_configuration.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "tools/proleg/document/parameter_table.hpp"
+#include "tools/proleg/document/robot_document.hpp"
 
 namespace proleg::tools {
 

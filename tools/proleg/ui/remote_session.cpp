@@ -9,12 +9,12 @@
 #include <system_error>
 #include <utility>
 
-#include "host/remote/binding_file.hpp"
+#include "host/remote/binding.hpp"
 #include "host/remote/event_devices.hpp"
 #include "host/remote/remote_control.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/ui/operation.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 namespace {

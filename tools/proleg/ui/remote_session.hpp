@@ -14,12 +14,12 @@
 #include <thread>
 #include <vector>
 
-#include "host/remote/binding_file.hpp"
+#include "host/remote/binding.hpp"
 #include "host/remote/device_listener.hpp"
 #include "host/remote/remote_control.hpp"
 #include "host/server/robot_session.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
-#include "tools/proleg/ui/task_queue.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 

@@ -7,7 +7,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/record/recorded_scenario.hpp"
 #include "tools/proleg/document/recording_document.hpp"
-#include "tools/proleg/run/simulate_command.hpp"
+#include "tools/proleg/run/simulation_texts.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -15,8 +15,8 @@
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/document/telemetry_row.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
-#include "tools/proleg/ui/operation.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 namespace {

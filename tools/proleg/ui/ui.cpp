@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/remote/binding_file.hpp"
-#include "host/server/session_requests.hpp"
+#include "host/remote/binding.hpp"
+#include "host/server/robot_session.hpp"
 #include "host/server/web_server.hpp"
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -21,13 +21,12 @@
 #include "sim/scenario/robot_move.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/interrupt.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/new/robot_files.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
-#include "tools/proleg/run/simulate_command.hpp"
+#include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/page_access.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"

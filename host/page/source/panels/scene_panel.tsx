@@ -3,6 +3,7 @@ import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { limitFrameRate, onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
+import { setPictureSource } from '../scene/canvas_picture.js';
 import type { FromScene, ScenePose, ToScene } from '../scene/scene_messages.js';
 import { ghostIsOn, toggleGhost } from '../robot_actions.js';
 import type { MoveTool } from '../state/move_tool.js';
@@ -44,7 +45,12 @@ export function ScenePanel({ app }: { app: RobotView }) {
       failure.value = (error as Error).message;
       return () => canvas.remove();
     }
-    worker.onerror = (event) => (failure.value = event.message || 'the browser starts no worker');
+    const pictures: { done: (picture: ImageBitmap) => void; failed: (error: Error) => void }[] = [];
+    const fail = (reason: string) => {
+      failure.value = reason;
+      pictures.splice(0).forEach(({ failed }) => failed(new Error(reason)));
+    };
+    worker.onerror = (event) => fail(event.message || 'the browser starts no worker');
     const send = (message: ToScene, transfer: Transferable[] = []) => worker.postMessage(message, transfer);
     post.current = send;
     const pull = new ScenePull(app, send);
@@ -61,13 +67,24 @@ export function ScenePanel({ app }: { app: RobotView }) {
         level.value = message.level;
         limitFrameRate(message.level > 0);
       }
-      if (message.kind === 'failed') failure.value = message.reason;
+      if (message.kind === 'picture') {
+        const asked = pictures.shift();
+        if (message.picture === null) asked?.failed(new Error('the browser makes no picture'));
+        else asked?.done(message.picture);
+      }
+      if (message.kind === 'failed') fail(message.reason);
     };
     const mover: RobotMover = {
       isActive: () => app.mover?.isActive.peek() ?? false,
       step: (way, degrees) => void app.mover?.step(way, degrees),
     };
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);
+    setPictureSource(canvas, () => {
+      const reason = failure.peek();
+      if (reason !== null) return Promise.reject(new Error(reason));
+      send({ kind: 'picture' });
+      return new Promise((done, failed) => pictures.push({ done, failed }));
+    });
     const observer = new ResizeObserver(([entry]) => {
       const { width, height } = (entry as ResizeObserverEntry).contentRect;
       send({ kind: 'size', width, height, ratio: window.devicePixelRatio });
@@ -117,6 +134,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
       stops.forEach((stop) => stop());
       observer.disconnect();
       worker.terminate();
+      pictures.splice(0).forEach(({ failed }) => failed(new Error('the 3D view was closed')));
       canvas.remove();
     };
   }, []);

@@ -1,4 +1,6 @@
 // Makes a picture of a panel: its canvases in their places, and the names of its lines above them.
+import { pictureOf } from '../scene/canvas_picture.js';
+
 const titleHeight = 22; // CSS pixels
 
 interface Label {
@@ -14,7 +16,7 @@ function labelsOf(panel: Element): Label[] {
 }
 
 // Makes the picture. Throws an Error if there is nothing to draw.
-export function panelImage(panel: Element, title: string): Promise<Blob> {
+export async function panelImage(panel: Element, title: string): Promise<Blob> {
   const box = panel.getBoundingClientRect();
   const ratio = window.devicePixelRatio;
   const canvas = document.createElement('canvas');
@@ -22,7 +24,7 @@ export function panelImage(panel: Element, title: string): Promise<Blob> {
   canvas.height = Math.max(1, Math.round((box.height + titleHeight) * ratio));
   const context = canvas.getContext('2d');
   if (context === null || box.width === 0) {
-    return Promise.reject(new Error('this panel is not shown'));
+    throw new Error('this panel is not shown');
   }
   context.scale(ratio, ratio);
   const style = getComputedStyle(panel);
@@ -40,12 +42,13 @@ export function panelImage(panel: Element, title: string): Promise<Blob> {
     context.fillText(text, x + 18, titleHeight / 2);
     x += 30 + context.measureText(text).width;
   }
-  panel.querySelectorAll('canvas').forEach((part) => {
+  for (const part of panel.querySelectorAll('canvas')) {
     const place = part.getBoundingClientRect();
     if (place.width > 0) {
-      context.drawImage(part, place.left - box.left, place.top - box.top + titleHeight, place.width, place.height);
+      const picture = await pictureOf(part);
+      context.drawImage(picture, place.left - box.left, place.top - box.top + titleHeight, place.width, place.height);
     }
-  });
+  }
   return new Promise((done, failed) => {
     canvas.toBlob((blob) => (blob === null ? failed(new Error('the browser makes no picture')) : done(blob)), 'image/png');
   });

@@ -278,6 +278,13 @@ export class RobotScene {
     return caster;
   }
 
+  // The view as it is now.
+  picture(): Promise<ImageBitmap> {
+    this.isDirty = true;
+    this.render();
+    return createImageBitmap(this.renderer.domElement);
+  }
+
   // Draws the view. Returns false if nothing has changed.
   render(): boolean {
     if (!this.isDirty) {

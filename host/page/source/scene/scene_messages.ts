@@ -31,6 +31,7 @@ export type ToScene =
   | { kind: 'zoom'; factor: number }
   | { kind: 'follow'; isOn: boolean }
   | { kind: 'reset_view' }
+  | { kind: 'picture' } // answered by one; the answers have the order of the requests
   | { kind: 'grab_robot'; x: number; y: number } // place as in `point`; grabs the link there, if there is one
   | { kind: 'drag_robot'; x: number; y: number; right: number; down: number; way: DragWay; turn: number } // turns the view if nothing is grabbed
   | { kind: 'drop_robot' }
@@ -47,4 +48,5 @@ export type FromScene =
   | { kind: 'dragged_joint'; angle: number } // radians since the grab
   | { kind: 'following'; isOn: boolean }
   | { kind: 'detail'; level: number } // 0: all of it
+  | { kind: 'picture'; picture: ImageBitmap | null } // all messages before the request are in it; null: it failed
   | { kind: 'failed'; reason: string };

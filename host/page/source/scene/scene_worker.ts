@@ -3,7 +3,7 @@ import { DrawingBudget, slowFrame, slowFrameInSoftware } from './drawing_budget.
 import { RobotScene } from './robot_scene.js';
 import type { FromScene, ToScene } from './scene_messages.js';
 
-const post = (message: FromScene) => self.postMessage(message);
+const post = (message: FromScene, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 
 let scene: RobotScene | null = null;
 
@@ -64,6 +64,12 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return view.setFollowing(message.isOn);
     case 'reset_view':
       return view.resetView();
+    case 'picture':
+      view.picture().then(
+        (picture) => post({ kind: 'picture', picture }, [picture]),
+        () => post({ kind: 'picture', picture: null }),
+      );
+      return;
     case 'grab_robot':
       if (view.grabRobot(message.x, message.y)) post({ kind: 'grabbed_robot' });
       return;

@@ -140,6 +140,11 @@ class TestModule : public TestRobot {
     configure(0);
     start();
   }
+  /// Writes an object, which the module must accept.
+  void write(const canopen::Object& entry, std::uint32_t value) {
+    ASSERT_EQ(bus.write(node_id, entry, value), canopen::AbortCode::none) << std::hex << entry.address.index;
+  }
+  void write_controlword(std::uint16_t value) { write(canopen::object::controlword, value); }
   void tick(std::uint32_t tick) { bus.deliver(encode(canopen::TickMessage{tick, crc()})); }
   /// Sends SYNC a tick period after the one before, or now if that is later.
   void sync(std::uint32_t tick) {

@@ -3,10 +3,10 @@
 // results are in driver_test_result.
 
 #include "firmware/stm32f405/clock.hpp"
-#include "firmware/stm32f405/gpio.hpp"
 #include "firmware/stm32f405/hardware.hpp"
+#include "firmware/stm32f405/pins.hpp"
+#include "firmware/stm32f405/reset.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
-#include "firmware/stm32f405/watchdog.hpp"
 
 namespace {
 

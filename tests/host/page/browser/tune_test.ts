@@ -1,17 +1,18 @@
 // Parameters: written into the file, and the table of all values.
 import assert from 'node:assert/strict';
-import { appendFileSync, cpSync, readFileSync, rmSync } from 'node:fs';
-import { describe, it } from 'node:test';
+import { appendFileSync, cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, describe, it } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
 
-const folder = 'build/page_test/tuned';
-const file = `${folder}/uniform.actuation.xml`;
-
 describe('parameters of a robot with files', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'proleg-tuned-'));
+  const file = `${folder}/uniform.actuation.xml`;
+  after(() => rmSync(folder, { recursive: true, force: true }));
   const copyAndStart = () => {
-    rmSync(folder, { recursive: true, force: true });
     cpSync('sim/scenarios/travelling_wave', folder, { recursive: true });
     return UiProgram.start(`${folder}/uniform.simulation.xml`);
   };

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "host/remote/binding_file.hpp"
-#include "host/remote/parameter_motion.hpp"
+#include "host/remote/binding.hpp"
+#include "host/remote/bound_elements.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "tests/support/fuzz_input.hpp"
 

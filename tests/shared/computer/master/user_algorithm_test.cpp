@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scripted_robot.hpp"
-#include "shared/computer/master/master_text.hpp"
+#include "shared/computer/master/master_report.hpp"
 #include "shared/gait/actuation_module.hpp"
 
 namespace proleg::test {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/support/files.hpp"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
@@ -25,18 +24,18 @@ Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slice
     } else {
       reason = StopReason::interrupt;
       int slices = 0;
+      int waits = 0;
       bool has_interrupted = false;
-      const auto start = std::chrono::steady_clock::now();
       // The user's control-C, when the program does not stop by itself.
       for (bool requested = false; !requested; requested = server.interrupt_requested()) {
         if (program.run_slice()) {
           reason = StopReason::breakpoint;
           break;
         }
-        // A user reacts long after gdb has begun to wait; a signal before that would end gdb's wait.
-        constexpr std::chrono::milliseconds reaction_time(500);
-        if (++slices >= slices_until_control_c && !has_interrupted &&
-            std::chrono::steady_clock::now() - start >= reaction_time) {
+        // A user reacts when gdb waits for the program; a signal before that would end gdb's wait.
+        constexpr int enough_waits = 100;
+        waits = gdb.is_waiting() ? waits + 1 : 0;
+        if (++slices >= slices_until_control_c && !has_interrupted && waits >= enough_waits) {
           gdb.interrupt();
           has_interrupted = true;
         }

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include <array>
+#include <fstream>
 #include <stdexcept>
 
 namespace proleg::sim {
@@ -69,6 +70,15 @@ GdbProcess::~GdbProcess() {
 }
 
 void GdbProcess::interrupt() const { ::kill(process_, SIGINT); }
+
+bool GdbProcess::is_waiting() const {
+  // The state follows the name of the program, which is in parentheses (proc(5)).
+  std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const std::size_t name_end = text.rfind(") ");
+  return name_end != std::string::npos && text.compare(name_end + 2, 1, "S") == 0;
+}
 
 void GdbProcess::kill() const { ::kill(process_, SIGKILL); }
 

@@ -11,7 +11,7 @@
 
 #include "shared/fixed/little_endian.hpp"
 #include "shared/image/image_header.hpp"
-#include "sim/mcu/module/firmware_image.hpp"
+#include "sim/mcu/module/virtual_module.hpp"
 #include "tests/support/files.hpp"
 
 namespace proleg::sim {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "driving_host.hpp"
-#include "host/robot/setpoint_check.hpp"
-#include "sim/loop/kernel_chain.hpp"
+#include "host/robot/robot_drive.hpp"
+#include "sim/loop/gait.hpp"
 #include "virtual_robot.hpp"
 
 namespace proleg::test {

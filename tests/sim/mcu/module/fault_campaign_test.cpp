@@ -11,8 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/fault/fault_reader.hpp"
-#include "sim/fault/random_faults.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/hardware_loop/fault_run.hpp"
 #include "tests/support/from_environment.hpp"
 #include "virtual_robot.hpp"

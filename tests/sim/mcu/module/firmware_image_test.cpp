@@ -1,6 +1,6 @@
 // Which files are accepted as the firmware of a module. Errors of ELF files as such: tests/sim/mcu/cpu.
 
-#include "sim/mcu/module/firmware_image.hpp"
+#include "sim/mcu/module/virtual_module.hpp"
 
 #include <gtest/gtest.h>
 

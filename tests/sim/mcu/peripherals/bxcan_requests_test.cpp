@@ -1,4 +1,4 @@
-#include "sim/mcu/peripherals/bxcan_requests.hpp"
+#include "sim/mcu/peripherals/bxcan_transmitter.hpp"
 
 #include <gtest/gtest.h>
 

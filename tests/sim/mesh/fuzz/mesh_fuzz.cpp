@@ -18,10 +18,9 @@
 #include <string>
 #include <string_view>
 
-#include "sim/mesh/convex_hull.hpp"
 #include "sim/mesh/mesh_checks.hpp"
 #include "sim/mesh/mesh_file.hpp"
-#include "sim/mesh/mesh_solid.hpp"
+#include "sim/mesh/mesh_geometry.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "sim/optimize/confirm/perturbed_worlds.hpp"
+#include "sim/optimize/confirm/gait_confirmation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "sim/optimize/evaluation/local_workers.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "small_experiment.hpp"
 
 namespace proleg::optimize {

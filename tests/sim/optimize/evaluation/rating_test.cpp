@@ -1,4 +1,4 @@
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/scenario/settings.hpp"
 #include "small_experiment.hpp"
 

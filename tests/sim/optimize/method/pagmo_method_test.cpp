@@ -1,4 +1,3 @@
-#include "sim/optimize/method/pagmo_method.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +9,7 @@
 #include <set>
 
 #include "fake_source.hpp"
-#include "sim/optimize/experiment/seeds.hpp"
+#include "sim/optimize/experiment/trials.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/method/search.hpp"
 

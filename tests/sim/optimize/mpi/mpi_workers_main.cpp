@@ -10,7 +10,7 @@
 #include <set>
 
 #include "sim/optimize/evaluation/evaluator.hpp"
-#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "small_experiment.hpp"
 
 namespace {

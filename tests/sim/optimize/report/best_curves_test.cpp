@@ -1,4 +1,4 @@
-#include "sim/optimize/report/best_curves.hpp"
+#include "sim/optimize/report/method_runs.hpp"
 
 #include "made_up.hpp"
 

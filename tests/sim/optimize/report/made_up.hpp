@@ -14,7 +14,7 @@
 
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
-#include "sim/optimize/report/best_curves.hpp"
+#include "sim/optimize/report/method_runs.hpp"
 
 namespace proleg::optimize {
 

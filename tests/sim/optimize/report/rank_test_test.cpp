@@ -1,4 +1,4 @@
-#include "sim/optimize/report/rank_test.hpp"
+#include "sim/optimize/report/method_runs.hpp"
 
 #include <gtest/gtest.h>
 

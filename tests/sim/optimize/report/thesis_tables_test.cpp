@@ -1,4 +1,4 @@
-#include "sim/optimize/report/thesis_tables.hpp"
+#include "sim/optimize/report/thesis_data.hpp"
 
 #include <gtest/gtest.h>
 

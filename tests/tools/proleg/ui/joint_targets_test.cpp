@@ -1,4 +1,4 @@
-#include "tools/proleg/ui/joint_targets.hpp"
+#include "tools/proleg/ui/driven_robot.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "host/remote/binding_file.hpp"
+#include "host/remote/binding.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -123,6 +123,14 @@ class Remote : public testing::Test {
   void move(std::size_t element, double position) {
     hand.post([this, element, position] { listener->moved({1, element}, position); });
   }
+  /// Somebody drives, and holds the button for which the robot runs.
+  void hold_to_run() {
+    session.holder_changed(true, false);
+    ask(1, "remote.bind", bound_button("hold_to_run"));
+    ASSERT_TRUE(viewers.log.has("answer 1"));
+    move(1, 1);
+    ASSERT_TRUE(robot.log.has("run"));
+  }
   static json bound_axis() {
     return {{"binding",
              {{"device", "Pad"},
@@ -182,22 +190,14 @@ TEST_F(Remote, ShowsWhyTheRobotRefuses) {
 }
 
 TEST_F(Remote, PausesWhenTheHolderGoesAwayWhileAButtonIsHeld) {
-  session.holder_changed(true, false);
-  ask(1, "remote.bind", bound_button("hold_to_run"));
-  ASSERT_TRUE(viewers.log.has("answer 1"));
-  move(1, 1);
-  ASSERT_TRUE(robot.log.has("run"));
+  hold_to_run();
   session.answer(robot.last_request(), json::object());
   session.holder_changed(true, true);
   EXPECT_TRUE(robot.log.has("pause"));
 }
 
 TEST_F(Remote, StopsARobotThatRefusesToPause) {
-  session.holder_changed(true, false);
-  ask(1, "remote.bind", bound_button("hold_to_run"));
-  ASSERT_TRUE(viewers.log.has("answer 1"));
-  move(1, 1);
-  ASSERT_TRUE(robot.log.has("run"));
+  hold_to_run();
   move(1, 0);
   ASSERT_TRUE(robot.log.has("pause"));
   session.refuse(robot.last_request(), "no");
@@ -206,11 +206,7 @@ TEST_F(Remote, StopsARobotThatRefusesToPause) {
 }
 
 TEST_F(Remote, PausesAndAnswersViewersAfterAnErrorOfADevice) {
-  session.holder_changed(true, false);
-  ask(1, "remote.bind", bound_button("hold_to_run"));
-  ASSERT_TRUE(viewers.log.has("answer 1"));
-  move(1, 1);
-  ASSERT_TRUE(robot.log.has("run"));
+  hold_to_run();
   session.answer(robot.last_request(), json::object());
   hand.post([] { throw std::runtime_error("the pad is broken"); });
   EXPECT_TRUE(viewers.log.has("notice remote control: the pad is broken"));

@@ -1,4 +1,4 @@
-#include "tools/proleg/ui/robot_row.hpp"
+#include "tools/proleg/ui/bus_view.hpp"
 
 #include <gtest/gtest.h>
 

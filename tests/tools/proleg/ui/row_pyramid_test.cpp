@@ -1,11 +1,11 @@
-#include "tools/proleg/ui/row_pyramid.hpp"
+#include "tools/proleg/ui/recorded_run.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <stdexcept>
 
-#include "host/server/signal_layout.hpp"
+#include "host/server/telemetry.hpp"
 
 namespace proleg::tools {
 namespace {

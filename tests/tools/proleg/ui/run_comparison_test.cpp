@@ -1,4 +1,4 @@
-#include "tools/proleg/ui/run_comparison.hpp"
+#include "tools/proleg/ui/recorded_session.hpp"
 
 #include <gtest/gtest.h>
 

@@ -21,8 +21,8 @@ class GdbProcess {
   [[nodiscard]] bool ended() const { return ended_; }
   /// As control-C in its terminal.
   void interrupt() const;
-  /// Whether it waits for an event: its first thread sleeps. On a busy computer a thread that works does not sleep, even
-  /// while it has no processor.
+  /// Whether it waits for an event: its first thread sleeps. On a busy computer a thread that works does not sleep,
+  /// even while it has no processor.
   [[nodiscard]] bool is_waiting() const;
   void kill() const;
   /// Waits for its end; all it has written.

@@ -171,7 +171,7 @@ void raise(Lift& lift, double height, const StaticObject& object) {
   }
 }
 
-/// Above all of each mesh that is under or over a link.
+/// The lift that puts the robot above each mesh that is under or over one of its links.
 Lift lift_onto_meshes(const RobotModel& robot, const EnvironmentModel& environment) {
   Lift lift;
   for (const Link& link : robot.links) {

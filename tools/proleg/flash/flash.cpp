@@ -59,7 +59,7 @@ struct Module {
   [[nodiscard]] bool is_good() const {
     return verdict.action == FlashAction::nothing || (result && result->outcome == UpdateOutcome::runs);
   }
-  /// What it said last; nothing: it was flashed and answers no more.
+  /// The program that the module reported last; nothing if it was flashed and does not answer since.
   [[nodiscard]] const host::ModuleProgram* program() const {
     if (result && result->outcome == UpdateOutcome::vanished) {
       return nullptr;

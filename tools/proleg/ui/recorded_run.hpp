@@ -94,7 +94,7 @@ class RecordedRun {
   [[nodiscard]] std::optional<double> head_way(std::uint32_t from, std::uint32_t to);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// From the head.
+  /// Names of the joints, from the head on.
   [[nodiscard]] std::vector<std::string> joint_names() const;
   [[nodiscard]] std::uint32_t tick_period_us() const { return tick_period_us_; }
   /// As far as the file had grown when it was last read.

@@ -9,8 +9,8 @@ namespace {
 /// Least sliding speed, m/s. Below it, the direction of the velocity may be an error of the solver.
 constexpr double min_sliding_speed = 1e-3;
 
-/// Velocity of a point of a body, [m/s]: v + w x (point - centre of mass). No body is at rest. As dBodyGetPointVel(),
-/// which takes twice as long.
+/// Velocity of a point of a body, [m/s]: v + w x (point - centre of mass), with the same bits as dBodyGetPointVel(). No
+/// body is at rest.
 inline Eigen::Vector3d point_velocity(dBodyID body, const Eigen::Vector3d& point) {
   if (body == nullptr) {
     return Eigen::Vector3d::Zero();

@@ -87,10 +87,6 @@ inline constexpr std::uint32_t max_workers = 1024;
 /// Parses --workers; by default one for each processor. Throws InputError.
 [[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& argument);
 
-}  // namespace proleg::tools
-
-namespace proleg::tools {
-
 /// After this call SIGINT, SIGTERM and SIGHUP only make interrupted() true. Ignored signals remain ignored (nohup).
 void catch_interrupts();
 [[nodiscard]] bool interrupted();

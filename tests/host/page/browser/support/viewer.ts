@@ -138,9 +138,11 @@ export class Viewer {
     return numbers as [number, number, number];
   }
 
-  async stopReport(): Promise<string> {
+  // The report of the last STOP. On a busy computer POST is answered before the socket: the report is then without the
+  // numbers of modules until they come, so it is complete only with them.
+  async stopReport(complete = /\d+ of \d+ confirmed|not confirmed/): Promise<string> {
     const report = this.page.getByTestId('stop-report');
-    await report.filter({ hasText: /stopped|not confirmed/ }).waitFor();
+    await report.filter({ hasText: complete }).waitFor();
     return (await report.textContent()) ?? '';
   }
 

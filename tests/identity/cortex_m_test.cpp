@@ -1,6 +1,6 @@
 // The images for Cortex-M, on an emulated CPU, play the cases as five modules: for the CPU of the modules, and for the
 // smallest, which multiplies 32 by 32 bits to 32 and does the rest in software. The ordinary suite plays the first
-// ten cases of each algorithm and compares them with the native player, the slow suite all.
+// five cases of each algorithm and compares them with the native player, the slow suite all.
 
 #include <gtest/gtest.h>
 

@@ -34,7 +34,10 @@ endif()
 
 # Data that tests of any room may read. A change in them runs every test again, so docs/ is not among them.
 set(PROLEG_TEST_DATA ${CMAKE_SOURCE_DIR}/sim/scenarios ${CMAKE_SOURCE_DIR}/tests)
+# The interpreter itself: a version manager puts a script before it that takes longer to start than many a test.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
+execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; print(sys.executable)"
+  OUTPUT_VARIABLE Python3_EXECUTABLE OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 
 # proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
 #                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [VIRTUAL_TIME])

@@ -26,10 +26,6 @@ void sort(std::vector<FlashCandidate>& modules) {
   });
 }
 
-}  // namespace
-
-namespace {
-
 constexpr Microseconds longest_search = 60 * second;
 
 /// Begins to search for modules that are not among the known ones.

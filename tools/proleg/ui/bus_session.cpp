@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "shared/canopen/declared_objects.hpp"
-#include "shared/canopen/power_state.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/document/robot_document.hpp"
@@ -50,13 +48,11 @@ BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string ad
       bus_(bus.connection()),
       monitor_(bus_),
       monitor_attachment_(bus_, monitor_),
-      stops_of_others_(bus_),
-      stops_attachment_(bus_, stops_of_others_),
+      stops_(file, bus_, output),
       edits_(file, file),
       delivery_(edits_),
       started_(file),
-      rows_(file),
-      stop_confirmed_(file.robot.joints.size()) {
+      rows_(file) {
   output_.publish("robot", robot_document(file, "bus"));
   output_.set_signals(rows_.layout(), file.kernel.tick_period_us);
   begin_scan();
@@ -71,7 +67,7 @@ void BusSession::serve() {
   look_at_holder();
   take_operations();
   poll_robot();
-  answer_stops();
+  stops_.answer();
   if (scan_ && scan_->is_done()) {
     end_scan();
   }
@@ -119,49 +115,14 @@ void BusSession::end_scan() {
   scan_.reset();
 }
 
-/// All STOPs that wait are one for the modules.
 void BusSession::stop_at_once() {
   const Stops stops = take_stops();
   if (stops.empty()) {
     return;
   }
-  for (const host::SessionRequests::Stop& stop : stops) {
-    stops_.push_back({stop.request, stop.since});
-    output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
-  }
   stopped_by_ = stops.back().by;
   is_session_new_ = true;
-  std::ranges::fill(stop_confirmed_, false);
-  const auto confirmed = [this](unsigned joint) {
-    stop_confirmed_[joint] = true;
-    last_confirmation_ = Clock::now();
-  };
-  if (robot_) {
-    robot_->quick_stop(confirmed);
-    return;
-  }
-  // Another program may move the robot.
-  for (unsigned joint = 0; joint < stop_confirmed_.size(); ++joint) {
-    stops_of_others_.write(file_.modules[joint].node, canopen::object::controlword.address,
-                           canopen::object::controlword.type, canopen::quick_stop_controlword,
-                           [joint, confirmed](const host::SdoResult& result) {
-                             if (result.is_good()) {
-                               confirmed(joint);
-                             }
-                           });
-  }
-}
-
-void BusSession::answer_stops() {
-  const auto confirmed = static_cast<unsigned>(std::ranges::count(stop_confirmed_, std::optional(true)));
-  const Clock::time_point now = Clock::now();
-  while (!stops_.empty() &&
-         (confirmed == stop_confirmed_.size() || now > stops_.front().since + longest_confirmation)) {
-    const Clock::time_point end = confirmed > 0 && last_confirmation_ ? *last_confirmation_ : now;
-    output_.stopped(stops_.front().request, confirmed, static_cast<unsigned>(stop_confirmed_.size()),
-                    std::max(0.0, std::chrono::duration<double, std::milli>(end - stops_.front().since).count()));
-    stops_.pop_front();
-  }
+  stops_.give(stops, robot_ ? &*robot_ : nullptr);
 }
 
 /// A robot with power needs somebody who drives it.
@@ -363,7 +324,7 @@ void BusSession::start_robot(bool holds) {
   failure_.clear();
   stopped_by_.clear();
   started_with_ = holds ? "power" : "run";
-  std::ranges::fill(stop_confirmed_, std::nullopt);
+  stops_.clear();
   is_session_new_ = true;
 }
 
@@ -506,7 +467,7 @@ void BusSession::publish_bus(Clock::time_point now) {
   view.seconds = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
   view.has_other_host = monitor_.has_host(view.now);
   view.nodes = monitor_.nodes();
-  view.stop_confirmed = stop_confirmed_;
+  view.stop_confirmed = stops_.confirmed();
   if (robot_) {
     view.watch = &robot_->gait().gait_watch();
     if (const auto median_us = robot_->gait().answers_us().median()) {

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "tools/proleg/ui/bus_view.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
+#include "tools/proleg/ui/robot_stops.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -41,17 +41,9 @@ class BusSession final : private SessionThread {
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"ping", "scan"}; }
 
  private:
-  /// A STOP that waits for the modules to confirm it.
-  struct PendingStop {
-    host::RequestId request;
-    Clock::time_point since;
-  };
-
   static constexpr std::chrono::milliseconds publish_period{500};
   /// Nobody drives for so long: the robot stops.
   static constexpr std::chrono::milliseconds longest_absence{1'000};
-  /// A STOP is answered after this time, with the modules that have confirmed it by then.
-  static constexpr std::chrono::milliseconds longest_confirmation{500};
 
   // SessionThread
   void serve() override;
@@ -62,7 +54,6 @@ class BusSession final : private SessionThread {
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
 
   void stop_at_once();
-  void answer_stops();
   void look_at_holder();
   void poll_robot();
   void give_changes();
@@ -102,8 +93,7 @@ class BusSession final : private SessionThread {
   // Of the thread.
   host::BusMonitor monitor_;
   host::BusAttachment monitor_attachment_;
-  host::SdoQueue stops_of_others_;  ///< quick stops while this program drives nothing
-  host::BusAttachment stops_attachment_;
+  RobotStops stops_;
   std::optional<host::BusScan> scan_;
   std::optional<host::BusAttachment> scan_attachment_;
   ParameterEdits edits_;
@@ -119,9 +109,6 @@ class BusSession final : private SessionThread {
   std::string planned_recording_;
   std::string recording_;
   RobotRows rows_;
-  std::deque<PendingStop> stops_;
-  std::vector<std::optional<bool>> stop_confirmed_;
-  std::optional<Clock::time_point> last_confirmation_;
   std::optional<Clock::time_point> absent_since_ = Clock::time_point{};
   bool are_parameters_new_ = true;
   bool is_session_new_ = true;

@@ -44,7 +44,7 @@ struct Campaign {
 
 Campaign run_campaign(bool only_at_ticks) {
   const std::uint32_t first = from_environment("PROLEG_FAULTS_FIRST", 1);
-  const std::uint32_t runs = from_environment("PROLEG_FAULTS_RUNS", 12);
+  const std::uint32_t runs = from_environment("PROLEG_FAULTS_RUNS", 6);
   Campaign campaign;
   for (std::uint32_t seed = first; seed < first + runs; ++seed) {
     const Scenario scenario = scenario_of(seed);

@@ -1,16 +1,16 @@
 // Start of the page: the parts that are needed at once. The others come as chunks of their own (panels/live_page.tsx).
 import '@preact/signals';
 import { render } from 'preact';
-import { listenToKeys } from './keyboard.js';
-import { addActions } from './page_actions.js';
-import { addRobotActions } from './robot_actions.js';
+import { listenToKeys } from './view/keyboard.js';
+import { addActions } from './view/page_actions.js';
+import { addRobotActions } from './view/robot_actions.js';
 import { PageApp } from './page_app.js';
-import { Frame } from './panels/frame.js';
+import { Frame } from './frame.js';
 import { loadLater } from './panels/later_view.js';
-import type { PageStores } from './robot_view.js';
+import type { PageStores } from './view/robot_view.js';
 import { viewerName } from './state/viewer_name.js';
 import { takeToken } from './wire/access_token.js';
-import './theme.js';
+import './view/theme.js';
 
 const recordingsPage = loadLater<PageStores>(() => import('./recordings/recordings_page.js').then((module) => module.RecordingsPage));
 const root = document.getElementById('app') as HTMLElement;

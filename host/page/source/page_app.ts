@@ -1,7 +1,7 @@
 // Creates the stores of the page and connects them: state, connection, STOP, data.
 import { computed, effect, signal } from '@preact/signals-core';
 import { TelemetryHistory } from './data/telemetry_history.js';
-import type { PageName, PageStores } from './robot_view.js';
+import type { PageName, PageStores } from './view/robot_view.js';
 import { ActionList } from './state/actions.js';
 import { MoveTool } from './state/move_tool.js';
 import { OperationQueue } from './state/operations.js';

@@ -1,8 +1,7 @@
-"""include_circles.py SOURCE_DIR: no unit of the tree includes itself by way of others, and no folder of C++ does.
+"""include_circles.py SOURCE_DIR: no unit of the tree includes itself by way of others, and no folder does.
 
 A unit is a header with the source of the same name, or a file of the page. An `import type` counts as any other import:
-who reads one of the files needs the other. The folders of the page may form circles: the page's main folder has both what
-all panels use and what shows the panels.
+who reads one of the files needs the other.
 Prints a shortest circle of each unit that is in one, as `a -> b -> a`, and the lines that make it.
 """
 
@@ -106,8 +105,7 @@ class Tree:
                     continue  # made by the build, or of a library
                 line = f"{user}:{text.count(chr(10), 0, match.start()) + 1}: {' '.join(match[0].split())}"
                 units.add(unit_of(user), unit_of(used), line)
-                if is_cpp:
-                    folders.add(str(user.parent) + "/", str(used.parent) + "/", line)
+                folders.add(str(user.parent) + "/", str(used.parent) + "/", line)
         return units, folders
 
 

@@ -104,6 +104,9 @@ class TestIncludeCircles(unittest.TestCase):
             "    host/page/source/app.tsx:1: import { Panel, } from './panels/panel.js'",
             "    host/page/source/panels/panel.tsx:1: import('../scene.js')",
             "    host/page/source/scene.ts:1: import type { App } from './app.js'",
+            "host/page/source/ -> host/page/source/panels/ -> host/page/source/",
+            "    host/page/source/app.tsx:1: import { Panel, } from './panels/panel.js'",
+            "    host/page/source/panels/panel.tsx:1: import('../scene.js')",
         )
 
     def test_a_circle_in_a_copy_of_a_room_of_the_tree(self):

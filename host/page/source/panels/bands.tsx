@@ -1,6 +1,6 @@
 // Bands below the top bar: facts that the user must know, and questions that need an answer now.
 import { useEffect, useState } from 'preact/hooks';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import type { ConnectionStatus } from '../wire/connection.js';
 import { BusBands } from './bus_bands.js';
 

@@ -1,5 +1,5 @@
 // Bands of a robot on a bus: facts that the user must read before any other step.
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { moduleName } from '../state/module_text.js';
 
 export function BusBands({ app }: { app: Stores<'state'> }) {

@@ -2,7 +2,7 @@
 // they close with their key, their button, or a click beside them.
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
-import { openDialog } from '../dialogs.js';
+import { openDialog } from '../view/dialogs.js';
 import { closeIcon } from './icons.js';
 
 export function close(): void {

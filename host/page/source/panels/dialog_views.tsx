@@ -1,8 +1,8 @@
 // The dialogs: keys, palette, command line, and those that are loaded when they are opened.
 import { useEffect, useState } from 'preact/hooks';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import type { Action, ActionList } from '../state/actions.js';
-import { openDialog } from '../dialogs.js';
+import { openDialog } from '../view/dialogs.js';
 import { Dialog } from './dialog.js';
 import { copyIcon } from './icons.js';
 import { LaterView, loadLater } from './later_view.js';

@@ -1,6 +1,6 @@
 // Distortion: overwrites an internal value of an algorithm once, to see how the gait recovers.
 import { useSignal } from '@preact/signals';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { parseNumber, setWord } from '../state/parameter_values.js';
 import type { InternalValue } from '../wire/messages.js';
 

@@ -1,7 +1,7 @@
 // The dialog with the differences between the wanted parameters and the file, line by line, from which the user chooses.
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { chosenNumbers, groupByFile, jointsText, keyOf } from '../state/file_diff.js';
 import type { FileDiff, FileDiffEntry } from '../wire/messages.js';
 import { close, Dialog } from './dialog.js';

@@ -2,7 +2,7 @@
 //   drag up and down: the bar's value     Shift and drag across: all bars get the value under the pointer
 //   arrows: left and right choose, up and down change     digits, Enter: type a value     double click: back to the file
 import { useSignal } from '@preact/signals';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { formatRaw, parseValue, placeName, setWord, sliderStep } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 

@@ -1,7 +1,7 @@
 // The table of joints: a row for each joint with its values at the time cursor.
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
-import type { RobotView } from '../robot_view.js';
+import { onFrame } from '../view/frame_clock.js';
+import type { RobotView } from '../view/robot_view.js';
 import { currentLimitOf, currentState } from '../state/module_text.js';
 import type { Joint } from '../wire/messages.js';
 import { areComing, comparedValueOf, contactText, numberText, valueOf } from './joint_values.js';

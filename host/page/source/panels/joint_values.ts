@@ -1,5 +1,5 @@
 // Values of a joint in the history, as numbers and as text.
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import { noValue } from '../wire/messages.js';
 
 type Rows = Pick<RobotView, 'rowsAtCursor'>;

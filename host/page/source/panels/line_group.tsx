@@ -1,11 +1,11 @@
 // One plot: up to eight lines, their names with values, and the choice of lines.
 import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
-import type { RobotView } from '../robot_view.js';
+import { onFrame } from '../view/frame_clock.js';
+import type { RobotView } from '../view/robot_view.js';
 import { formatMeasured } from '../state/parameter_values.js';
 import { mostLines, type Line, type LineGroup } from '../state/signal_selection.js';
-import { isDark } from '../theme.js';
+import { isDark } from '../view/theme.js';
 import { chartTheme } from './chart_theme.js';
 import { addIcon, closeIcon } from './icons.js';
 import { comparedValueOf, valueOf } from './joint_values.js';

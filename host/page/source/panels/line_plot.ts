@@ -1,9 +1,9 @@
 // A uPlot chart of lines, redrawn from the history when something changed.
 import uPlot from 'uplot';
 import { lineData } from '../data/line_data.js';
-import { onFrame } from '../frame_clock.js';
+import { onFrame } from '../view/frame_clock.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import type { Line } from '../state/signal_selection.js';
 import { axisOverhang, axisWidth, chartTheme } from './chart_theme.js';
 import { drawTimeMarks, timeMarksKey } from './time_mark_drawing.js';

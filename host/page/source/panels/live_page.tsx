@@ -1,5 +1,5 @@
 // The page Live: the present motion of the robot.
-import type { PageStores } from '../robot_view.js';
+import type { PageStores } from '../view/robot_view.js';
 import { JointTable } from './joint_table.js';
 import { ParameterPanel } from './parameter_panel.js';
 import { PlotPanel } from './plot_panel.js';

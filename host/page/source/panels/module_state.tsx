@@ -1,5 +1,5 @@
 // The state of a joint's module, in the table of joints.
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import { moduleState } from '../state/module_text.js';
 
 export function ModuleCell({ app, joint }: { app: RobotView; joint: number }) {

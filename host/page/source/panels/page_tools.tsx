@@ -1,6 +1,6 @@
 // The buttons at the end of every bar: find an action, show the keys, change the colours.
-import { toggleDialog } from '../dialogs.js';
-import { nextTheme, themeChoice } from '../theme.js';
+import { toggleDialog } from '../view/dialogs.js';
+import { nextTheme, themeChoice } from '../view/theme.js';
 import { findIcon, themeIcon } from './icons.js';
 
 export function PageTools() {

@@ -1,7 +1,7 @@
 // The parameters of all slots, and the internal values that a change may overwrite.
 import { useSignal } from '@preact/signals';
-import { openDialog } from '../dialogs.js';
-import type { Stores } from '../robot_view.js';
+import { openDialog } from '../view/dialogs.js';
+import type { Stores } from '../view/robot_view.js';
 import { summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { DistortionForm } from './distortion_form.js';

@@ -1,6 +1,6 @@
 // One parameter: a slider and a number for all joints, and a cell for each joint.
 import { useSignal } from '@preact/signals';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { formatRaw, parseValue, placeName, setWord, sliderStep, summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { JointCells } from './joint_cells.js';

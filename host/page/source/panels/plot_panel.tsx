@@ -1,5 +1,5 @@
 // Groups of lines over time.
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import { addIcon } from './icons.js';
 import { LineGroupView } from './line_group.js';
 

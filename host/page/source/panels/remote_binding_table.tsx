@@ -1,6 +1,6 @@
 // The table of bindings. A change takes effect when its field is left, or with Enter.
 import { useSignal } from '@preact/signals';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { formatNumber } from '../state/parameter_values.js';
 import {
   actionBinding,

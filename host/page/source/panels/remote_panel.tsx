@@ -1,7 +1,7 @@
 // Gamepads and the Wiimote: their present positions, and the bindings of their elements.
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { firstBinding, positionOf, readLearned } from '../state/remote_bindings.js';
 import type { RemoteDocument } from '../wire/messages.js';
 import { RemoteBindingTable } from './remote_binding_table.js';

@@ -1,6 +1,6 @@
 // Remote control: closed, one line; its panel is loaded when it is opened.
 import { signal } from '@preact/signals';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { describeRemote } from '../state/remote_bindings.js';
 import { LaterView, loadLater } from './later_view.js';
 

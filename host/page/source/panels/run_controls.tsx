@@ -1,7 +1,7 @@
 // Controls to run, pause, step and restart, and for the speed; the present tick and time.
 import { useSignal } from '@preact/signals';
-import type { Stores } from '../robot_view.js';
-import { recordOrEnd } from '../page_actions.js';
+import type { Stores } from '../view/robot_view.js';
+import { recordOrEnd } from '../view/page_actions.js';
 import { pauseIcon, recordIcon, restartIcon, runIcon, stepIcon } from './icons.js';
 import { TickCounter } from './tick_counter.js';
 

@@ -1,13 +1,13 @@
 // The 3D view: a canvas on which a worker draws, and its reactions to pointer and keys.
 import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { limitFrameRate, onFrame } from '../frame_clock.js';
-import type { RobotView } from '../robot_view.js';
+import { limitFrameRate, onFrame } from '../view/frame_clock.js';
+import type { RobotView } from '../view/robot_view.js';
 import { setPictureSource } from '../scene/canvas_picture.js';
 import type { FromScene, ScenePose, ToScene } from '../scene/scene_messages.js';
-import { ghostIsOn, toggleGhost } from '../robot_actions.js';
+import { ghostIsOn, toggleGhost } from '../view/robot_actions.js';
 import type { MoveTool } from '../state/move_tool.js';
-import { isDark } from '../theme.js';
+import { isDark } from '../view/theme.js';
 import { MoveForm } from './move_form.js';
 import { listenToPointer, type RobotMover } from './scene_pointer.js';
 import { ScenePull } from './scene_pull.js';

@@ -1,6 +1,6 @@
 // The pose of the robot at a tick, from the telemetry; or the pose into which a hand has moved it since the last tick.
 import { poseFromArray } from '../geometry/quaternion.js';
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import { placedHead } from '../state/move_tool.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
 import type { ScenePose } from '../scene/scene_messages.js';

@@ -1,5 +1,5 @@
 // Dragging a link in the 3D view turns its joint, while the robot is held. The worker finds the link and the angle.
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import type { ToScene } from '../scene/scene_messages.js';
 import { positionOf } from './joint_values.js';
 

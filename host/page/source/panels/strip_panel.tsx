@@ -1,10 +1,10 @@
 // The space-time strip: one signal of all joints over time.
 import { useEffect, useRef } from 'preact/hooks';
 import { fillStrip, largestMagnitude } from '../data/strip_image.js';
-import { onFrame } from '../frame_clock.js';
-import type { RobotView } from '../robot_view.js';
+import { onFrame } from '../view/frame_clock.js';
+import type { RobotView } from '../view/robot_view.js';
 import { formatMeasured, roundStep } from '../state/parameter_values.js';
-import { isDark } from '../theme.js';
+import { isDark } from '../view/theme.js';
 import { axisWidth, chartTheme } from './chart_theme.js';
 import { drawTimeMarks, timeMarksKey } from './time_mark_drawing.js';
 import { signalTitle, valueName } from './value_names.js';

@@ -1,7 +1,7 @@
 // The present tick and time.
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
-import type { Stores } from '../robot_view.js';
+import { onFrame } from '../view/frame_clock.js';
+import type { Stores } from '../view/robot_view.js';
 
 export function TickCounter({ app }: { app: Stores<'newestTick' | 'tickRate'> }) {
   const tick = useRef<HTMLElement>(null);

@@ -1,7 +1,7 @@
 // The time window of strip and plots, the way back to live, markers and loop.
 import { useEffect } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
-import type { Stores } from '../robot_view.js';
+import { onFrame } from '../view/frame_clock.js';
+import type { Stores } from '../view/robot_view.js';
 import { closeIcon } from './icons.js';
 
 const windows = [2, 5, 10, 30, 60, 120]; // seconds

@@ -1,7 +1,7 @@
 // Markers and loop, drawn over a chart whose x axis is time.
 import type { TimeMarks } from '../state/time_marks.js';
 import type { TickRange } from '../state/time_view.js';
-import { isDark } from '../theme.js';
+import { isDark } from '../view/theme.js';
 import { chartTheme } from './chart_theme.js';
 
 // The place of the chart on its canvas.

@@ -1,5 +1,5 @@
 // The bar that is always visible: the robot, its state, the viewer who has control, STOP.
-import type { PageName, Stores } from '../robot_view.js';
+import type { PageName, Stores } from '../view/robot_view.js';
 import type { PageState } from '../state/page_state.js';
 import { describeStop, isConfirmed } from '../state/stop_report.js';
 import type { SessionDocument } from '../wire/messages.js';

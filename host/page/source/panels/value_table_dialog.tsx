@@ -2,7 +2,7 @@
 //   arrows, Enter: move     Shift and arrows: choose a range     Ctrl+A: all     type: change a value
 import { useSignal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
-import type { Stores } from '../robot_view.js';
+import type { Stores } from '../view/robot_view.js';
 import { type Cell, type CellProblem, cellText, contains, copyText, paste, rangeOf, wantedOf } from '../state/value_table.js';
 import type { Parameter } from '../wire/messages.js';
 import { Dialog } from './dialog.js';

@@ -1,6 +1,6 @@
 // Controls for playing and speed, the time line, and the time of the cursor.
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
+import { onFrame } from '../view/frame_clock.js';
 import { pauseIcon, runIcon } from '../panels/icons.js';
 import { speeds } from '../state/playback.js';
 import type { PlayedRecording } from './player_app.js';

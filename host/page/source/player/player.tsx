@@ -1,9 +1,9 @@
 // Start of the player: one file with page and recording, opened from a folder. It has no server and no network.
 import '@preact/signals';
 import { render } from 'preact';
-import { onFrame } from '../frame_clock.js';
-import { listenToKeys } from '../keyboard.js';
-import '../theme.js';
+import { onFrame } from '../view/frame_clock.js';
+import { listenToKeys } from '../view/keyboard.js';
+import '../view/theme.js';
 import { EmbeddedRecording } from './embedded_recording.js';
 import { addPlayerActions } from './player_actions.js';
 import { PlayerApp } from './player_app.js';

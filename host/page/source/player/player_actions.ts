@@ -1,6 +1,6 @@
 // The actions of the player, with their keys.
-import { openDialog } from '../dialogs.js';
-import { sharedActions } from '../shared_actions.js';
+import { openDialog } from '../view/dialogs.js';
+import { sharedActions } from '../view/shared_actions.js';
 import type { PlayedRecording, PlayerApp } from './player_app.js';
 
 // Adds the actions of a time line. `playKeys`: Space plays only if there is no robot to stop.

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals-core';
 import { historyFor, loadTicks, type RecordingDocuments, type RecordingSource } from '../data/recording_source.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
 import { wholePathOf } from '../panels/scene_pose.js';
-import type { RobotView } from '../robot_view.js';
+import type { RobotView } from '../view/robot_view.js';
 import { ActionList } from '../state/actions.js';
 import { Playback } from '../state/playback.js';
 import { SignalSelection } from '../state/signal_selection.js';

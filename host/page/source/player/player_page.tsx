@@ -1,5 +1,5 @@
 // The page of a recording: the panels of the live page, with a time line instead of controls of a robot.
-import { openDialog } from '../dialogs.js';
+import { openDialog } from '../view/dialogs.js';
 import { Keys, Palette } from '../panels/dialog_views.js';
 import { JointTable } from '../panels/joint_table.js';
 import { PageTools } from '../panels/page_tools.js';

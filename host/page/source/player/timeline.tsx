@@ -1,6 +1,6 @@
 // The time line: the whole recording, the time cursor, the part that strip and plots show, and marks.
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
+import { onFrame } from '../view/frame_clock.js';
 import type { PlayedRecording } from './player_app.js';
 
 export function Timeline({ app }: { app: PlayedRecording }) {

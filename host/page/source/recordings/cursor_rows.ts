@@ -2,7 +2,7 @@
 // recording plays, the next ticks are read before they are shown.
 import { pyramidBlock } from '../data/min_max_pyramid.js';
 import { TelemetryHistory } from '../data/telemetry_history.js';
-import { drawSoon } from '../frame_clock.js';
+import { drawSoon } from '../view/frame_clock.js';
 import type { Signal } from '../wire/messages.js';
 import { rowLayout } from '../wire/subscription.js';
 import type { AskRows } from './range_rows.js';

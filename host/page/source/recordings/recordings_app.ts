@@ -1,7 +1,7 @@
 // The stores of the page Recordings: the files, and the recording that is shown.
 import { effect, signal } from '@preact/signals-core';
-import { onFrame } from '../frame_clock.js';
-import type { Stores } from '../robot_view.js';
+import { onFrame } from '../view/frame_clock.js';
+import type { Stores } from '../view/robot_view.js';
 import type { RecordedFile } from '../wire/messages.js';
 import { ComparedRecording } from './compared_recording.js';
 import { OpenedRecording } from './opened_recording.js';

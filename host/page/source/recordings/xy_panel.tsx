@@ -1,12 +1,12 @@
 // One series over another one, in the part of the recording that is shown.
 import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
+import { onFrame } from '../view/frame_clock.js';
 import { chartTheme } from '../panels/chart_theme.js';
 import { signalTitle, valueName } from '../panels/value_names.js';
 import { formatMeasured } from '../state/parameter_values.js';
 import type { Line } from '../state/signal_selection.js';
-import { isDark } from '../theme.js';
+import { isDark } from '../view/theme.js';
 import { noValue, type Signal } from '../wire/messages.js';
 import type { OpenedRecording } from './opened_recording.js';
 

@@ -1,5 +1,5 @@
 // The load of the bus, and all modules on it, also those that do not belong to this robot.
-import type { Stores } from '../../robot_view.js';
+import type { Stores } from '../../view/robot_view.js';
 import { currentState, moduleState } from '../../state/module_text.js';
 import type { BusDocument, BusModule } from '../../wire/messages.js';
 import { TableHead } from '../table_head.js';

@@ -1,6 +1,6 @@
 // A button for a robot on a bus. When the command is not possible, it is disabled and says why.
 import type { ComponentChildren } from 'preact';
-import type { Stores } from '../../robot_view.js';
+import type { Stores } from '../../view/robot_view.js';
 import type { RobotCommand } from '../../state/robot_commands.js';
 
 interface Properties {

@@ -1,5 +1,5 @@
 // The comparison of the modules' state frames with the gait of this computer.
-import type { Stores } from '../../robot_view.js';
+import type { Stores } from '../../view/robot_view.js';
 import { describeGait } from '../../state/gait_text.js';
 
 export function GaitPanel({ app }: { app: Stores<'state'> }) {

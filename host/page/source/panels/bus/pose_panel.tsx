@@ -1,9 +1,9 @@
 // Positions of joints: a slider and a number for each, at a limited speed. It is possible only while the robot is held.
 import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../../frame_clock.js';
-import type { Stores } from '../../robot_view.js';
-import { poseZero } from '../../robot_actions.js';
+import { onFrame } from '../../view/frame_clock.js';
+import type { Stores } from '../../view/robot_view.js';
+import { poseZero } from '../../view/robot_actions.js';
 import { fastest, slowest } from '../../state/pose_queue.js';
 import { parseNumber } from '../../state/parameter_values.js';
 import type { Joint } from '../../wire/messages.js';

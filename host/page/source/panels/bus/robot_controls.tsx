@@ -1,6 +1,6 @@
 // Power, gait and hold of a robot on a bus; the present tick and time; the reason of the last stop.
-import type { Stores } from '../../robot_view.js';
-import { recordOrEnd } from '../../page_actions.js';
+import type { Stores } from '../../view/robot_view.js';
+import { recordOrEnd } from '../../view/page_actions.js';
 import { pauseIcon, powerIcon, recordIcon, runIcon } from '../icons.js';
 import { TickCounter } from '../tick_counter.js';
 import { CommandButton } from './command_button.js';

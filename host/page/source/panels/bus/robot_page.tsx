@@ -1,6 +1,6 @@
 // The page Live of a robot on a bus.
 import { useEffect } from 'preact/hooks';
-import type { PageStores } from '../../robot_view.js';
+import type { PageStores } from '../../view/robot_view.js';
 import { JointTable } from '../joint_table.js';
 import { ParameterPanel } from '../parameter_panel.js';
 import { PlotPanel } from '../plot_panel.js';

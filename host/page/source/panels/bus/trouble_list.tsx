@@ -1,5 +1,5 @@
 // The list of modules with faults, and of the remedies.
-import type { Stores } from '../../robot_view.js';
+import type { Stores } from '../../view/robot_view.js';
 import { troublesOf } from '../../state/module_text.js';
 
 export function TroubleList({ app }: { app: Stores<'state'> }) {

@@ -1,6 +1,6 @@
 // Actions that every page has, live or of a recording.
 import { toggleDialog } from './dialogs.js';
-import type { Action } from './state/actions.js';
+import type { Action } from '../state/actions.js';
 import { nextTheme } from './theme.js';
 
 export const sharedActions: readonly Action[] = [

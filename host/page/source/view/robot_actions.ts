@@ -1,8 +1,8 @@
 // Actions that only a robot on a bus has.
 import { signal } from '@preact/signals-core';
 import type { Stores } from './robot_view.js';
-import type { Action } from './state/actions.js';
-import type { RobotCommand } from './state/robot_commands.js';
+import type { Action } from '../state/actions.js';
+import type { RobotCommand } from '../state/robot_commands.js';
 
 // Whether the 3D view also shows the simulation that runs beside the robot.
 export const ghostIsOn = signal(true);

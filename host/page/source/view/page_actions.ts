@@ -1,7 +1,7 @@
 // The actions of the page, with their keys.
-import { recordingName } from './state/recording_name.js';
+import { recordingName } from '../state/recording_name.js';
 import { toggleDialog } from './dialogs.js';
-import type { PageState } from './state/page_state.js';
+import type { PageState } from '../state/page_state.js';
 import type { PageStores, Stores } from './robot_view.js';
 import { sharedActions } from './shared_actions.js';
 

@@ -1,5 +1,5 @@
 // Keys of the whole page. STOP has priority, whichever element has the focus; a page without a robot has no STOP.
-import type { ActionList } from './state/actions.js';
+import type { ActionList } from '../state/actions.js';
 
 const textInputs = new Set(['text', 'number', 'search']);
 

@@ -1,18 +1,18 @@
 // The stores that panels read. RobotView: for panels that only show a robot, which may be live (page_app.ts) or recorded
 // (player/player_app.ts). PageStores: for panels that also drive a robot (page_app.ts).
 import type { ReadonlySignal, Signal } from '@preact/signals-core';
-import type { TelemetryHistory } from './data/telemetry_history.js';
-import type { ActionList } from './state/actions.js';
-import type { MoveTool } from './state/move_tool.js';
-import type { OperationQueue } from './state/operations.js';
-import type { PageState } from './state/page_state.js';
-import type { PoseQueue } from './state/pose_queue.js';
-import type { SetQueue } from './state/set_queue.js';
-import type { SignalSelection } from './state/signal_selection.js';
-import type { StopControl } from './state/stop_report.js';
-import type { TimeMarks } from './state/time_marks.js';
-import type { ShownTime, TimeView } from './state/time_view.js';
-import type { RobotDocument } from './wire/messages.js';
+import type { TelemetryHistory } from '../data/telemetry_history.js';
+import type { ActionList } from '../state/actions.js';
+import type { MoveTool } from '../state/move_tool.js';
+import type { OperationQueue } from '../state/operations.js';
+import type { PageState } from '../state/page_state.js';
+import type { PoseQueue } from '../state/pose_queue.js';
+import type { SetQueue } from '../state/set_queue.js';
+import type { SignalSelection } from '../state/signal_selection.js';
+import type { StopControl } from '../state/stop_report.js';
+import type { TimeMarks } from '../state/time_marks.js';
+import type { ShownTime, TimeView } from '../state/time_view.js';
+import type { RobotDocument } from '../wire/messages.js';
 
 // A second recording that is shown beside the first.
 export interface ComparedView {

@@ -1,15 +1,15 @@
 // The frame of the page: top bar, bands, notices, dialogs; the page below it comes later.
-import type { PageStores } from '../robot_view.js';
-import { openDialog } from '../dialogs.js';
-import { Bands } from './bands.js';
-import { LaterView, loadLater, type Later } from './later_view.js';
-import { NoticeList } from './notice_list.js';
-import { TopBar } from './top_bar.js';
+import type { PageStores } from './view/robot_view.js';
+import { openDialog } from './view/dialogs.js';
+import { Bands } from './panels/bands.js';
+import { LaterView, loadLater, type Later } from './panels/later_view.js';
+import { NoticeList } from './panels/notice_list.js';
+import { TopBar } from './panels/top_bar.js';
 
-const livePage = loadLater<PageStores>(() => import('./live_page.js').then((module) => module.LivePage));
+const livePage = loadLater<PageStores>(() => import('./panels/live_page.js').then((module) => module.LivePage));
 // A robot on a bus has panels of its own.
-const robotPage = loadLater<PageStores>(() => import('./bus/robot_page.js').then((module) => module.RobotPage));
-const dialogs = loadLater<PageStores>(() => import('./dialog_views.js').then((module) => module.DialogView));
+const robotPage = loadLater<PageStores>(() => import('./panels/bus/robot_page.js').then((module) => module.RobotPage));
+const dialogs = loadLater<PageStores>(() => import('./panels/dialog_views.js').then((module) => module.DialogView));
 livePage();
 dialogs();
 let wereRecordingsShown = false; // the page Recordings is loaded when it is first shown

@@ -28,7 +28,7 @@ void BusConnection::detach(BusUser& user) {
 
 template <typename Call>
 void BusConnection::for_each_user(Call&& call) {
-  /// Also after an exception of a user.
+  /// Counts a call as long as it lasts, also if a user throws.
   struct Calls {
     explicit Calls(BusConnection& connection) : bus(connection) { ++bus.calls_; }
     ~Calls() {

@@ -104,12 +104,12 @@ struct Object : Entry {
   UnitScale scale = scale_of(Unit::count);
 };
 
-/// The same object, with the unit of its value.
+/// Gives an object the unit of its value.
 [[nodiscard]] constexpr Object in_unit(UnitScale scale, Object object) {
   object.scale = scale;
   return object;
 }
-/// The same object, with a unit whose scale is 1.
+/// Gives an object a unit whose scale is 1.
 [[nodiscard]] constexpr Object in_unit(const char* symbol, const Object& object) {
   return in_unit(UnitScale{symbol, 1, 1}, object);
 }

@@ -36,7 +36,7 @@ class Kernel {
 
   /// Sets a parameter at once, for use before the first tick. The start state follows with the next reset().
   Status set_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
-  /// The same. setting: for a parameter.
+  /// Sets the parameter of a setting at once. setting: not of an internal value.
   Status set_parameter(const Setting& setting) {
     return set_parameter(setting.slot, setting.joint, setting.number, setting.value);
   }

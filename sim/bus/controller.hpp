@@ -135,12 +135,12 @@ class Controller final : public CanPort {
   /// mailbox is free again when the listener's transmitted() is called. Throws std::invalid_argument for a frame that
   /// CAN does not have.
   [[nodiscard]] bool send(const CanFrame& frame) override;
-  /// The same with a given mailbox, 0 to 2; false also if that one is not empty.
+  /// Requests that a mailbox, 0 to 2, sends a frame. False if it is not empty or the controller is not on the bus.
   [[nodiscard]] bool send(std::size_t mailbox, const CanFrame& frame);
   /// Withdraws all frames whose transmission has not begun (reset of the module). One that is on the wire finishes and
   /// is reported as transmitted, unless it meets an error: then it is not sent again.
   void abort_all();
-  /// The same with one mailbox. True if it is empty now; else its frame is on the wire.
+  /// Withdraws the frame of a mailbox. True if the mailbox is empty now; else its frame is on the wire.
   bool abort(std::size_t mailbox);
 
   /// Power off: as abort_all(), and nothing is sent, received or reported until power is back. A frame that is on the

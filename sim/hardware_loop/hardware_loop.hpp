@@ -86,7 +86,7 @@ class HardwareLoop {
   [[nodiscard]] std::optional<std::string> world_hash() const;
   /// Set-points and servo commands that differ from the gait in memory, so far, and the first of them.
   [[nodiscard]] std::uint64_t differences() const;
-  /// The same for one joint.
+  /// Set-points and servo commands of one joint that differ from the gait in memory, so far.
   [[nodiscard]] std::uint64_t differences(unsigned joint) const;
   [[nodiscard]] const std::optional<Difference>& first_difference() const;
   /// State frames withheld from a receiver.

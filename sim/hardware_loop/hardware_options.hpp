@@ -77,7 +77,7 @@ struct ModuleParts {
   Crystal crystal;
   std::function<std::uint8_t()> sensors;    ///< touch sensors wired to it, as firmware::ContactPort::read()
   std::function<ServoReadings()> readings;  ///< of its servo and chip, at this moment
-  /// The same with the mean current since the last call, as firmware::SensorPort has it.
+  /// Readings whose current is the mean since the last call, as firmware::SensorPort has it.
   std::function<ServoReadings()> take_readings;
   bool is_gateway = false;  ///< its board record says so
 };

@@ -27,13 +27,13 @@ class HostNode final : private BusListener {
   [[nodiscard]] BusTime next_event() const { return next_event_; }
   void advance_to(BusTime now);
 
-  /// It does nothing until resume(), which handles what was received meanwhile.
+  /// The host does nothing until resume(), which handles what was received meanwhile.
   void stall() {
     is_stalled_ = true;
     update_deadline();
   }
   void resume(BusTime now);
-  /// It is gone for ever.
+  /// The host is gone for ever.
   void die();
 
   [[nodiscard]] canopen::MasterState state() const { return master_.state(); }

@@ -48,7 +48,7 @@ class ModuleRack {
   /// quiet_until: as JointModule::advance_to() has it.
   void advance_to(BusTime now, BusTime quiet_until);
 
-  /// As JointModule::catch_up_before().
+  /// Calls JointModule::catch_up_before() of each module.
   void catch_up_before(BusTime time);
 
   /// At SYNC, before the modules receive it: restarts the modules that are due.
@@ -70,7 +70,7 @@ class ModuleRack {
 
   /// The pulse that the servo of a joint gets now.
   [[nodiscard]] std::optional<std::int32_t> pulse(unsigned joint) const { return modules_[joint]->pulse(); }
-  /// The same, but of a module that restarted at the last SYNC: the pulse before the restart.
+  /// The pulse that a servo gets now, or got before the restart if its module restarted at the last SYNC.
   [[nodiscard]] std::optional<std::int32_t> pulse_before_restart(unsigned joint) const {
     return has_restarted(joint) ? last_pulses_[joint] : pulse(joint);
   }

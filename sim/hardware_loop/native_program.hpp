@@ -60,7 +60,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
 
   /// The image in slot A; empty: none.
   [[nodiscard]] std::span<const std::uint8_t> image() const { return slots_.image_in(bootloader::FlashSlot::a); }
-  /// The same for slot B.
+  /// The image in slot B; empty: none.
   [[nodiscard]] std::span<const std::uint8_t> backup() const { return slots_.image_in(bootloader::FlashSlot::b); }
 
   // firmware::ProgramPort.

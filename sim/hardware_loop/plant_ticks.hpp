@@ -96,7 +96,7 @@ class PlantTicks {
 
   /// The readings of the last completed tick, in the order of time, then of joints.
   [[nodiscard]] std::span<const Reading> readings() const { return completed_; }
-  /// Those of them that came too late for a step of the physics: the SYNC was early by more than pulse_timing.hpp
+  /// The readings that came too late for a step of the physics: the SYNC was early by more than pulse_timing.hpp
   /// allows. The servos acted on these pulses from the next tick on.
   [[nodiscard]] std::span<const Reading> late_readings() const { return late_; }
 

@@ -33,7 +33,7 @@ using DifferenceNote = std::function<void(const Difference&)>;
 void compare_setpoints(std::uint32_t tick, std::span<const std::int32_t> found, std::span<const std::int32_t> expected,
                        const DifferenceNote& note);
 
-/// The same for pulses, which are in the order of time, then of joints. A pulse that only one side has is a difference.
+/// Calls note for every pulse that differs or that only one side has. Pulses: in the order of time, then of joints.
 void compare_pulses(std::uint32_t tick, std::span<const ServoPulse> found, std::span<const ServoPulse> expected,
                     const DifferenceNote& note);
 

@@ -170,7 +170,7 @@ class Gait {
 
   /// Position of the first change that has not been applied or left out.
   [[nodiscard]] std::size_t next_change() const { return next_change_; }
-  /// The same, if the change is for the coming tick.
+  /// Position of the next change if it is for the coming tick.
   [[nodiscard]] std::optional<std::size_t> due_change() const;
   /// The changes for the coming tick take effect at it. Returns the last of them; null if there is none.
   const Change* apply_due_changes();

@@ -201,7 +201,7 @@ class WorldHash {
     }
   }
 
-  /// As ValueHash::hex(); nothing if the engine does not give the same states on every machine.
+  /// The hash, in hexadecimal; nothing if the engine does not give the same states on every computer.
   [[nodiscard]] std::optional<std::string> hex() const {
     return has_states_ ? std::optional(hash_.hex()) : std::nullopt;
   }

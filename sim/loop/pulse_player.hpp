@@ -21,8 +21,8 @@ constexpr std::uint32_t pulse_reading_delay_us(std::uint32_t servo_period_us) {
 
 /// When a simulated servo begins to act on a pulse: microseconds after SYNC 0.
 ///
-/// It acts at the start of the interval. At the end of a tick it acts at the next SYNC instead, if a pulse could be
-/// read only after that SYNC. With modules in the loop the world has made the steps of the tick by then, since the
+/// A pulse acts at the start of the interval. At the end of a tick it acts at the next SYNC instead, if a pulse could
+/// be read only after that SYNC. With modules in the loop the world has made the steps of the tick by then, since the
 /// modules take their touch sensors at the SYNC. `proleg simulate` follows the same rule and so simulates the same
 /// world. Steps of 1 ms and more do not need the rule: no step of the tick starts that late.
 ///

@@ -178,7 +178,7 @@ class LossesByTick {
  public:
   explicit LossesByTick(const Recording& recording) : reader_(recording), next_(reader_.next()) {}
 
-  /// Those of the tick that take() had last; at the same address in all ticks.
+  /// The losses of the tick that take() had last. The address is the same in all ticks.
   [[nodiscard]] const Losses& taken() const { return taken_; }
   /// Ticks must ascend.
   void take(std::uint32_t tick) {

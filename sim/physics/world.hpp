@@ -63,7 +63,7 @@ class World {
   }
   /// Pose of the frame of a link in the world.
   [[nodiscard]] virtual Pose link_pose(std::size_t link) const = 0;
-  /// Those of all links.
+  /// Poses of the frames of all links in the world.
   virtual void read_links(std::span<Pose> poses) const {
     for (std::size_t link = 0; link < poses.size(); ++link) {
       poses[link] = link_pose(link);

@@ -13,7 +13,7 @@
 namespace proleg::sim {
 namespace {
 
-/// The same value for the same name on several joints of a module.
+/// A value that several joints of a module get for the same name.
 using Assignment = std::tuple<std::uint32_t, std::string, std::string>;  // slot, name, value
 
 /// As users write it: the half turn, which is the smallest raw value, is 180 and not -180 degrees. (A recording has

@@ -31,7 +31,7 @@ class Svg {
   void polygon(std::span<const Point> corners, std::string_view style);
   void rectangle(Point corner, double width, double height, std::string_view style);
   void circle(Point center, double radius, std::string_view style);
-  /// The same mark at many places, as one shape of few bytes. mark: path commands relative to the place, e.g. "h0" for
+  /// Draws a mark at many places, as one shape of few bytes. mark: path commands relative to the place, e.g. "h0" for
   /// a dot (with round line ends) or "m-2 -2l4 4m0 -4l-4 4" for a cross.
   void marks(std::span<const Point> places, std::string_view mark, std::string_view style);
   void text(Point position, std::string_view text, TextAnchor anchor, double size, std::string_view colour,

@@ -13,7 +13,7 @@ namespace proleg::sim {
 /// Adds a word of --move behind the moves of its tick. Throws as parse_move() does.
 void add_move(Scenario& scenario, const std::string& word);
 
-/// The same move as a word.
+/// The word of --move that parse_move() reads as this move.
 [[nodiscard]] std::string move_text(const RobotMove& move);
 
 }  // namespace proleg::sim

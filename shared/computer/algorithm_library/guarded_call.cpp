@@ -214,8 +214,8 @@ class Watchdog {
  private:
   struct Watched {
     ThreadGuard* guard = nullptr;
-    std::uint64_t call = 0;  ///< seen last
-    double cpu_s = 0;        ///< when it was seen first
+    std::uint64_t call = 0;  ///< number of the call that the watchdog has seen last
+    double cpu_s = 0;        ///< processor time when the call was seen first
     double wall_s = 0;
   };
 

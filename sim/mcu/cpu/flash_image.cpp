@@ -72,7 +72,7 @@ class AttributeReader {
   std::size_t place_ = 0;
 };
 
-/// Those of the whole file that are numbers.
+/// Reads the build attributes of the whole file whose values are numbers.
 std::map<std::uint32_t, std::uint32_t> read_attributes(const std::vector<std::uint8_t>& bytes) {
   std::map<std::uint32_t, std::uint32_t> attributes;
   AttributeReader reader(bytes);

@@ -75,7 +75,7 @@ class Nvic {
 
   /// The level of an interrupt's line; pends it when it rises.
   void set_line(unsigned interrupt, bool high) { set_exception_line(exception::first_interrupt + interrupt, high); }
-  /// The same for the line of NMI, which is always enabled.
+  /// The level of the line of NMI; pends NMI, which is always enabled, when it rises.
   void set_non_maskable_line(bool high) { set_exception_line(exception::nmi, high); }
 
   [[nodiscard]] bool is_pending(unsigned number) const { return pending_.has(number); }

@@ -12,7 +12,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// As if the option --engine had chosen it.
+/// Chooses the engine of a scenario, as the option --engine does.
 void set_engine(sim::Scenario& scenario, sim::PhysicsEngine engine) {
   scenario.overrides.engine = engine;
   scenario.environment.engine = engine;

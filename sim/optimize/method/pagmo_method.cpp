@@ -19,7 +19,7 @@ namespace {
 /// Predicts the requests of an algorithm of pagmo, so that workers can simulate ahead. (pagmo requests one fitness
 /// after the other.)
 ///
-/// It rehearses the algorithm on copies. A copy receives the answers that the algorithm has received since the copy was
+/// Rehearses the algorithm on copies. A copy receives the answers that the algorithm has received since the copy was
 /// made, and then a very bad fitness for all other requests. These requests are those of the algorithm if no good
 /// candidate is found. Most algorithms do not use a fitness before the end of a generation, so the prediction is right
 /// until then. When it is wrong, the algorithm is rehearsed again. The algorithm itself does not see the rehearsals.

@@ -380,7 +380,7 @@ void Recovery::renumber(const std::vector<RecoveredModule*>& modules) {
   }
 }
 
-/// They restart by the node id that they have in common. One in its bootloader starts its program again.
+/// The modules with this node id restart, all at once, by the id. One in its bootloader starts its program again.
 void Recovery::renumber_duplicates(std::uint8_t node) {
   const std::vector<canopen::LssModule> free = host::free_node_ids({}, {}, taken_nodes());
   std::size_t used = 0;

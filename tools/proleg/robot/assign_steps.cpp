@@ -114,7 +114,7 @@ ModulesToNumber find_modules_to_number(BusAccess& bus) {
 MovingJoint::MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMotionOptions& options)
     : bus_(bus), motion_(bus.connection(), node, options), attachment_(bus.connection(), motion_) {
   using State = host::JointMotion::State;
-  constexpr Microseconds longest = 60 * second;  // it ends by itself; this bounds one with a fault
+  constexpr Microseconds longest = 60 * second;  // the start of a motion ends by itself; this bounds one with a fault
   try {
     motion_.start(bus_.connection().now());
     bus_.wait_for("the joint to move", longest, [this] {

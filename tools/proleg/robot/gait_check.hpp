@@ -31,7 +31,7 @@ class GaitCheck {
 
   /// Computes the next tick and compares it. Returns the change that took effect, if any.
   const Change* follow(const host::TickFrames& tick);
-  /// The same for a tick while the robot stops: only the set-points count, for compare_setpoints().
+  /// Computes the next tick while the robot stops: only the set-points count, for compare_setpoints().
   void follow_stopping(const host::TickFrames& tick);
   /// Compares all bits of the set-points of a joint, if the comparison has not ended. To be called when the ticks up to
   /// that of the module were followed.

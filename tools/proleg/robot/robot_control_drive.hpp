@@ -55,7 +55,7 @@ struct RobotControlDrive {
 /// follows.
 [[nodiscard]] host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive);
 
-/// The same with a plug-in and a clock; for tests.
+/// Drives with a plug-in and a clock that tests provide.
 [[nodiscard]] host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive,
                                                     const host::Plugin& plugin, host::Clock& clock);
 

@@ -104,7 +104,7 @@ class DrivenRobot {
   void hold();
   /// Ramps down and takes the power. In any state.
   void stop();
-  /// The same, and asks every module at once to confirm its quick stop: `confirmed` is called for each that does.
+  /// Stops, and asks every module at once to confirm its quick stop: `confirmed` is called for each that does.
   void quick_stop(const std::function<void(unsigned joint)>& confirmed);
 
   /// Values for the modules, which take effect together, while has_room_for_changes(). At most max_staged_values of a

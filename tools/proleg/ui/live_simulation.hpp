@@ -46,7 +46,7 @@ class LiveSimulation {
   [[nodiscard]] char set_name() const { return is_set_b_ ? 'B' : 'A'; }
   /// The parameters at these places are wanted as the file has them.
   void reset(const std::vector<ParameterPlace>& places);
-  /// As ParameterEdits::places_of().
+  /// The places of the parameters that words name (ParameterEdits::places_of()).
   [[nodiscard]] std::vector<ParameterPlace> places_of(const std::optional<std::vector<std::string>>& names) const {
     return edits_.places_of(names);
   }
@@ -84,7 +84,7 @@ class LiveSimulation {
   }
 
   [[nodiscard]] const sim::Simulation& simulation() const { return *simulation_; }
-  /// As Simulation::sample().
+  /// The sample of the last tick (Simulation::sample()).
   [[nodiscard]] sim::TickSample sample() { return simulation_->sample(); }
   [[nodiscard]] const sim::Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const sim::Scenario& file() const { return file_; }
@@ -97,7 +97,7 @@ class LiveSimulation {
   /// The words for `proleg simulate FILE` that repeat the run up to now, after the settings that the runs begin with
   /// and without the options that `file` was read with.
   [[nodiscard]] std::vector<std::string> repeating_words() const;
-  /// The same for the words of --move.
+  /// The words of --move that repeat the moves of the robot up to now.
   [[nodiscard]] std::vector<std::string> repeating_moves() const;
 
  private:

@@ -34,7 +34,7 @@ struct Transmission {
 
 /// What went over the bus since the start or the last Bus::start_statistics().
 struct BusStatistics {
-  std::uint64_t frames = 0;      ///< that ended
+  std::uint64_t frames = 0;      ///< frames that ended
   BusTime busy = 0;              ///< time taken by frames and error frames with their interframe spaces
   BusTime period = 0;            ///< time over which these were counted
   std::uint64_t losses = 0;      ///< deliveries withheld by the loss rule

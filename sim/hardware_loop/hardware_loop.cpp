@@ -347,8 +347,8 @@ class HardwareLoop::Implementation {
   CommandLatency command_latency_;
   FaultPlayer faults_;
   std::uint32_t syncs_ = 0;       ///< number of ticks that have begun
-  BusTime tick_begin_ = 0;        ///< of the last one
-  bool has_missed_sync_ = false;  ///< the last one began without a SYNC
+  BusTime tick_begin_ = 0;        ///< time at which the last tick began
+  bool has_missed_sync_ = false;  ///< the last tick began without a SYNC
   std::optional<std::uint32_t> first_fault_tick_;
   std::uint32_t tick_ = 0;          ///< number of finished ticks
   bool tick_finished_ = false;      ///< since the last advance()

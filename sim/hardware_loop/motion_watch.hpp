@@ -93,7 +93,7 @@ class MotionWatch {
     double greatest_falling = 0.0;
     BusTime train_begin = 0;
     std::optional<BusTime> last_motion;  ///< a pulse that differed from the one before, in this tick of the loop
-    BusTime last_tick = 0;               ///< that it computed
+    BusTime last_tick = 0;               ///< the last tick that the module computed
     BusTime last_heard = 0;
     JointState state = JointState::limp;
     std::optional<canopen::NmtState> nmt;

@@ -54,7 +54,7 @@ class NativeLine final : public firmware::LinePort {
   std::array<char, output_size> output_{};
   std::size_t sent_ = 0;
   std::size_t to_send_ = 0;
-  BusTime character_end_ = never_on_bus;  ///< of the one that is being sent
+  BusTime character_end_ = never_on_bus;  ///< end of the character that is being sent
 };
 
 }  // namespace proleg::sim

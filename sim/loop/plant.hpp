@@ -107,8 +107,8 @@ class Plant {
   [[nodiscard]] const GaitMeter& meter() const { return meter_; }
   /// Where the energy went since the start, in J. Only without moves by hand.
   struct EnergyBalance {
-    double motors;    ///< that they gave
-    double friction;  ///< that it took
+    double motors;    ///< work that the motors did
+    double friction;  ///< work that friction took
     double stored;    ///< now in motion and height, more than at the start
     /// stored - motors + friction: what contacts and joints gave beside. It is negative where links strike the ground,
     /// and positive where the engine pushes links apart that are in each other.

@@ -58,7 +58,7 @@ struct RecordedSensor {
   SensorKind kind = SensorKind::touch;
   std::uint32_t part = 0;  ///< link, of a servo_current the joint; from the head
   std::vector<Channel> channels;
-  std::size_t first_value = 0;  ///< of its channels in RecordedTick::sensor_values
+  std::size_t first_value = 0;  ///< position of the first channel in RecordedTick::sensor_values
 };
 
 /// A module that restarted.
@@ -70,7 +70,7 @@ struct RecordedRestart {
 
 /// Frames that were lost in a part of the run.
 struct RecordedLosses {
-  std::uint32_t tick = 0;    ///< of the first one
+  std::uint32_t tick = 0;    ///< the first tick
   std::uint64_t frames = 0;  ///< a frame counts once for each joint that did not receive it
 };
 

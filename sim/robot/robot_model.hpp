@@ -180,8 +180,8 @@ struct RobotControlEntry {
 
   std::string plugin;  ///< a name, or a path relative to the folder of the file
   std::string file;    ///< as messages show it
-  std::string folder;  ///< of the file
-  int line = 0;        ///< of the element
+  std::string folder;  ///< folder of the file that has the element
+  int line = 0;        ///< line of the element
   std::vector<Parameter> parameters;
 };
 

@@ -22,7 +22,7 @@ struct ActuationEdit {
   std::size_t position = 0;
   std::size_t removed = 0;  ///< bytes from the position on that the text replaces
   std::string text = {};
-  int line = 0;                              ///< that it changes, or after which it adds one
+  int line = 0;                              ///< line that the edit changes, or after which it adds one
   std::optional<std::string> old_line = {};  ///< nothing: the line is new
   std::string new_line = {};                 ///< with this edit alone
 };

@@ -62,7 +62,7 @@ struct GaitConfirmation {
   std::vector<ConfirmedRun> runs;  ///< the first one: as it is
   sim::PhysicsEngine perturbed_engine = sim::PhysicsEngine::ode;
   std::vector<double> perturbed;    ///< m, distances in worlds that differ (usual_spread()), ascending
-  std::uint32_t failed_worlds = 0;  ///< of them, without a distance
+  std::uint32_t failed_worlds = 0;  ///< worlds without a distance
   std::vector<ConfirmationFinding> findings;
 
   [[nodiscard]] bool is_real() const;

@@ -13,10 +13,10 @@ namespace proleg::optimize {
 
 /// The state of a search: a run of an experiment.
 struct SearchProgress {
-  std::uint64_t evaluations = 0;   ///< that the optimiser asked for
-  std::uint64_t simulated = 0;     ///< of these: neither reused nor restored
-  std::uint64_t reused = 0;        ///< of these: the outcome was known
-  std::uint64_t restored = 0;      ///< of these: all trials came from the store
+  std::uint64_t evaluations = 0;   ///< evaluations that the optimiser asked for
+  std::uint64_t simulated = 0;     ///< evaluations that were neither reused nor restored
+  std::uint64_t reused = 0;        ///< evaluations whose outcome was known
+  std::uint64_t restored = 0;      ///< evaluations whose trials all came from the store
   std::uint64_t wasted = 0;        ///< trials simulated ahead and never used
   double simulated_s = 0.0;        ///< simulated time of all trials made now, wasted ones too
   double workers_s = 0.0;          ///< time that workers needed for it

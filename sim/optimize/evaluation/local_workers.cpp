@@ -103,7 +103,7 @@ class LocalWorkers::Implementation {
  private:
   struct Assignment {
     std::vector<TicketedTask> batch;
-    unsigned deaths;  ///< of workers that had it
+    unsigned deaths;  ///< number of workers that died with the task
   };
   struct Worker {
     std::unique_ptr<WorkerProcess> process;  ///< null: not replaced

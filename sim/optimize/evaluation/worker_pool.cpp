@@ -83,7 +83,7 @@ class Pool {
   struct Search {
     int socket;  ///< -1: ended
     std::vector<std::optional<TrialResult>> results;
-    std::size_t missing;  ///< of the results
+    std::size_t missing;  ///< number of results that are missing
   };
   struct Place {
     std::size_t search;

@@ -19,7 +19,7 @@ using host::FlashCandidate;
 
 constexpr Microseconds second = 1'000'000;
 
-/// By node id, those without one last.
+/// Sorts modules by node id. Modules without one come last.
 void sort(std::vector<FlashCandidate>& modules) {
   std::ranges::stable_sort(modules, {}, [](const FlashCandidate& module) {
     return module.node == 0 ? unsigned{canopen::max_node_id} + 1U : module.node;

@@ -53,7 +53,7 @@ std::string version_text(const image::Version& version) {
   return std::to_string(version.major) + '.' + std::to_string(version.minor) + '.' + std::to_string(version.patch);
 }
 
-/// Empty if it is not known.
+/// The digits of the commit; empty if it is not known.
 std::string commit_digits(const Header& header) {
   const bool is_known = std::ranges::any_of(header.commit, [](std::uint8_t byte) { return byte != 0; });
   return is_known ? hexadecimal_digits(header.commit) : "";

@@ -24,7 +24,7 @@ struct BusView {
   bool is_connected = false;
   std::string problem;  ///< empty: none
   host::BusMonitor::Traffic traffic{};
-  double seconds = 0;  ///< that the traffic has taken
+  double seconds = 0;  ///< duration of the traffic
   bool has_other_host = false;
   std::optional<double> latency_ms;
   std::vector<host::MonitoredNode> nodes;

@@ -107,7 +107,7 @@ endfunction()
 #   ROBOTS   a GoogleTest filter of cases that simulate whole robots. Under the sanitizers they take ten times as long:
 #            there they are slow tests. They run as built for users in every suite, also without PROLEG_UNIT_TESTS.
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "VIRTUAL_TIME" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -126,6 +126,9 @@ function(proleg_test path)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
       COST ${test_COST} HALF_CORES ${test_HALF_CORES})
+  if(test_VIRTUAL_TIME)
+    list(APPEND options VIRTUAL_TIME)
+  endif()
   set(command $<TARGET_FILE:${name}_test> --gtest_brief=1)
   if(test_ROBOTS AND PROLEG_SANITIZE)
     proleg_add_test(${path}.robots COMMAND ${command} --gtest_filter=${test_ROBOTS} PROGRAMS ${test_PROGRAMS} DATA ${test_DATA}

@@ -188,7 +188,7 @@ TEST(RobotControlDrive, TheExampleOfThePageDrivesAScenario) {
   EXPECT_EQ(result.max_difference_deg, 0.0);  // its joints are where they should be
 }
 
-// In real time, with the plug-in as it is installed. The tick is long, so that a busy computer fails no test.
+// With the plug-in as it is installed. The clock is that of the system: the test runs in virtual time.
 
 sim::Scenario slow_gait(const std::string& device) {
   sim::Scenario scenario = shipped_gait("uniform", device);

@@ -4,10 +4,15 @@
 //
 // A transfer on the socket: the setup packet (8 bytes), and the data if they go to the device. The answer: i32, the
 // number of bytes or an error of libusb, and the data if they come from the device.
+//
+// With PROLEG_PATIENT_LINE reads of a serial line wait 25 s for a byte instead of the half second of stm32flash: the
+// program at the other end may wait for a processor.
 
+#include <dlfcn.h>
 #include <libusb.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -159,6 +164,15 @@ int libusb_set_interface_alt_setting(libusb_device_handle* handle, int interface
   return libusb_control_transfer(handle, LIBUSB_RECIPIENT_INTERFACE, LIBUSB_REQUEST_SET_INTERFACE,
                                  static_cast<std::uint16_t>(setting), static_cast<std::uint16_t>(interface), nullptr, 0,
                                  0);
+}
+
+int tcsetattr(int line, int when, const termios* settings) noexcept {
+  constexpr cc_t longest_wait = 255;  // tenths of a second
+  termios patient = *settings;
+  if (std::getenv("PROLEG_PATIENT_LINE") != nullptr && patient.c_cc[VMIN] == 0 && patient.c_cc[VTIME] != 0) {
+    patient.c_cc[VTIME] = longest_wait;
+  }
+  return reinterpret_cast<decltype(&tcsetattr)>(dlsym(RTLD_NEXT, "tcsetattr"))(line, when, &patient);
 }
 
 }  // extern "C"

@@ -119,7 +119,7 @@ class FlashBare(unittest.TestCase):
                 yield words, {"PROLEG_FAKE_DFU": str(self.dfu.path)}
         else:
             with UartRom(self.chip) as self.uart:
-                yield [*words, "--port", self.uart.port], {}
+                yield [*words, "--port", self.uart.port], {"PROLEG_PATIENT_LINE": "1"}
 
     def flash(self, probe, *options, bootloader="boot.bin"):
         with self.connected(probe) as (words, environment):

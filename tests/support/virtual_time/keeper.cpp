@@ -2,17 +2,17 @@
 // LIBRARY is that of clock.cpp. Time stands still while any thread of these programs runs or can run. When all of them
 // wait, it becomes the end of the wait that ends first.
 //
-// --paced: for programs that talk to one that is not in virtual time, such as a browser. While all of them wait, virtual
-// time passes as fast as that of the computer, and slower if the computer is so busy that this program gets its turn
-// late. So a program that waits for half a second has half a second, however long it waits for a processor. Waits
+// --paced: for programs that talk to one that is not in virtual time, such as a browser. While all of them wait,
+// virtual time passes as fast as that of the computer, and slower if the computer is so busy that this program gets its
+// turn late. So a program that waits for half a second has half a second, however long it waits for a processor. Waits
 // without an end are no error. SIGINT and SIGTERM go to the program.
 //
 // Linux says whether a thread waits (proc(5)): its state, and how often it was given a processor. Two readings of all
 // threads, one after the other, that are the same and find all threads asleep mean that none ran between them, so that
 // none can wake another.
 //
-// Exit status: that of the program; 1 if all threads wait and no wait has an end (without --paced). Processes that it leaves behind are
-// killed.
+// Exit status: that of the program; 1 if all threads wait and no wait has an end (without --paced). Processes that it
+// leaves behind are killed.
 
 #include <dirent.h>
 #include <fcntl.h>

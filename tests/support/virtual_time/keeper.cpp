@@ -1,18 +1,13 @@
-// run_in_virtual_time [--paced] LIBRARY PROGRAM [ARGUMENT]...: runs a program, and all that it starts, in virtual time.
-// LIBRARY is that of clock.cpp. Time stands still while any thread of these programs runs or can run. When all of them
-// wait, it becomes the end of the wait that ends first.
-//
-// --paced: for programs that talk to one that is not in virtual time, such as a browser. While all of them wait,
-// virtual time passes as fast as that of the computer, and slower if the computer is so busy that this program gets its
-// turn late. So a program that waits for half a second has half a second, however long it waits for a processor. Waits
-// without an end are no error. SIGINT and SIGTERM go to the program.
+// run_in_virtual_time LIBRARY PROGRAM [ARGUMENT]...: runs a program, and all that it starts, in virtual time. LIBRARY
+// is that of clock.cpp. Time stands still while any thread of these programs runs or can run. When all of them wait, it
+// becomes the end of the wait that ends first.
 //
 // Linux says whether a thread waits (proc(5)): its state, and how often it was given a processor. Two readings of all
 // threads, one after the other, that are the same and find all threads asleep mean that none ran between them, so that
 // none can wake another.
 //
-// Exit status: that of the program; 1 if all threads wait and no wait has an end (without --paced). Processes that it
-// leaves behind are killed.
+// Exit status: that of the program; 1 if all threads wait and no wait has an end. Processes that it leaves behind are
+// killed.
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -208,17 +203,9 @@ std::map<const Wait*, std::uint32_t> pending(const SharedClock& clock) {
   return waits;
 }
 
-/// The time of the computer: the keeper itself is not in virtual time.
-std::int64_t read_clock(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
 class Keeper {
  public:
-  Keeper(SharedClock& clock, bool is_paced)
-      : clock_(clock), is_paced_(is_paced), longest_pause_ns_(is_paced ? 1'000'000 : 200'000) {}
+  explicit Keeper(SharedClock& clock) : clock_(clock) {}
 
   /// Lets time pass if all threads wait; otherwise it waits a little itself. False if all threads wait without an end.
   [[nodiscard]] bool look() {
@@ -229,9 +216,9 @@ class Keeper {
       endless_looks_ = 0;
       return true;
     }
-    endless_looks_ = is_quiet && !is_paced_ ? endless_looks_ + 1 : 0;
+    endless_looks_ = is_quiet ? endless_looks_ + 1 : 0;
     const timespec pause{0, pause_ns_};
-    pause_ns_ = std::min(2 * pause_ns_, longest_pause_ns_);
+    pause_ns_ = std::min(2 * pause_ns_, longest_pause_ns);
     syscall(SYS_futex, &clock_.waits, FUTEX_WAIT, waits, &pause, nullptr, 0);
     return endless_looks_ < most_endless_looks;
   }
@@ -240,8 +227,7 @@ class Keeper {
 
  private:
   static constexpr long shortest_pause_ns = 5'000;
-  /// Paced time passes by at most so much at once: the rest was lost because this program did not get its turn.
-  static constexpr std::int64_t longest_step_ns = 2'000'000;
+  static constexpr long longest_pause_ns = 200'000;
   static constexpr int most_endless_looks = 20'000;
 
   bool all_wait() {
@@ -303,13 +289,7 @@ class Keeper {
     return true;
   }
 
-  /// Time of the computer since the last call, up to the longest step.
-  std::int64_t take_step() {
-    const std::int64_t now_ns = read_clock(CLOCK_MONOTONIC);
-    return std::min(now_ns - std::exchange(stepped_at_ns_, now_ns), longest_step_ns);
-  }
-
-  /// False if no wait has ended.
+  /// False if no wait has an end.
   bool pass_time() {
     std::int64_t next = never;
     for (Wait& wait : clock_.wait) {
@@ -321,15 +301,6 @@ class Keeper {
           next = std::min(next, wait.end_ns.load());
         }
       }
-    }
-    if (is_paced_) {
-      const std::int64_t reached = clock_.now_ns.load() + take_step();
-      if (next > reached) {
-        clock_.now_ns = reached;
-        pause_ns_ = std::clamp<long>(next - reached, shortest_pause_ns, longest_pause_ns_);
-        return false;
-      }
-      stepped_at_ns_ -= reached - next;
     }
     if (next == never) {
       return false;
@@ -344,14 +315,17 @@ class Keeper {
   }
 
   SharedClock& clock_;
-  bool is_paced_;
-  long longest_pause_ns_;
   Family family_;
   long pause_ns_ = shortest_pause_ns;
-  std::int64_t stepped_at_ns_ = read_clock(CLOCK_MONOTONIC);
   int endless_looks_ = 0;        ///< number of looks, one after the other, at which all threads waited without an end
   std::uint32_t handed_on_ = 0;  ///< number of writes to terminals that have been handed on
 };
+
+std::int64_t read_clock(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
 
 /// The shared memory, in a file without a name.
 SharedClock& make_clock(std::string& path) {
@@ -371,10 +345,8 @@ SharedClock& make_clock(std::string& path) {
 }
 
 volatile std::sig_atomic_t is_ended = 0;
-volatile std::sig_atomic_t paced_program = 0;  ///< its process id
 
 void end(int) { is_ended = 1; }
-void hand_on(int signal) { kill(paced_program, signal); }
 
 /// Starts the program with the library and the clock. Its process id.
 int start(const char* library, const std::string& clock, char** command) {
@@ -412,13 +384,8 @@ int keep_time(Keeper& keeper, int program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool is_paced = argc > 1 && std::strcmp(argv[1], "--paced") == 0;
-  if (is_paced) {
-    --argc;
-    ++argv;
-  }
   if (argc < 3) {
-    std::fputs("run_in_virtual_time: found no program, expected [--paced] LIBRARY PROGRAM [ARGUMENT]...\n", stderr);
+    std::fputs("run_in_virtual_time: found no program, expected LIBRARY PROGRAM [ARGUMENT]...\n", stderr);
     return 2;
   }
   std::string path;
@@ -427,13 +394,8 @@ int main(int argc, char** argv) {
   prctl(PR_SET_TIMERSLACK, 1);
   std::signal(SIGTERM, end);
   std::signal(SIGINT, end);
-  Keeper keeper(clock, is_paced);
+  Keeper keeper(clock);
   const int program = start(argv[1], path, argv + 2);
-  if (is_paced) {
-    paced_program = program;
-    std::signal(SIGTERM, hand_on);
-    std::signal(SIGINT, hand_on);
-  }
   const int status = keep_time(keeper, program);
   keeper.kill_all();
   return status;

@@ -8,7 +8,6 @@ import ctypes
 import os
 import pty
 import select
-import signal
 import socket
 import subprocess
 import sys
@@ -151,31 +150,6 @@ class VirtualTime(unittest.TestCase):
                                       capture_output=True, text=True)
             self.assertEqual(finished.returncode, status, finished.stderr)
             self.assertEqual("no wait has an end" in finished.stderr, status == 1)
-
-    def run_paced(self, text):
-        """In paced time, which this test itself is not in."""
-        environment = {name: value for name, value in os.environ.items() if name not in ("LD_PRELOAD", "PROLEG_VIRTUAL_TIME")}
-        return subprocess.Popen([KEEPER, "--paced", LIBRARY, sys.executable, "-c", f"import select, signal, sys, time\n{text}"],
-                                env=environment, stdout=subprocess.PIPE, text=True)
-
-    def test_paced_time_passes_as_that_of_the_computer_but_not_while_a_program_runs(self):
-        # CLOCK_THREAD_CPUTIME_ID is the computer's: the program runs for 0.3 s.
-        program = self.run_paced("begin = time.monotonic_ns(); end = time.thread_time() + 0.3\n"
-                                 "while time.thread_time() < end: pass\n"
-                                 "ran = time.monotonic_ns() - begin; time.sleep(0.3)\n"
-                                 "print(ran, time.monotonic_ns() - begin - ran)")
-        out, _ = program.communicate()
-        self.assertEqual(program.returncode, 0)
-        ran_ns, slept_ns = map(int, out.split())
-        self.assertLess(ran_ns, 10_000_000)
-        self.assertGreaterEqual(slept_ns, 300_000_000)
-
-    def test_paced_time_has_waits_without_an_end_and_hands_signals_on(self):
-        program = self.run_paced("signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT]); print('waits', flush=True)\n"
-                                 "signal.sigwait([signal.SIGINT]); sys.exit(7)")
-        self.assertEqual(program.stdout.readline(), "waits\n")
-        program.send_signal(signal.SIGINT)
-        self.assertEqual(program.wait(), 7)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,10 @@
-// Starts `proleg ui`, and reads the address that it prints. With PROLEG_KEEPER and PROLEG_CLOCK, as ctest sets them, a robot on
-// a simulated bus runs in paced virtual time (tests/support/virtual_time/keeper.cpp): no time passes for it while its programs
-// wait for a processor. Without them it runs in real time.
+// Starts `proleg ui`, and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
 import { longest } from './waiting.js';
 
 export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
 
 export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
-const keeper = process.env['PROLEG_KEEPER'];
-const clock = process.env['PROLEG_CLOCK'];
-const paced = keeper !== undefined && clock !== undefined ? [keeper, '--paced', clock] : [];
-
 export const sixty = 'sim/scenarios/long_chain/sixty.simulation.xml';
 
 export class UiProgram {
@@ -26,13 +20,12 @@ export class UiProgram {
 
   // A robot on a simulated bus.
   static startOnBus(file: string = uniform, more: string[] = []): Promise<UiProgram> {
-    return UiProgram.serve([file, '--bus', `sim:${file}`, ...more], paced);
+    return UiProgram.serve([file, '--bus', `sim:${file}`, ...more]);
   }
 
-  static serve(words: string[], runner: string[] = []): Promise<UiProgram> {
+  static serve(words: string[]): Promise<UiProgram> {
     const options = ['--no-browser', '--port', '0', '--page', 'build/page'];
-    const [first = program, ...rest] = [...runner, program, 'ui', ...words, ...options];
-    const child = spawn(first, rest, { stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(program, ['ui', ...words, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';
       const timer = setTimeout(() => fail('no address in time'), longest);

@@ -190,17 +190,10 @@ TEST(RobotControlDrive, TheExampleOfThePageDrivesAScenario) {
 
 // With the plug-in as it is installed. The clock is that of the system: the test runs in virtual time.
 
-sim::Scenario slow_gait(const std::string& device) {
-  sim::Scenario scenario = shipped_gait("uniform", device);
-  scenario.kernel.tick_period_us = 50'000;
-  scenario.robot_control->parameters.push_back({"watchdog", "2540", {}, 6});
-  return scenario;
-}
-
 TEST(RobotControlDrive, TheInstalledPluginDrivesServosBehindASerialPort) {
   ServoEmulator servos(5);
   test::PtyServos terminal(servos);
-  const sim::Scenario scenario = slow_gait(terminal.device());
+  const sim::Scenario scenario = shipped_gait("uniform", terminal.device());
   RobotControlDrive options;
   options.ticks = 20;
   const DriveResult result = drive_robot_control(scenario, options);
@@ -211,13 +204,12 @@ TEST(RobotControlDrive, TheInstalledPluginDrivesServosBehindASerialPort) {
     EXPECT_FALSE(servo.has_power());
     EXPECT_EQ(servo.goals.back().position, 2048);
   }
-  std::printf("greatest delay of a tick: %.1f ms\n", static_cast<double>(result.max_delay_us) / 1000.0);
 }
 
 TEST(RobotControlDrive, APortThatIsUnpluggedInTheRunEndsIt) {
   ServoEmulator servos(5);
   test::PtyServos terminal(servos);
-  const sim::Scenario scenario = slow_gait(terminal.device());
+  const sim::Scenario scenario = shipped_gait("uniform", terminal.device());
   RobotControlDrive options;
   options.ticks = 1000;
   options.observer = [&](const host::GaitDriver::Tick& tick) {
@@ -239,7 +231,7 @@ TEST(RobotControlDrive, APortThatIsUnpluggedInTheRunEndsIt) {
 TEST(RobotControlDrive, ASecondHostOnOnePortIsRefused) {
   ServoEmulator servos(5);
   test::PtyServos terminal(servos);
-  const sim::Scenario scenario = slow_gait(terminal.device());
+  const sim::Scenario scenario = shipped_gait("uniform", terminal.device());
   std::string second;
   RobotControlDrive options;
   options.ticks = 5;

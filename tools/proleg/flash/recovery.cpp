@@ -380,7 +380,8 @@ void Recovery::renumber(const std::vector<RecoveredModule*>& modules) {
   }
 }
 
-/// The modules with this node id restart, all at once, by the id. One in its bootloader starts its program again.
+/// Gives modules that have this node id in common ids of their own, and restarts them by the common id. A module in its
+/// bootloader starts its program again.
 void Recovery::renumber_duplicates(std::uint8_t node) {
   const std::vector<canopen::LssModule> free = host::free_node_ids({}, {}, taken_nodes());
   std::size_t used = 0;

@@ -46,7 +46,7 @@ class LiveSimulation {
   [[nodiscard]] char set_name() const { return is_set_b_ ? 'B' : 'A'; }
   /// The parameters at these places are wanted as the file has them.
   void reset(const std::vector<ParameterPlace>& places);
-  /// The places of the parameters that words name (ParameterEdits::places_of()).
+  /// The places that names mean, of each joint; without names all (ParameterEdits::places_of()).
   [[nodiscard]] std::vector<ParameterPlace> places_of(const std::optional<std::vector<std::string>>& names) const {
     return edits_.places_of(names);
   }

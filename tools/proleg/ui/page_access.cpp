@@ -79,8 +79,8 @@ bool PageAddress::open() const {
   if (error != 0) {
     return false;
   }
-  // The program that opens the browser may end at once or stay as long as it. A child whose status nobody takes
-  // stays in the list of processes.
+  // The program that opens the browser may end at once, or with the browser. It stays in the list of processes until
+  // its parent has waited for it.
   std::thread([process] {
     while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
     }

@@ -33,7 +33,7 @@ class RunComparison {
   /// Compares some further ticks; false: all that are known are compared, or a difference was found. Throws as
   /// Recording does.
   bool compare_some();
-  /// The session cannot go on: a file is damaged.
+  /// Ends the comparison, because a file is damaged.
   void end(const std::string& why) { damage_ = why; }
   /// The value of `recording.compare` (docs/page-interface.md). Throws as Recording does.
   [[nodiscard]] nlohmann::json document();

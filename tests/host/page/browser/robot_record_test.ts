@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, describe, it } from 'node:test';
 import { resultOf } from './support/command_line.js';
 import { useUi } from './support/ui_fixture.js';
-import { program, UiProgram, uniform } from './support/ui_program.js';
+import { program, slowTime, UiProgram, uniform } from './support/ui_program.js';
 
 describe('a robot on a bus of its own', () => {
   const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
@@ -15,7 +15,7 @@ describe('a robot on a bus of its own', () => {
 
   // Its address for --bus.
   async function startRobot(): Promise<string> {
-    robot = spawn(program, ['bus', uniform, '--tcp', '0'], { stdio: ['ignore', 'pipe', 'ignore'] });
+    robot = spawn(program, ['bus', uniform, '--tcp', '0'], { stdio: ['ignore', 'pipe', 'ignore'], env: { ...process.env, ...slowTime } });
     const { stdout } = robot;
     assert.ok(stdout);
     let output = '';
@@ -27,7 +27,7 @@ describe('a robot on a bus of its own', () => {
     throw new Error(`proleg bus: found '${output}', expected an address`);
   }
 
-  const ui = useUi(async () => UiProgram.serve([uniform, '--bus', await startRobot(), '--recordings', folder]), { takesControl: true });
+  const ui = useUi(async () => UiProgram.serve([uniform, '--bus', await startRobot(), '--recordings', folder], slowTime), { takesControl: true });
 
   after(() => {
     robot.kill('SIGKILL');

@@ -136,8 +136,9 @@ describe('a robot on a bus', () => {
     const driver = await otherDriver();
     await driver.button('Power on').click();
     await ui.viewer.waitForState('holding');
-    await driver.block(4000);
+    const goOn = await driver.hang();
     await ui.viewer.waitForState('power off');
+    await goOn();
   });
 
   it('is shown to two viewers; either may stop it, one drives', async () => {

@@ -65,18 +65,21 @@ describe('STOP', () => {
   it('reaches a robot whose holder hangs: from another viewer', async () => {
     const other = await ui.look();
     await ui.viewer.run();
-    await ui.viewer.block(4000);
+    const goOn = await ui.viewer.hang();
     await other.page.getByTestId('control').filter({ hasText: 'is away' }).waitFor();
     await other.page.keyboard.press('Escape');
     await other.waitForState('STOPPED');
     assert.match(await other.stopReport(), /5 of 5 confirmed/);
+    await goOn();
     await ui.viewer.waitForState('STOPPED');
   });
 
   it('is kept while the page hangs, and takes effect when it goes on', async () => {
     await ui.viewer.run();
-    await ui.viewer.block(1500);
-    await ui.viewer.page.keyboard.press('Escape');
+    const goOn = await ui.viewer.hang();
+    const pressed = ui.viewer.page.keyboard.press('Escape');
+    await goOn();
+    await pressed;
     await assertStopped();
   });
 

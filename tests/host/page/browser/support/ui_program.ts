@@ -7,6 +7,11 @@ export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
 export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
 export const sixty = 'sim/scenarios/long_chain/sixty.simulation.xml';
 
+// A robot stops when the page of its driver is silent for a second, and a STOP is answered within half a second. A browser
+// on a busy computer can be slower: in slow time (tests/support/slow_time) these are four seconds and two.
+const slowTimeLibrary = process.env['PROLEG_SLOW_TIME_LIBRARY'];
+export const slowTime = slowTimeLibrary === undefined ? {} : { LD_PRELOAD: slowTimeLibrary, PROLEG_SLOW_TIME: '4' };
+
 export class UiProgram {
   private constructor(
     readonly address: string,
@@ -20,12 +25,12 @@ export class UiProgram {
 
   // A robot on a simulated bus.
   static startOnBus(file: string = uniform, more: string[] = []): Promise<UiProgram> {
-    return UiProgram.serve([file, '--bus', `sim:${file}`, ...more]);
+    return UiProgram.serve([file, '--bus', `sim:${file}`, ...more], slowTime);
   }
 
-  static serve(words: string[]): Promise<UiProgram> {
+  static serve(words: string[], environment: NodeJS.ProcessEnv = {}): Promise<UiProgram> {
     const options = ['--no-browser', '--port', '0', '--page', 'build/page'];
-    const child = spawn(program, ['ui', ...words, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(program, ['ui', ...words, ...options], { stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...environment } });
     return new Promise((resolve, reject) => {
       let output = '';
       const timer = setTimeout(() => fail('no address in time'), longest);

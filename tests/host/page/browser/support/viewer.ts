@@ -166,13 +166,31 @@ export class Viewer {
     });
   }
 
-  // The main thread does nothing else for this long.
-  async block(ms: number): Promise<void> {
-    await this.page.evaluate((duration) => {
+  // The main thread hangs until the returned function is called: it waits for an answer that this process holds back.
+  async hang(): Promise<() => Promise<void>> {
+    const address = '**/held_back';
+    let goOn = () => {};
+    const released = new Promise<void>((resolve) => (goOn = resolve));
+    let answered = Promise.resolve();
+    const hangs = new Promise<void>((resolve) => {
+      void this.page.route(address, (route) => {
+        answered = released.then(() => route.fulfill({ status: 204 }));
+        resolve();
+        return answered;
+      });
+    });
+    await this.page.evaluate(() => {
       setTimeout(() => {
-        const end = performance.now() + duration;
-        while (performance.now() < end);
+        const request = new XMLHttpRequest();
+        request.open('GET', '/held_back', false);
+        request.send();
       }, 0);
-    }, ms);
+    });
+    await hangs;
+    return async () => {
+      goOn();
+      await answered;
+      await this.page.unroute(address);
+    };
   }
 }

@@ -43,7 +43,7 @@ class BusConnection final : public CanPort, private TransportListener {
 
   /// Nodes that have sent a frame of their own (heartbeat, EMCY, SDO answer, state frame, monitoring).
   [[nodiscard]] const std::bitset<128>& heard() const { return heard_; }
-  /// One line for a timeout, which begins in lower case: what is known about the bus, and what to check.
+  /// What is known about the bus and what to check: one line, in lower case, to follow the message of a timeout.
   [[nodiscard]] std::string diagnosis() const;
 
  private:

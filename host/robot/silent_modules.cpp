@@ -12,8 +12,9 @@ namespace lss = canopen::lss;
 using lss::Service;
 
 constexpr std::uint32_t highest = std::numeric_limits<std::uint32_t>::max();
-constexpr unsigned first_attempts = 2;  // a frame may be lost; in a half of a range that has answered, one is enough
-/// Attempts for both halves together, if neither answers, and for the module that is found.
+constexpr unsigned first_attempts = 2;  // at a range of which nothing is known: a frame may be lost
+/// At a range that has answered, while neither of its halves answers: each is asked once in an attempt. Also at the
+/// selection of a module that is found.
 constexpr unsigned further_attempts = 16;
 
 /// The service at a position, from 0, in a sequence of services that begins with the first one.

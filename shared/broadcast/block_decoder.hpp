@@ -83,7 +83,8 @@ class BlockDecoder {
   unsigned block_ = 0;
   unsigned missing_ = 0;
   unsigned equations_ = 0;  ///< number of independent equations
-  /// When there are as many equations as unknowns, each contains only its pivot: all are solved.
+  /// Each is solved for one missing symbol, its pivot, which no other contains. With as many equations as missing
+  /// symbols, each contains its pivot alone, and all are known.
   std::array<Equation, max_missing> equation_{};
 };
 

@@ -51,7 +51,7 @@ class JointModule {
     std::int32_t width;                  ///< twelfths of a microsecond
     canopen::PowerState power;           ///< of the drive when it began
     std::optional<bool> follows_pulses;  ///< whether the servo had pulses before; nothing: not known
-    bool is_whole = true;                ///< false: power or clock of the chip failed in the pulse
+    bool is_whole = true;                ///< false: it was cut off, because the chip lost its power or its clock
   };
   /// To be set before power_on().
   using PulseWatch = std::function<void(const WatchedPulse&)>;

@@ -27,8 +27,8 @@ struct PlantAction {
   std::uint64_t number;  ///< of the interval since SYNC 0, or of the step in the tick
 };
 
-/// The actions of a tick, by time. A step is made in its own middle, or later: after the readings of all pulses on
-/// which the servos act at its start.
+/// The actions of a tick, by time. A step of the physics is made when half of its time has passed, or later if pulses
+/// on which the servos act at its start are read later.
 inline void schedule_tick(const ServoSchedule& servo, const Plant& plant, std::uint32_t tick,
                           std::uint32_t servo_period_us, std::uint32_t tick_period_us,
                           std::vector<PlantAction>& actions) {

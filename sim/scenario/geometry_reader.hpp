@@ -23,7 +23,7 @@ enum class BodyKind : std::uint8_t {
 
 /// What a <Geom> gives a body.
 struct ReadGeometry {
-  std::optional<Geometry> solid;  ///< nothing: only for the eye
+  std::optional<Geometry> solid;  ///< nothing: the body only looks like that, and touches nothing with it
   std::optional<Look> look;
 };
 

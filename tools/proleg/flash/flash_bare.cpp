@@ -61,7 +61,7 @@ class WorkFolder {
   void write(const std::string& name, const Bytes& content) const {
     write(name, std::string(content.begin(), content.end()));
   }
-  /// A file that does not exist has none.
+  /// The bytes of a file of the folder; empty if the file does not exist.
   [[nodiscard]] std::string content(const std::string& name) const {
     std::ifstream file(path_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};

@@ -6,7 +6,7 @@ export interface ScenePose {
   angles: Float32Array; // radians
   head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: not known
   ghost: Float32Array | null; // angles of the simulation beside the robot, or of a second recording, radians
-  ghostHead?: Float64Array | null; // head in a second recording; absent: the ghost has the same head
+  ghostHead?: Float64Array | null; // of the second recording, like `head`; absent: the ghost is where the robot is
   objects?: Float64Array | null; // pose of each object that moves, like `head`; null or absent: their poses at the start
   contacts: Int32Array; // contacts of each link: bit 0 rear, bit 1 front
   run: number;

@@ -154,18 +154,7 @@ describe('a live simulation', () => {
     await ui.viewer.button('Fastest').click();
     const tick = await ui.viewer.tick();
     await ui.viewer.waitForTick(tick + 500);
-    await ui.viewer.button('Fastest').click();
-    // On a busy computer the page may have had no time to show that it is there. Then the program pauses by itself, and a
-    // click that comes at this moment runs it again.
-    const paused = ui.viewer.page.getByTestId('state').getByText('paused', { exact: true });
-    const isPaused = await waitUntil(async () => {
-      await ui.viewer.button('Pause').click({ timeout: 2_000 }).catch(() => undefined);
-      return paused.waitFor({ timeout: 2_000 }).then(
-        () => true,
-        () => false,
-      );
-    });
-    assert.ok(isPaused, await ui.viewer.page.locator('body').innerText());
+    // The last test: soon the robot has left its ground.
   });
 });
 

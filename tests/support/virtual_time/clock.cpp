@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -43,6 +44,7 @@ constexpr int most_looks = 10;
 constexpr std::int64_t look_again_ns = 1'000'000;  // of the computer's time
 
 SharedClock* shared = nullptr;
+std::atomic<std::uint32_t> notifications{0};  // number of those of all condition variables of this process
 
 template <typename Function>
 Function real(const char* name) {
@@ -441,11 +443,22 @@ int timerfd_settime(int descriptor, int flags, const itimerspec* time, itimerspe
   return 0;
 }
 
+int pthread_cond_signal(pthread_cond_t* condition) {
+  ++notifications;
+  return PROLEG_REAL(pthread_cond_signal)(condition);
+}
+
+int pthread_cond_broadcast(pthread_cond_t* condition) {
+  ++notifications;
+  return PROLEG_REAL(pthread_cond_broadcast)(condition);
+}
+
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
   const auto call = PROLEG_REAL(pthread_cond_clockwait);
   if (!is_virtual(clock)) {
     return call(condition, mutex, clock, until);
   }
+  const std::uint32_t before = notifications.load();
   const ThreadWait wait(end_of(clock, *until), true);
   while (!wait.is_over()) {
     timespec soon{};
@@ -453,6 +466,9 @@ int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, cl
     soon = time_of(nanoseconds(soon) + look_again_ns);
     if (const int result = call(condition, mutex, CLOCK_MONOTONIC, &soon); result != ETIMEDOUT) {
       return result;
+    }
+    if (notifications.load() != before) {
+      return 0;  // the caller looks at its condition: a thread with the mutex may have notified after this wait ended
     }
   }
   return ETIMEDOUT;

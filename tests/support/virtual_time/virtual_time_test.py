@@ -20,6 +20,11 @@ KEEPER, LIBRARY = sys.argv[1:3]
 C_LIBRARY = ctypes.CDLL(None, use_errno=True)
 
 
+class Time(ctypes.Structure):
+    """struct timespec"""
+    _fields_ = [("s", ctypes.c_long), ("ns", ctypes.c_long)]
+
+
 class Interval(ctypes.Structure):
     """struct itimerspec"""
     _fields_ = [(name, ctypes.c_long) for name in ("again_s", "again_ns", "first_s", "first_ns")]
@@ -84,6 +89,24 @@ class VirtualTime(unittest.TestCase):
             self.assertEqual(C_LIBRARY.timerfd_settime(timer, 0, ctypes.byref(interval), None), 0)
             self.assertEqual(microseconds(select.select, [timer], [], []), wanted_us)
         os.close(timer)
+
+    def test_a_notification_is_not_lost_that_comes_while_the_waiter_waits_for_the_mutex(self):
+        condition, mutex = (ctypes.create_string_buffer(size) for size in (48, 40))  # as PTHREAD_..._INITIALIZER
+
+        def notify():
+            C_LIBRARY.pthread_mutex_lock(mutex)
+            while time.thread_time() < 0.05:
+                pass  # the waiter looks at the time every millisecond of the computer
+            C_LIBRARY.pthread_cond_broadcast(condition)
+            C_LIBRARY.pthread_mutex_unlock(mutex)
+
+        C_LIBRARY.pthread_mutex_lock(mutex)
+        notifier = threading.Thread(target=notify)
+        notifier.start()
+        until = Time(int(time.monotonic()) + 3600, 0)
+        self.assertEqual(microseconds(C_LIBRARY.pthread_cond_clockwait, condition, mutex, time.CLOCK_MONOTONIC, ctypes.byref(until)), 0)
+        C_LIBRARY.pthread_mutex_unlock(mutex)
+        notifier.join()
 
     def test_a_program_that_looks_for_events_without_a_pause_lets_time_pass(self):
         end = time.monotonic() + 0.01

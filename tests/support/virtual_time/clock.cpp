@@ -342,6 +342,11 @@ int pselect(int count, fd_set* reads, fd_set* writes, fd_set* others, const time
   if (shared == nullptr) {
     return call(time);
   }
+  for (int descriptor = 0; reads != nullptr && descriptor < count; ++descriptor) {
+    if (FD_ISSET(descriptor, reads)) {
+      note_reader(descriptor);
+    }
+  }
   const auto call_without_end = [&] { return call(nullptr); };
   const int result = time != nullptr && nanoseconds(*time) <= 0
                          ? look([&] { return call(time); }, call_without_end)

@@ -117,19 +117,26 @@ std::vector<int> numbers_in(std::string_view text) {
 /// All threads of the descendants of this process.
 class Family {
  public:
-  /// Looks for new threads, if the system has started any since the last time.
+  /// Looks for new threads, if the system has started any since the last time. A thread that is being started then may
+  /// have its number and not be listed yet.
   void refresh() {
     std::array<char, 1024> buffer{};
     const std::string_view load = load_.read(buffer);
     const std::string last(load.substr(load.rfind(' ') + 1));
-    if (last == last_started_ && !last.empty()) {
-      return;
+    if (last != last_started_ || last.empty()) {
+      last_started_ = last;
+      list();
     }
-    last_started_ = last;
-    std::map<int, std::unique_ptr<Thread>> threads;
-    add(getpid(), threads);
-    threads_.swap(threads);
   }
+  /// As refresh(), while all known threads sleep: then none of them is starting another one, and the list is complete.
+  void complete() {
+    if (!is_complete_) {
+      last_started_.clear();
+    }
+    refresh();
+  }
+  /// The known threads slept all the time of complete().
+  void confirm() { is_complete_ = true; }
   /// Ends all threads.
   void kill_all() {
     last_started_.clear();
@@ -161,6 +168,12 @@ class Family {
   }
 
  private:
+  void list() {
+    is_complete_ = false;
+    std::map<int, std::unique_ptr<Thread>> threads;
+    add(getpid(), threads);
+    threads_.swap(threads);
+  }
   /// Adds the children of a process, which are listed by the thread that started them.
   void add(int process, std::map<int, std::unique_ptr<Thread>>& threads) {
     const std::string folder = "/proc/" + std::to_string(process) + "/task";
@@ -188,6 +201,7 @@ class Family {
 
   File load_{"/proc/loadavg"};  // its last word is the number of the last thread that was started
   std::string last_started_;
+  bool is_complete_ = false;
   std::map<int, std::unique_ptr<Thread>> threads_;
   int runner_ = 0;  ///< thread that was seen running last
 };
@@ -237,7 +251,7 @@ class Keeper {
     if (!before) {
       return false;
     }
-    family_.refresh();
+    family_.complete();
     auto after = family_.read_sleepers();
     if (!after || pending(clock_) != waits) {
       return false;
@@ -252,7 +266,11 @@ class Keeper {
         first->second.turns = second->second.turns;
       }
     }
-    return before == after;
+    if (before != after) {
+      return false;
+    }
+    family_.confirm();
+    return true;
   }
 
   /// Has all processes with terminals poll them if any was written to since the last time; false if none was.

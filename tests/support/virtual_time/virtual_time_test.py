@@ -134,6 +134,19 @@ class VirtualTime(unittest.TestCase):
         worker = python("while time.process_time() < 0.3: pass")
         self.assertLessEqual(microseconds(worker.wait, 0.00001), 11)  # Python rounds up
 
+    def test_a_process_that_was_started_a_moment_ago_holds_time_back(self):
+        for _ in range(500):
+            reader, writer = os.pipe()
+            child = os.fork()
+            if child == 0:
+                while time.process_time() < 0.001:
+                    pass
+                os._exit(0)  # which closes the pipe
+            os.close(writer)
+            self.assertEqual(select.select([reader], [], [], 0.000001)[0], [reader])
+            os.waitpid(child, 0)
+            os.close(reader)
+
     def test_what_is_sent_arrives_before_time_passes(self):
         echo = "while received := os.read(int(sys.argv[1]), 100): os.write(int(sys.argv[1]), received)"
         for near, far in (socket.socketpair(), pty.openpty(), reversed(pty.openpty())):

@@ -45,8 +45,8 @@ void ask_programs(BusAccess& bus, std::span<host::FlashCandidate> modules);
 [[nodiscard]] std::vector<std::string> compare_settings(const host::ModuleParameters& before,
                                                         const host::ModuleParameters& after);
 
-/// Waits while a module is in a session with another host, such as one that was stopped in the middle of a transfer.
-/// The module ends it by itself.
+/// If a module is in a session with another host, such as one that was stopped in the middle of a transfer, waits until
+/// the module must have ended it by itself.
 void wait_for_sessions(BusAccess& bus, const std::vector<host::FlashCandidate>& modules);
 
 /// "node 3", or "the module 0x12345678" without a node id.

@@ -118,6 +118,7 @@ describe('a live simulation', () => {
     await ui.viewer.page.keyboard.press('p');
     await ui.viewer.page.getByTestId('frozen').waitFor();
     await ui.viewer.waitForTick((await ui.viewer.tick()) + 30);
+    await waitForFrames(ui.viewer.page, 20); // the table is drawn less often than the badge
     const angles = await ui.viewer.angles();
     const first = await ui.viewer.tick();
     // At several times, none of them a whole stride later.

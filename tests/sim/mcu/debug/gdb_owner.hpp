@@ -8,15 +8,16 @@
 
 namespace proleg::sim {
 
-/// The owner of a target, as in gdb_server.hpp, until the debugger has ended.
+/// The owner of a target, as in gdb_server.hpp, until the debugger has left or ended. serve() ends with the connection,
+/// and is not interrupted: a debugger does not wait for an answer to its last command, and may have ended before the
+/// server reads it.
 /// Program: step(); run_slice(), true if it came to a breakpoint.
 template <typename Program>
 Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slices_until_control_c = 20'000) {
-  const auto interrupted = [&] { return gdb.ended(); };
-  if (!server.wait_for_client(interrupted)) {
+  if (!server.wait_for_client([&] { return gdb.ended(); })) {
     return Resume::interrupted;
   }
-  Resume resume = server.serve(StopReason::attached, interrupted);
+  Resume resume = server.serve(StopReason::attached, nullptr);
   while (resume == Resume::step || resume == Resume::run) {
     StopReason reason = StopReason::step;
     if (resume == Resume::step) {
@@ -44,7 +45,7 @@ Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slice
         }
       }
     }
-    resume = server.serve(reason, interrupted);
+    resume = server.serve(reason, nullptr);
   }
   return resume;
 }

@@ -73,7 +73,8 @@ void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Hello& hello) {
   if (!token_.matches(hello.token)) {
     viewer.close(1008, "hello: found a wrong token, expected that of the address that proleg ui printed");
   } else if (hello.protocol != protocol) {
-    viewer.close(1008, "hello: found protocol " + std::to_string(hello.protocol) + ", expected 1");
+    viewer.close(1008,
+                 "hello: found protocol " + std::to_string(hello.protocol) + ", expected " + std::to_string(protocol));
   } else {
     viewer.welcome(hello.name, hello.is_only_stop, options_.program);
   }

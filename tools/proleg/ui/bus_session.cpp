@@ -40,7 +40,7 @@ json gait_json(const GaitCheck& check) {
 }  // namespace
 
 BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
-                       host::SessionRequests& requests, host::SessionOutput& output)
+                       SessionRequests& requests, host::SessionOutput& output)
     : SessionThread(requests, output),
       file_(file),
       address_(std::move(address)),
@@ -127,7 +127,7 @@ void BusSession::stop_at_once() {
 
 /// A robot with power needs somebody who drives it.
 void BusSession::look_at_holder() {
-  const host::SessionRequests::Holder holder = requests_.take_holder();
+  const SessionRequests::Holder holder = requests_.take_holder();
   const Clock::time_point now = Clock::now();
   if (holder.is_there) {
     absent_since_.reset();

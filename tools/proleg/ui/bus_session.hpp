@@ -33,7 +33,7 @@ class BusSession final : private SessionThread {
   /// Does what `requests` has, and tells it `output`. file, bus, requests, output: must outlive the session. Another
   /// thread must not use the bus.
   BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
-             host::SessionRequests& requests, host::SessionOutput& output);
+             SessionRequests& requests, host::SessionOutput& output);
   /// The joints ramp to the safe pose and lose their power first.
   ~BusSession() override;
 

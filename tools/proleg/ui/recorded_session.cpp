@@ -84,8 +84,7 @@ json RunComparison::document() {
           {"head_m", std::move(head)}};
 }
 
-RecordedSession::RecordedSession(RecordedSessionOptions options, host::SessionRequests& requests,
-                                 host::SessionOutput& output)
+RecordedSession::RecordedSession(RecordedSessionOptions options, SessionRequests& requests, host::SessionOutput& output)
     : SessionThread(requests, output), folder_(options.folder) {
   output_.publish("recordings", {{"folder", std::filesystem::canonical(options.folder).filename().string()},
                                  {"open", options.file ? json(*options.file) : json()},

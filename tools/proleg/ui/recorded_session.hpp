@@ -11,7 +11,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tools/proleg/ui/recorded_run.hpp"
@@ -65,12 +64,10 @@ class RecordedSession final : private SessionThread {
  public:
   static constexpr std::size_t max_open_runs = 6;
   static constexpr std::size_t max_comparisons = 2;
-  /// Names of the operations of this session begin so.
-  static constexpr std::string_view prefix = "recording.";
 
   /// Does what `requests` has, and tells it `output`, which both must outlive the session. Throws InputError if there
   /// is no such folder.
-  RecordedSession(RecordedSessionOptions options, host::SessionRequests& requests, host::SessionOutput& output);
+  RecordedSession(RecordedSessionOptions options, SessionRequests& requests, host::SessionOutput& output);
   ~RecordedSession() override;
 
   /// Operations that anybody may use.

@@ -1,9 +1,12 @@
 #include "tools/proleg/ui/remote_session.hpp"
 
 #include <poll.h>
+#include <sys/eventfd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -34,6 +37,39 @@ constexpr RemoteTime search_period{1'000};
 bool is_own(host::RequestId request) { return (request & own_request) != 0; }
 
 }  // namespace
+
+TaskQueue::TaskQueue() : event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (!event_.is_open()) {
+    throw std::system_error(errno, std::generic_category(), "eventfd");
+  }
+}
+
+void TaskQueue::post(std::function<void()> task) {
+  const std::lock_guard lock(mutex_);
+  tasks_.push_back(std::move(task));
+  // It fails only if the counter is full; then the descriptor can be read already.
+  [[maybe_unused]] const int ignored = eventfd_write(event_.number(), 1);
+}
+
+void TaskQueue::run() {
+  std::vector<std::function<void()>> tasks;
+  {
+    const std::lock_guard lock(mutex_);
+    tasks.swap(tasks_);
+    eventfd_t count = 0;
+    [[maybe_unused]] const int ignored = eventfd_read(event_.number(), &count);
+  }
+  for (auto task = tasks.begin(); task != tasks.end(); ++task) {
+    try {
+      (*task)();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      tasks_.insert(tasks_.begin(), std::make_move_iterator(task + 1), std::make_move_iterator(tasks.end()));
+      [[maybe_unused]] const int ignored = eventfd_write(event_.number(), 1);
+      throw;
+    }
+  }
+}
 
 std::unique_ptr<host::DeviceSource> RemoteSession::kernel_devices(host::DeviceListener& listener) {
   return std::make_unique<host::EventDevices>(listener, host::EventDevices::Folders{});

@@ -7,10 +7,10 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -18,10 +18,30 @@
 #include "host/remote/device_listener.hpp"
 #include "host/remote/remote_control.hpp"
 #include "host/server/robot_session.hpp"
+#include "host/transport/descriptor.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
+
+/// What other threads give a thread to do that waits for descriptors.
+class TaskQueue {
+ public:
+  /// Throws std::system_error if the system has no descriptors left.
+  TaskQueue();
+
+  /// From any thread.
+  void post(std::function<void()> task);
+  /// Can be read when there is something to do.
+  [[nodiscard]] int descriptor() const { return event_.number(); }
+  /// Does it, in order. If a task throws, the later ones wait for the next call.
+  void run();
+
+ private:
+  host::Descriptor event_;
+  std::mutex mutex_;
+  std::vector<std::function<void()>> tasks_;
+};
 
 class RemoteSession final : public host::RobotSession, public host::SessionOutput, private host::RemoteTarget {
  public:
@@ -29,8 +49,6 @@ class RemoteSession final : public host::RobotSession, public host::SessionOutpu
 
   /// The gamepads of this computer.
   [[nodiscard]] static std::unique_ptr<host::DeviceSource> kernel_devices(host::DeviceListener& listener);
-  /// The names of its operations begin with this.
-  static constexpr std::string_view prefix = "remote.";
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"remote.watch"}; }
 

@@ -10,8 +10,8 @@ namespace proleg::tools {
 RobotStops::RobotStops(const sim::Scenario& file, host::BusConnection& bus, host::SessionOutput& output)
     : file_(file), output_(output), queue_(bus), attachment_(bus, queue_), confirmed_(file.robot.joints.size()) {}
 
-void RobotStops::give(const std::vector<host::SessionRequests::Stop>& stops, DrivenRobot* robot) {
-  for (const host::SessionRequests::Stop& stop : stops) {
+void RobotStops::give(const std::vector<SessionRequests::Stop>& stops, DrivenRobot* robot) {
+  for (const SessionRequests::Stop& stop : stops) {
     pending_.push_back({stop.request, stop.since});
     output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
   }

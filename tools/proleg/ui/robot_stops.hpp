@@ -9,9 +9,9 @@
 
 #include "host/robot/bus_connection.hpp"
 #include "host/robot/sdo_queue.hpp"
-#include "host/server/robot_session.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 
@@ -25,7 +25,7 @@ class RobotStops {
 
   /// Stops all modules at once; several STOPs are one for them. robot: null if this program drives none, but another
   /// may.
-  void give(const std::vector<host::SessionRequests::Stop>& stops, DrivenRobot* robot);
+  void give(const std::vector<SessionRequests::Stop>& stops, DrivenRobot* robot);
   /// Answers the STOPs that all modules have confirmed, and those that are older than longest_confirmation.
   void answer();
   /// The robot starts again: no module has a STOP.

@@ -1,21 +1,119 @@
 #include "tools/proleg/ui/session_base.hpp"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <chrono>
 #include <deque>
 #include <exception>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
+
+void SessionRouter::operate(const host::OperationRequest& request) {
+  if (request.name.starts_with(recording_operations)) {
+    recordings_.operate(request);
+  } else if (request.name.starts_with(remote_operations)) {
+    remote_.operate(request);
+  } else {
+    robot_.operate(request);
+  }
+}
+
+void SessionRouter::stop(const host::StopRequest& request) {
+  robot_.stop(request);
+  remote_.stop(request);
+}
+
+void SessionRouter::holder_changed(bool has_holder, bool is_away) {
+  robot_.holder_changed(has_holder, is_away);
+  remote_.holder_changed(has_holder, is_away);
+}
+
+void SessionRequests::operate(const host::OperationRequest& request) {
+  const std::lock_guard lock(mutex_);
+  operations_.push_back(request);
+  notify();
+}
+
+void SessionRequests::stop(const host::StopRequest& request) {
+  const std::lock_guard lock(mutex_);
+  if (stops_.size() >= host::max_pending_stops) {
+    stops_.erase(stops_.begin());
+  }
+  stops_.push_back({request.request, request.by, Clock::now()});
+  notify();
+}
+
+void SessionRequests::holder_changed(bool has_holder, bool is_away) {
+  const std::lock_guard lock(mutex_);
+  holder_ = {has_holder, is_away};
+  is_holder_new_ = true;
+  notify();
+}
+
+void SessionRequests::end() {
+  const std::lock_guard lock(mutex_);
+  ends_ = true;
+  notify();
+}
+
+std::vector<SessionRequests::Stop> SessionRequests::take_stops(std::deque<host::OperationRequest>& outdated) {
+  const std::lock_guard lock(mutex_);
+  if (!stops_.empty()) {
+    outdated = std::exchange(operations_, {});
+  }
+  std::vector<Stop> stops = std::exchange(stops_, {});
+  look();
+  return stops;
+}
+
+std::optional<host::OperationRequest> SessionRequests::take_operation() {
+  const std::lock_guard lock(mutex_);
+  if (!stops_.empty() || operations_.empty()) {
+    return std::nullopt;
+  }
+  host::OperationRequest operation = std::move(operations_.front());
+  operations_.pop_front();
+  look();
+  return operation;
+}
+
+SessionRequests::Holder SessionRequests::take_holder() {
+  const std::lock_guard lock(mutex_);
+  is_holder_new_ = false;
+  look();
+  return holder_;
+}
+
+bool SessionRequests::interrupts() const {
+  const std::lock_guard lock(mutex_);
+  return ends_ || !stops_.empty();
+}
+
+bool SessionRequests::ends() const {
+  const std::lock_guard lock(mutex_);
+  return ends_;
+}
+
+void SessionRequests::wait_until(Clock::time_point time) {
+  std::unique_lock lock(mutex_);
+  wake_.wait_until(lock, time, [this] { return are_there_.load(); });
+}
+
+void SessionRequests::wait() {
+  std::unique_lock lock(mutex_);
+  wake_.wait(lock, [this] { return are_there_.load(); });
+}
+
+void SessionRequests::notify() {
+  are_there_ = true;
+  wake_.notify_one();
+}
+
+/// Updates are_there_: whether any request is left.
+void SessionRequests::look() { are_there_ = ends_ || is_holder_new_ || !stops_.empty() || !operations_.empty(); }
 
 void SessionThread::begin_thread() {
   thread_ = std::thread([this] { run(); });
@@ -79,39 +177,6 @@ bool SessionThread::take_operations() {
     }
   }
   return is_any;
-}
-
-TaskQueue::TaskQueue() : event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-  if (!event_.is_open()) {
-    throw std::system_error(errno, std::generic_category(), "eventfd");
-  }
-}
-
-void TaskQueue::post(std::function<void()> task) {
-  const std::lock_guard lock(mutex_);
-  tasks_.push_back(std::move(task));
-  // It fails only if the counter is full; then the descriptor can be read already.
-  [[maybe_unused]] const int ignored = eventfd_write(event_.number(), 1);
-}
-
-void TaskQueue::run() {
-  std::vector<std::function<void()>> tasks;
-  {
-    const std::lock_guard lock(mutex_);
-    tasks.swap(tasks_);
-    eventfd_t count = 0;
-    [[maybe_unused]] const int ignored = eventfd_read(event_.number(), &count);
-  }
-  for (auto task = tasks.begin(); task != tasks.end(); ++task) {
-    try {
-      (*task)();
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      tasks_.insert(tasks_.begin(), std::make_move_iterator(task + 1), std::make_move_iterator(tasks.end()));
-      [[maybe_unused]] const int ignored = eventfd_write(event_.number(), 1);
-      throw;
-    }
-  }
 }
 
 }  // namespace proleg::tools

@@ -1,9 +1,13 @@
 #pragma once
 
-// What the sessions behind the page have in common: the arguments of operations, a thread that carries operations out,
-// and the tasks of a thread that waits for descriptors.
+// What the sessions behind the page have in common: the way of an operation to its session, the requests that wait for
+// the session's thread, that thread, and the arguments of operations.
 
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <map>
@@ -16,7 +20,6 @@
 #include <vector>
 
 #include "host/server/robot_session.hpp"
-#include "host/transport/descriptor.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -71,6 +74,82 @@ const Handler& handler_of(const std::map<std::string_view, Handler>& handlers, c
   throw InputError("operation", 0, in_quotes(shortened(operation)), "one of " + listed(names));
 }
 
+// How the names of the operations begin that are not for the robot.
+inline constexpr std::string_view recording_operations = "recording.";
+inline constexpr std::string_view remote_operations = "remote.";
+
+/// Three sessions behind one page: a robot, its remote control, and recordings. The name of an operation says which of
+/// them it is for; STOP and the holder of control go to the robot, then to the remote control.
+class SessionRouter final : public host::RobotSession {
+ public:
+  /// All must outlive the router.
+  SessionRouter(host::RobotSession& recordings, host::RobotSession& remote, host::RobotSession& robot)
+      : recordings_(recordings), remote_(remote), robot_(robot) {}
+
+  void operate(const host::OperationRequest& request) override;
+  void stop(const host::StopRequest& request) override;
+  void holder_changed(bool has_holder, bool is_away) override;
+
+ private:
+  host::RobotSession& recordings_;
+  host::RobotSession& remote_;
+  host::RobotSession& robot_;
+};
+
+/// Requests of viewers to a session, on their way from the server's thread to that of the session.
+class SessionRequests final : public host::RobotSession {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Stop {
+    host::RequestId request = 0;
+    std::string by;
+    Clock::time_point since;
+  };
+  struct Holder {
+    bool is_there = false;  ///< a viewer drives
+    bool is_away = false;   ///< the page of the viewer that drives does not answer
+  };
+
+  // For any thread.
+  void operate(const host::OperationRequest& request) override;
+  void stop(const host::StopRequest& request) override;
+  void holder_changed(bool has_holder, bool is_away) override;
+  /// Requests the end of the session.
+  void end();
+
+  // For the session's thread.
+
+  /// All STOPs that wait, at most host::max_pending_stops. If there are any, the operations that wait as well go into
+  /// `outdated`: what was asked for before a STOP has no effect after it.
+  [[nodiscard]] std::vector<Stop> take_stops(std::deque<host::OperationRequest>& outdated);
+  /// Takes the oldest operation; nothing as long as a STOP waits.
+  [[nodiscard]] std::optional<host::OperationRequest> take_operation();
+  /// Takes the present state of the holder of control.
+  [[nodiscard]] Holder take_holder();
+  /// Whether the session must interrupt its work: a STOP waits, or the session is to end.
+  [[nodiscard]] bool interrupts() const;
+  [[nodiscard]] bool ends() const;
+  /// Whether a request has not been taken. The call is cheap.
+  [[nodiscard]] bool are_there() const { return are_there_; }
+  /// Waits until a request has not been taken, or until this time.
+  void wait_until(Clock::time_point time);
+  void wait();
+
+ private:
+  void notify();
+  void look();
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<host::OperationRequest> operations_;
+  std::vector<Stop> stops_;
+  Holder holder_;
+  bool is_holder_new_ = false;
+  bool ends_ = false;
+  std::atomic<bool> are_there_ = false;
+};
+
 /// A thread that does what viewers ask for, and outlives its errors.
 class SessionThread {
  public:
@@ -79,10 +158,10 @@ class SessionThread {
 
  protected:
   using Clock = std::chrono::steady_clock;
-  using Stops = std::vector<host::SessionRequests::Stop>;
+  using Stops = std::vector<SessionRequests::Stop>;
 
   /// requests, output: must outlive this.
-  SessionThread(host::SessionRequests& requests, host::SessionOutput& output) : requests_(requests), output_(output) {}
+  SessionThread(SessionRequests& requests, host::SessionOutput& output) : requests_(requests), output_(output) {}
   virtual ~SessionThread() = default;
 
   /// The last call of the constructor of a session.
@@ -106,7 +185,7 @@ class SessionThread {
   /// Carries out all operations that wait, and answers them. Returns whether there were any.
   bool take_operations();
 
-  host::SessionRequests& requests_;
+  SessionRequests& requests_;
   host::SessionOutput& output_;
 
  private:
@@ -115,25 +194,6 @@ class SessionThread {
 
   std::string last_error_;  ///< of serve(); empty if it has thrown none the last time
   std::thread thread_;
-};
-
-/// What other threads give a thread to do that waits for descriptors.
-class TaskQueue {
- public:
-  /// Throws std::system_error if the system has no descriptors left.
-  TaskQueue();
-
-  /// From any thread.
-  void post(std::function<void()> task);
-  /// Can be read when there is something to do.
-  [[nodiscard]] int descriptor() const { return event_.number(); }
-  /// Does it, in order. If a task throws, the later ones wait for the next call.
-  void run();
-
- private:
-  host::Descriptor event_;
-  std::mutex mutex_;
-  std::vector<std::function<void()>> tasks_;
 };
 
 }  // namespace proleg::tools

@@ -48,7 +48,7 @@ json text_or_null(const std::string& text) { return text.empty() ? json() : json
 }  // namespace
 
 SimulatedSession::SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
-                                   host::SessionRequests& requests, host::SessionOutput& output)
+                                   SessionRequests& requests, host::SessionOutput& output)
     : SessionThread(requests, output),
       options_(std::move(options)),
       folder_(options_.recordings),
@@ -111,7 +111,7 @@ void SimulatedSession::wait() {
 }
 
 void SimulatedSession::stop_at_once() {
-  for (const host::SessionRequests::Stop& stop : take_stops()) {
+  for (const SessionRequests::Stop& stop : take_stops()) {
     stop_steps();
     if (state_ != State::failed) {
       stopped_by_ = stop.by;

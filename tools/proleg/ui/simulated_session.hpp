@@ -84,8 +84,8 @@ class SimulatedSession final : private SessionThread {
  public:
   /// Does what `requests` has, and tells it `output`; both must outlive the session. live: null if there is no
   /// simulation until a recording is continued. Throws InputError if there is no folder of recordings.
-  SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
-                   host::SessionRequests& requests, host::SessionOutput& output);
+  SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options, SessionRequests& requests,
+                   host::SessionOutput& output);
   /// Ends the thread, and a recording.
   ~SimulatedSession() override;
 

@@ -31,7 +31,6 @@
 #include "tools/proleg/ui/page_access.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
-#include "tools/proleg/ui/session_router.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -189,8 +188,8 @@ int serve(UiOptions& options) {
   }
   catch_interrupts();
   boost::asio::io_context context{1};
-  host::SessionRequests recording_requests;
-  host::SessionRequests requests;
+  SessionRequests recording_requests;
+  SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
   SessionRouter router(recording_requests, remote, requests);

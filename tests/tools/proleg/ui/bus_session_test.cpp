@@ -134,7 +134,7 @@ class BusSessionTest : public ::testing::Test {
   BusAccess bus_{[this](host::TransportListener& listener) {
     return std::make_unique<FailingTransport>(scenario_, adapter_fails_, listener);
   }};
-  host::SessionRequests requests_;
+  SessionRequests requests_;
   BusViewers viewers_;
   host::RequestId request_ = 0;
   std::optional<BusSession> session_;

@@ -15,7 +15,6 @@
 #include "shipped.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tools/proleg/ui/live_simulation.hpp"
-#include "tools/proleg/ui/session_router.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -94,7 +93,7 @@ class RecordedSessionTest : public ::testing::Test {
 
   TemporaryFolder folder_;
   RecordingViewers viewers_;
-  host::SessionRequests requests_;
+  SessionRequests requests_;
   std::uint64_t request_ = 0;
   std::optional<RecordedSession> session_;
 };
@@ -220,30 +219,6 @@ TEST_F(RecordedSessionTest, ComparesAFileWithItselfWhileItIsReplaced) {
   }
   ends = true;
   replacing.join();
-}
-
-TEST(SessionRouter, RobotRemoteControlAndRecordingsGetTheirOwn) {
-  host::SessionRequests recordings;
-  host::SessionRequests remote;
-  host::SessionRequests robot;
-  SessionRouter router(recordings, remote, robot);
-  router.operate({1, "recording.list", json::object(), 1, "a test"});
-  router.operate({2, "set", json::object(), 1, "a test"});
-  router.operate({3, "remote.watch", json::object(), 1, "a test"});
-  router.holder_changed(true, false);
-  EXPECT_EQ(recordings.take_operation()->request, 1U);
-  EXPECT_EQ(robot.take_operation()->request, 2U);
-  EXPECT_EQ(remote.take_operation()->request, 3U);
-  EXPECT_FALSE(robot.take_operation());
-  EXPECT_FALSE(remote.take_operation());
-  EXPECT_FALSE(recordings.take_operation());
-  EXPECT_TRUE(robot.take_holder().is_there);
-  EXPECT_TRUE(remote.take_holder().is_there);
-  router.stop({4, "a test"});
-  std::deque<host::OperationRequest> outdated;
-  EXPECT_TRUE(recordings.take_stops(outdated).empty());
-  EXPECT_EQ(robot.take_stops(outdated).size(), 1U);
-  EXPECT_EQ(remote.take_stops(outdated).size(), 1U);
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ class SimulatedSessionTest : public ::testing::Test {
   TemporaryFolder folder_;
   Viewers viewers_;
   std::uint64_t request_ = 0;
-  std::optional<host::SessionRequests> requests_;
+  std::optional<SessionRequests> requests_;
   std::optional<SimulatedSession> session_;
 };
 

@@ -1,13 +1,39 @@
-#include "host/server/robot_session.hpp"
+#include "tools/proleg/ui/session_base.hpp"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-namespace proleg::host {
+namespace proleg::tools {
 namespace {
 
-OperationRequest operation(RequestId request) { return {request, "run", nlohmann::json::object(), 1, "desk"}; }
+TEST(SessionRouter, RobotRemoteControlAndRecordingsGetTheirOwn) {
+  SessionRequests recordings;
+  SessionRequests remote;
+  SessionRequests robot;
+  SessionRouter router(recordings, remote, robot);
+  router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
+  router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
+  router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
+  router.holder_changed(true, false);
+  EXPECT_EQ(recordings.take_operation()->request, 1U);
+  EXPECT_EQ(robot.take_operation()->request, 2U);
+  EXPECT_EQ(remote.take_operation()->request, 3U);
+  EXPECT_FALSE(robot.take_operation());
+  EXPECT_FALSE(remote.take_operation());
+  EXPECT_FALSE(recordings.take_operation());
+  EXPECT_TRUE(robot.take_holder().is_there);
+  EXPECT_TRUE(remote.take_holder().is_there);
+  router.stop({4, "a test"});
+  std::deque<host::OperationRequest> outdated;
+  EXPECT_TRUE(recordings.take_stops(outdated).empty());
+  EXPECT_EQ(robot.take_stops(outdated).size(), 1U);
+  EXPECT_EQ(remote.take_stops(outdated).size(), 1U);
+}
+
+host::OperationRequest operation(host::RequestId request) {
+  return {request, "run", nlohmann::json::object(), 1, "desk"};
+}
 
 TEST(SessionRequests, AreTakenInTheirOrder) {
   SessionRequests requests;
@@ -29,7 +55,7 @@ TEST(SessionRequests, AStopOvertakesWhatCameBeforeItAndWhatComesWhileItWaits) {
   requests.operate(operation(4));
   EXPECT_TRUE(requests.interrupts());
   EXPECT_FALSE(requests.take_operation());
-  std::deque<OperationRequest> outdated;
+  std::deque<host::OperationRequest> outdated;
   const std::vector<SessionRequests::Stop> stops = requests.take_stops(outdated);
   ASSERT_EQ(stops.size(), 2U);
   EXPECT_EQ(stops[0].by, "desk");
@@ -43,20 +69,20 @@ TEST(SessionRequests, AStopOvertakesWhatCameBeforeItAndWhatComesWhileItWaits) {
 
 TEST(SessionRequests, KeepTheNewestOfManyStops) {
   SessionRequests requests;
-  constexpr RequestId sent = 10 * max_pending_stops;
-  for (RequestId request = 1; request <= sent; ++request) {
+  constexpr host::RequestId sent = 10 * host::max_pending_stops;
+  for (host::RequestId request = 1; request <= sent; ++request) {
     requests.stop({request, "desk"});
   }
-  std::deque<OperationRequest> outdated;
+  std::deque<host::OperationRequest> outdated;
   const std::vector<SessionRequests::Stop> stops = requests.take_stops(outdated);
-  ASSERT_EQ(stops.size(), max_pending_stops);
+  ASSERT_EQ(stops.size(), host::max_pending_stops);
   EXPECT_EQ(stops.back().request, sent);
 }
 
 TEST(SessionRequests, WithoutAStopNothingIsOutdated) {
   SessionRequests requests;
   requests.operate(operation(1));
-  std::deque<OperationRequest> outdated;
+  std::deque<host::OperationRequest> outdated;
   EXPECT_TRUE(requests.take_stops(outdated).empty());
   EXPECT_TRUE(outdated.empty());
   EXPECT_TRUE(requests.take_operation());
@@ -85,4 +111,4 @@ TEST(SessionRequests, WakeASessionThatWaits) {
 }
 
 }  // namespace
-}  // namespace proleg::host
+}  // namespace proleg::tools

@@ -1,6 +1,7 @@
 #include "sim/optimize/evaluation/local_workers.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -70,7 +71,6 @@ TEST_F(LocalWorkersTest, GiveTheResultsThatRunTrialGives) {
   }
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     EXPECT_EQ(exact(results.at(i)), exact(run_trial(noisy, tasks[i])));
-    EXPECT_GT(results.at(i).wall_s, 0.0);
   }
   EXPECT_EQ(workers.idle(), 2U);
   EXPECT_TRUE(workers.messages().empty());
@@ -142,22 +142,30 @@ TEST_F(LocalWorkersTest, RepeatTheTasksOfABatchOneByOneAfterADeath) {
 }
 
 TEST_F(LocalWorkersTest, NameTheTaskOfABatchThatEndsThreeWorkersAlone) {
-  LocalWorkers workers(experiment_, 2, one_by_one([](const Experiment& experiment, const Task& task) {
-                         if (task.number == 17) {
-                           raise(SIGKILL);
-                         }
-                         return made_up_trial(experiment, task);
-                       }));
-  workers.start(five_tasks());
-  std::set<std::uint64_t> survivors;
-  try {
-    while (true) {
-      survivors.insert(next(workers).ticket);
+  for (const std::uint32_t count : {1U, 2U}) {
+    LocalWorkers workers(experiment_, count, one_by_one([](const Experiment& experiment, const Task& task) {
+                           if (task.number == 17) {
+                             raise(SIGKILL);
+                           }
+                           return made_up_trial(experiment, task);
+                         }));
+    workers.start(five_tasks());
+    std::set<std::uint64_t> survivors;
+    try {
+      while (true) {
+        survivors.insert(next(workers).ticket);
+      }
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()).find("evaluation 17 of run 0 ended 3 workers"), 0U) << error.what();
     }
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()).find("evaluation 17 of run 0 ended 3 workers"), 0U) << error.what();
+    if (count == 1) {
+      // The task is repeated after all others.
+      EXPECT_EQ(survivors, (std::set<std::uint64_t>{150, 160, 180, 190}));
+    } else {
+      // The second worker may still have another task.
+      EXPECT_FALSE(survivors.contains(170));
+    }
   }
-  EXPECT_TRUE(survivors.contains(150) && survivors.contains(160) && !survivors.contains(170));
 }
 
 TEST_F(LocalWorkersTest, HaveTheTimeOfAllTheirTasks) {
@@ -325,15 +333,17 @@ TEST_F(LocalWorkersTest, HoldNoDescriptorOfTheirParent) {
 
 TEST_F(LocalWorkersTest, WaitReturnsWhenASignalComes) {
   std::signal(SIGALRM, [](int) {});
-  LocalWorkers workers(experiment_, 1, [](const Experiment&, std::span<const Task>) -> std::vector<TrialResult> {
-    while (true) {
-      pause();
-    }
-  });
-  start(workers, 1, task_);
-  ualarm(20'000, 20'000);
-  EXPECT_FALSE(workers.wait(milliseconds(100'000)));  // or the test takes longer than it may
-  ualarm(0, 0);
+  {
+    // Virtual time stands still while the worker works. One signal may come before wait() does.
+    LocalWorkers workers(experiment_, 1, [](const Experiment&, std::span<const Task>) -> std::vector<TrialResult> {
+      while (true) {
+        kill(getppid(), SIGALRM);
+        sched_yield();
+      }
+    });
+    start(workers, 1, task_);
+    EXPECT_FALSE(workers.wait(milliseconds(100'000)));  // or the test takes longer than it may
+  }
   std::signal(SIGALRM, SIG_DFL);
 }
 

@@ -2,9 +2,11 @@
 // is that of clock.cpp. Time stands still while any thread of these programs runs or can run. When all of them wait, it
 // becomes the end of the wait that ends first.
 //
-// Linux says whether a thread waits (proc(5)): its state, and how often it was given a processor. Two readings of all
-// threads, one after the other, that are the same and find all threads asleep mean that none ran between them, so that
-// none can wake another.
+// Linux says whether a thread waits (proc(5)): its state, in which function of the kernel it waits, and how often it
+// was given a processor. Two readings of all threads, one after the other, that are the same and find all threads
+// asleep mean that none ran between them, so that none can wake another. The state alone does not suffice: a thread may
+// lose the processor when it has the state of a sleeper already, or still, for example while it ends. It waits for a
+// processor then, in no function of the kernel.
 //
 // Exit status: that of the program; 1 if all threads wait and no wait has an end. Processes that it leaves behind are
 // killed.
@@ -74,7 +76,10 @@ struct Reading {
 class Thread {
  public:
   Thread(int process, int thread)
-      : folder_(path(process, thread)), stat_(folder_ + "/stat"), schedstat_(folder_ + "/schedstat") {}
+      : folder_(path(process, thread)),
+        stat_(folder_ + "/stat"),
+        wchan_(folder_ + "/wchan"),
+        schedstat_(folder_ + "/schedstat") {}
 
   static std::string path(int process, int thread) {
     return "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread);
@@ -86,7 +91,7 @@ class Thread {
     const std::size_t name_end = stat.rfind(')');
     const char state = name_end == std::string_view::npos ? 'X' : stat[name_end + 2];
     has_ended_ = state == 'Z' || state == 'X';
-    reading.is_asleep = has_ended_ || std::strchr("STI", state) != nullptr;
+    reading.is_asleep = has_ended_ || state == 'T' || (std::strchr("SI", state) != nullptr && waits_in_kernel());
     reading.turns = schedstat_.read(buffer);
     return reading;
   }
@@ -94,8 +99,21 @@ class Thread {
   [[nodiscard]] bool has_ended() const { return has_ended_; }
 
  private:
+  /// Always true if this kernel does not say where threads wait.
+  [[nodiscard]] bool waits_in_kernel() const {
+    static bool is_said = false;  // of any thread
+    std::array<char, 1024> buffer{};
+    const std::string_view function = wchan_.read(buffer);
+    if (!function.empty() && function != "0") {
+      is_said = true;
+      return true;
+    }
+    return function.empty() || !is_said;
+  }
+
   std::string folder_;
   File stat_;
+  File wchan_;
   File schedstat_;
   bool has_ended_ = false;
 };

@@ -16,7 +16,7 @@ namespace proleg::sim {
 /// More triangles than any simulation of a link or an obstacle needs.
 inline constexpr std::size_t max_triangles = 100'000;
 
-/// The corners of max_triangles triangles that share none: of more vertices, no triangle would use some.
+/// Number of corners of max_triangles triangles that share none. Of more vertices, some would belong to no triangle.
 inline constexpr std::size_t max_mesh_vertices = 3 * max_triangles;
 
 /// Gives the bytes of a file beside a mesh file, such as the materials of an OBJ file, or nothing.

@@ -99,9 +99,10 @@ class Thread {
   [[nodiscard]] bool has_ended() const { return has_ended_; }
 
  private:
-  /// Always true if this kernel does not say where threads wait.
+  /// Whether a thread with the state of a sleeper waits in a function of the kernel, so that it does not wait for a
+  /// processor. Always true if this kernel does not say where threads wait.
   [[nodiscard]] bool waits_in_kernel() const {
-    static bool is_said = false;  // of any thread
+    static bool is_said = false;  // whether the kernel has said it of any thread
     std::array<char, 1024> buffer{};
     const std::string_view function = wchan_.read(buffer);
     if (!function.empty() && function != "0") {

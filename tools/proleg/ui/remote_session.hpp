@@ -24,7 +24,7 @@
 
 namespace proleg::tools {
 
-/// What other threads give a thread to do that waits for descriptors.
+/// Tasks that other threads give to a thread that waits for descriptors.
 class TaskQueue {
  public:
   /// Throws std::system_error if the system has no descriptors left.
@@ -32,9 +32,9 @@ class TaskQueue {
 
   /// From any thread.
   void post(std::function<void()> task);
-  /// Can be read when there is something to do.
+  /// Can be read when there are tasks.
   [[nodiscard]] int descriptor() const { return event_.number(); }
-  /// Does it, in order. If a task throws, the later ones wait for the next call.
+  /// Carries the tasks out in their order. If one throws, the later ones wait for the next call.
   void run();
 
  private:

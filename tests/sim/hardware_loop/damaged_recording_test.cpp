@@ -111,7 +111,7 @@ TEST_F(DamagedRecording, IsReadInAllWaysIfItIsWhole) {
   EXPECT_EQ(read_in_all_ways(path_), "");
 }
 
-// In a row of the start and in one of the middle. PROLEG_ALL_DAMAGES: all of them, else a quarter.
+// In a row of the start and in one of the middle. PROLEG_ALL_DAMAGES: all of them, else an eighth.
 TEST_F(DamagedRecording, WithAnyIntegerReplacedIsReadOrRefused) {
   const bool tries_all = std::getenv("PROLEG_ALL_DAMAGES") != nullptr;
   std::mt19937 random(20);
@@ -129,7 +129,7 @@ TEST_F(DamagedRecording, WithAnyIntegerReplacedIsReadOrRefused) {
       for (const std::string value : {"-1", "-2147483649", "64", "1000000", "2147483647", "2147483648", "4294967296",
                                       "9223372036854775807", "%c + 1", "%c - 1", "-%c"}) {
         for (const std::string& row : {std::string("0"), rows + " / 2"}) {
-          if (!tries_all && random() % 4 != 0) {
+          if (!tries_all && random() % 8 != 0) {
             continue;
           }
           std::string sql = "UPDATE OR REPLACE %t SET %c = " + value;
@@ -149,7 +149,7 @@ TEST_F(DamagedRecording, WithAnyIntegerReplacedIsReadOrRefused) {
       }
     }
   }
-  EXPECT_GT(tried, tries_all ? 800 : 200);
+  EXPECT_GT(tried, tries_all ? 800 : 100);
   EXPECT_GT(refused, tried / 2);
 }
 

@@ -6,6 +6,7 @@ Usage: user_algorithms_test.py SOURCE_FOLDER PROGRAM_FOLDER
 
 import contextlib
 import json
+import os
 import re
 import shutil
 import signal
@@ -29,7 +30,7 @@ NAME = "steep_wave"
 BAD_TICK = 100
 BAD_JOINT = 2
 
-# What goes wrong in advance(), at one tick of one joint, and what the message says.
+# What goes wrong in advance(), at one tick of one joint, and what the message says behind the name of the algorithm.
 MISTAKES = {
     "throws": ("throw std::runtime_error(\"no idea\");", "throws an exception: no idea"),
     "throws_a_number": ("throw 7;", "throws an exception"),
@@ -50,24 +51,42 @@ MISTAKES = {
     "overflows_the_stack": ("next[0] = deep(volatile_zero);", "uses memory that does not exist or is not its own"),
     "ends_in_terminate": ("[]() noexcept { throw 7; }();", "throws an exception out of a function that is noexcept"),
 }
+# Mistakes that leave the C library locked: the program cannot end its run in order.
+LOCKING_MISTAKES = {
+    "locks_loop": ("flockfile(stdout); for (volatile int i = 0;; i = i + 1) {}",
+                   "does not return within a second of processor time"),
+    "locks_null": ("flockfile(stdout); *volatile_null = 1;", "uses memory"),
+    "locks_error": ("flockfile(stderr); *volatile_null = 1;", "uses memory"),
+}
+# Each of these has a test of its own.
+OTHER_MISTAKES = {
+    "prints": "for (;;) { std::printf(\" \"); }",
+    "exits": "std::exit(0);",
+    "thread_exits": "std::thread([] { std::exit(0); }).join();",
+    "thread_crashes": "std::thread([] { *volatile_null = 1; }).join();",
+}
+# One library has them all, since each would take a second to compile. This variable of the environment chooses one.
+MISTAKE = "PROLEG_TEST_MISTAKE"
 
 TOOLS = """
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 namespace {
 int* volatile volatile_null = nullptr;
 volatile int volatile_zero = 0;
+const std::string_view chosen_mistake = std::getenv("PROLEG_TEST_MISTAKE") ? std::getenv("PROLEG_TEST_MISTAKE") : "";
 int deep(int n) { volatile char room[4096]; room[0] = 1; return n > 1'000'000'000 ? n : deep(n + room[0]) + room[0]; }
 }
 """
 
 
-def proleg(name, *arguments, cwd=None):
+def proleg(name, *arguments, cwd=None, mistake=""):
     return subprocess.run([PROGRAMS / f"proleg-{name}", *map(str, arguments)], capture_output=True, text=True,
-                          timeout=LONGEST, cwd=cwd)
+                          timeout=LONGEST, cwd=cwd, env={**os.environ, MISTAKE: mistake})
 
 
 class UserAlgorithms(unittest.TestCase):
@@ -86,36 +105,44 @@ class UserAlgorithms(unittest.TestCase):
         cls.scenario = cls.algorithm / "robot/robot.simulation.xml"
         cls.source = (cls.algorithm / f"{NAME}.cpp").read_text()
         cls.wrapper = (cls.build / f"{NAME}.algorithm.cpp").read_text()
+        cls.mistakes = cls.library_with_mistakes()
 
     @classmethod
     def tearDownClass(cls):
         cls.temporary.cleanup()
 
-    def compile(self, name, source=None, wrapper=None):
+    @classmethod
+    def compile(cls, name, source=None, wrapper=None):
         """A library from other sources."""
-        file = self.folder / f"{name}.cpp"
-        file.write_text(self.source if source is None else source)
-        outer = self.folder / f"{name}.library.cpp"
-        outer.write_text((wrapper or self.wrapper).replace(str(self.algorithm / f"{NAME}.cpp"), str(file)))
-        library = self.folder / f"{name}.so"
+        file = cls.folder / f"{name}.cpp"
+        file.write_text(cls.source if source is None else source)
+        outer = cls.folder / f"{name}.library.cpp"
+        outer.write_text((wrapper or cls.wrapper).replace(str(cls.algorithm / f"{NAME}.cpp"), str(file)))
+        library = cls.folder / f"{name}.so"
         done = subprocess.run(["g++", "-std=c++20", "-O1", "-fPIC", "-shared", "-fno-rtti", "-fvisibility=hidden", "-w",
-                               "-I", SOURCE, outer, self.build / "libproleg_core.a", "-Wl,--exclude-libs,ALL", "-o",
+                               "-I", SOURCE, outer, cls.build / "libproleg_core.a", "-Wl,--exclude-libs,ALL", "-o",
                                library], capture_output=True, text=True, timeout=LONGEST)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        assert done.returncode == 0, done.stderr
         return library
 
-    def with_mistake(self, name, mistake):
-        """The algorithm with a mistake at a tick of a joint."""
+    @classmethod
+    def library_with_mistakes(cls):
+        """The algorithm with every mistake, at a tick of a joint."""
         begin = "std::int32_t* next) const override {\n"
-        self.assertEqual(self.source.count(begin), 1)
-        source = self.source.replace("Surroundings& /*surroundings*/, const Tuning& tuning, const std::int32_t* state,\n",
-                                     "Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,\n")
+        assert cls.source.count(begin) == 1
+        source = cls.source.replace("Surroundings& /*surroundings*/, const Tuning& tuning, const std::int32_t* state,\n",
+                                    "Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,\n")
+        mistakes = {name: code for name, (code, _) in {**MISTAKES, **LOCKING_MISTAKES}.items()} | OTHER_MISTAKES
+        choice = "".join(f'if (chosen_mistake == "{name}") {{ {code} }}\n' for name, code in mistakes.items())
         source = source.replace(begin, begin + f"if (surroundings.tick == {BAD_TICK} && surroundings.context.joint == "
-                                               f"{BAD_JOINT}) {{ {mistake} }}\n")
-        return self.compile(name, TOOLS + source)
+                                               f"{BAD_JOINT}) {{\n{choice}}}\n")
+        return cls.compile("mistakes", TOOLS + source)
 
     def simulate(self, library, *options, program="simulate"):
         return proleg(program, self.scenario, "--algorithms", library, *options)
+
+    def simulate_mistake(self, mistake, *options, program="simulate"):
+        return proleg(program, self.scenario, "--algorithms", self.mistakes, "--seconds", "5", *options, mistake=mistake)
 
     def assert_one_line(self, result, *parts):
         self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
@@ -220,8 +247,8 @@ class UserAlgorithms(unittest.TestCase):
         repeated = self.run_printed(command)
         self.assertEqual(repeated.returncode, 0, repeated.stderr)
 
-    def optimise(self, library, out):
-        return proleg("optimise", self.experiment(), "--algorithms", library, "--workers", "2", "--out", out)
+    def optimise(self, library, out, mistake=""):
+        return proleg("optimise", self.experiment(), "--algorithms", library, "--workers", "2", "--out", out, mistake=mistake)
 
     def experiment(self):
         file = self.algorithm / "search.optimise.xml"
@@ -280,45 +307,39 @@ class UserAlgorithms(unittest.TestCase):
     # Mistakes while the robot moves.
 
     def test_each_mistake_is_one_line_and_keeps_the_run_before_it(self):
-        for name, (mistake, text) in MISTAKES.items():
+        for name, (_, text) in MISTAKES.items():
             with self.subTest(name):
-                library = self.with_mistake(name, mistake)
                 recording = self.folder / f"{name}.proleg"
-                result = self.simulate(library, "--seconds", "5", "--record", recording)
+                result = self.simulate_mistake(name, "--record", recording)
                 self.assertEqual(result.returncode, 1, result.stderr)
-                self.assert_one_line(result, f"proleg simulate: {library}: the algorithm '{NAME}' ", text,
+                self.assert_one_line(result, f"proleg simulate: {self.mistakes}: the algorithm '{NAME}' ", text,
                                      f"in advance() at tick {BAD_TICK}, joint {BAD_JOINT} (0 is at the head)",
                                      f"what was simulated is in {recording}")
                 self.assertEqual(self.recorded_ticks(recording), BAD_TICK, "the ticks before it")
 
     def test_a_mistake_that_leaves_the_c_library_locked_ends_the_program(self):
-        for name, mistake, text in (("loop", "flockfile(stdout); for (volatile int i = 0;; i = i + 1) {}",
-                                     "does not return within a second of processor time"),
-                                    ("null", "flockfile(stdout); *volatile_null = 1;", "uses memory"),
-                                    ("error", "flockfile(stderr); *volatile_null = 1;", "uses memory")):
+        for name, (_, text) in LOCKING_MISTAKES.items():
             with self.subTest(name):
-                result = self.simulate(self.with_mistake(f"locks_{name}", mistake), "--seconds", "5")
+                result = self.simulate_mistake(name)
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assert_one_line(result, f"the algorithm '{NAME}' {text}", "in advance()", "the program ends")
 
     def test_a_loop_that_prints_ends(self):
-        library = self.with_mistake("prints", "for (;;) { std::printf(\" \"); }")
         for attempt in range(3):  # where the loop is interrupted is chance
             with self.subTest(attempt):
-                result = self.simulate(library, "--seconds", "5")
+                result = self.simulate_mistake("prints")
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assert_one_line(result, f"the algorithm '{NAME}' does not return within a second")
 
     def test_exit_is_no_success(self):
-        result = self.simulate(self.with_mistake("exits", "std::exit(0);"), "--seconds", "5")
+        result = self.simulate_mistake("exits")
         self.assertEqual(result.returncode, 1)
         self.assert_one_line(result, f"the algorithm '{NAME}' calls exit(), in advance()")
 
     def test_exit_in_a_thread_of_the_library_is_no_success(self):
-        library = self.with_mistake("thread_exits", "std::thread([] { std::exit(0); }).join();")
-        result = self.simulate(library, "--seconds", "5")
+        result = self.simulate_mistake("thread_exits")
         self.assertEqual(result.returncode, 1)
-        self.assert_one_line(result, library, "a thread that this library started calls exit()")
+        self.assert_one_line(result, self.mistakes, "a thread that this library started calls exit()")
 
     def test_a_destructor_that_does_not_return_does_not_keep_the_program(self):
         for name, body, text in (("loops", "for (volatile int i = 0;; i = i + 1) {}", "does not end with the program"),
@@ -332,13 +353,12 @@ class UserAlgorithms(unittest.TestCase):
                 self.assertIn("displacement", result.stdout, "the results are written before")
 
     def test_a_crash_of_a_thread_of_the_library_names_it(self):
-        library = self.with_mistake("thread", "std::thread([] { *volatile_null = 1; }).join();")
-        result = self.simulate(library, "--seconds", "5")
+        result = self.simulate_mistake("thread_crashes")
         self.assertEqual(result.returncode, 1)
-        self.assert_one_line(result, "the program has crashed (SIGSEGV)", library, "a thread")
+        self.assert_one_line(result, "the program has crashed (SIGSEGV)", self.mistakes, "a thread")
 
     def test_modules_report_it_too(self):
-        result = self.simulate(self.with_mistake("hil", MISTAKES["null"][0]), "--seconds", "5", program="hil")
+        result = self.simulate_mistake("null", program="hil")
         self.assertEqual(result.returncode, 1)
         self.assert_one_line(result, f"the algorithm '{NAME}' uses memory", f"at tick {BAD_TICK}, joint {BAD_JOINT}")
 
@@ -353,7 +373,7 @@ class UserAlgorithms(unittest.TestCase):
 
     def test_a_mistake_ends_a_search_and_keeps_its_store(self):
         out = self.folder / "failed_search"
-        result = self.optimise(self.with_mistake("search", MISTAKES["throws"][0]), out)
+        result = self.optimise(self.mistakes, out, mistake="throws")
         self.assertEqual(result.returncode, 1)
         self.assertIn(f"the algorithm '{NAME}' throws an exception: no idea", result.stderr)
         self.assertTrue(any(out.iterdir()))

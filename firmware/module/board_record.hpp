@@ -22,8 +22,8 @@
 //
 // The fixed part is the same in every schema: the size, bytes 0 to 5 and the checksum. A program reads no more of a
 // record with a newer version, so that a board keeps its node id when an older image is flashed. A schema that only
-// gives a meaning to bytes and bits that are 0 here keeps version 2: readers ignore what they do not know. Version 1
-// ends at byte 12; its readers have the default values for the rest.
+// gives a meaning to bytes and bits that are 0 here keeps version 2: readers ignore what they have no meaning for.
+// Version 1 ends at byte 12; its readers have the default values for the rest.
 
 #include <array>
 #include <cstddef>
@@ -90,7 +90,7 @@ struct BoardRecord {
 /// Node id of the newest record; 0: none.
 [[nodiscard]] std::uint8_t newest_node(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
 
-/// Whether the newest record has a schema version that this program does not know.
+/// Whether the newest record has a schema version that is newer than those of this program.
 [[nodiscard]] bool has_newer_schema(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
 
 enum class AppendResult : std::uint8_t {

@@ -16,7 +16,7 @@ class GatewayLine final : public firmware::LinePort {
 
   explicit constexpr GatewayLine(Console& console) : console_(&console) {}
 
-  // Functions of LinePort, for the priority of the module's program.
+  // Functions of LinePort. Only code at the priority of the module's program may call them.
   void connect(bool is_gateway) override { is_wanted_ = is_gateway; }
   [[nodiscard]] std::size_t read_line(std::span<char> characters) override;
   [[nodiscard]] bool take_damage() override;
@@ -33,7 +33,7 @@ class GatewayLine final : public firmware::LinePort {
   void on_line_interrupt();
   /// Handles DMA: half of the ring is full, or all of it.
   void on_receive_interrupt();
-  /// Handles DMA: all characters are sent but the last two.
+  /// Handles the interrupt of the DMA after the last character was given to the USART, which still sends two.
   void on_transmit_interrupt();
 
  private:

@@ -50,7 +50,7 @@ struct BarePlan {
 };
 
 struct BareStep {
-  std::string what;                      ///< for a person: "write the image"
+  std::string what;                      ///< what the step does, for a person: "write the image"
   std::vector<std::string> command;      ///< the program and its arguments; no shell takes part
   std::string result;                    ///< a file that the command writes; empty: none
   std::string expected;                  ///< a file that the result must equal; empty: the result decides (see below)

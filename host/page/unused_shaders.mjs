@@ -6,7 +6,7 @@ const materials = ['meshlambert', 'meshbasic', 'depth'];
 const left = '#error this shader is left out of the page (host/page/unused_shaders.mjs)';
 
 // Keeps the shaders of `materials` and what they include. Throws an Error if the file is not as this expects it.
-export function withoutUnusedShaders(text) {
+function withoutUnusedShaders(text) {
   const table = /^const ShaderChunk = \{([^}]*)\};/m.exec(text)?.[1] ?? '';
   const variables = new Map([...table.matchAll(/(\w+): ([\w$]+)/g)].map(([, name, variable]) => [name, variable]));
   const texts = new Map([...text.matchAll(/^(?:var|const) ([\w$]+) = ("(?:[^"\\]|\\.)*");$/gm)].map(([, name, value]) => [name, value]));

@@ -103,7 +103,6 @@ class RemoteButtons {
   void command_answered(RobotCommand command, bool is_ok);
   void advance(RemoteTime now);
   [[nodiscard]] std::optional<RemoteTime> due() const;
-  [[nodiscard]] bool is_holding() const { return !held_.empty(); }
 
  private:
   void end_hold_if_free(RemoteTime now);

@@ -122,7 +122,6 @@ void RemoteControl::moved(const ElementPlace& place, double position) {
   if (before == position) {
     return;
   }
-  ++movements_;
   const Element& element = device.elements[place.second];
 
   const bool was_pressed = pressed_.contains(place);

@@ -121,8 +121,6 @@ class RemoteControl final : public DeviceListener {
   /// Counts changes of devices() (without positions), bindings() (without motions), problems(), is_learning() and
   /// is_allowed().
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
-  /// Counts movements of elements.
-  [[nodiscard]] std::uint64_t movements() const { return movements_; }
 
  private:
   static bool is_of(const Binding& binding, const InputDevice& device, const Element& element);
@@ -145,7 +143,6 @@ class RemoteControl final : public DeviceListener {
   std::vector<std::string> device_problems_;
   std::string refusal_;
   std::uint64_t revision_ = 1;
-  std::uint64_t movements_ = 0;
 };
 
 /// The members `devices`, `bindings`, `problems`, `learning` and `active` of the document `remote`

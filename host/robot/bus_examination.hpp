@@ -68,7 +68,7 @@ class BusExamination final : public BusUser {
   SilentModules silent_;
   Step step_ = Step::idle;
   BusObservations observations_;
-  std::array<ObservedNode, canopen::host_node> nodes_{};  ///< nodes by node id; 0: not heard
+  std::array<ObservedNode, canopen::host_node> nodes_{};  ///< nodes by node id; those from which no frame came are 0
   std::optional<std::uint8_t> sync_counter_;
   std::vector<double> bits_;  ///< bits of the frames, by identifier
   OwnEnd first_;              ///< own end at the start

@@ -18,7 +18,7 @@ namespace proleg::host {
 /// A node on the bus.
 struct ScannedNode {
   std::uint8_t node = 0;
-  bool has_answered = false;               ///< whether the node has answered; otherwise it was only heard
+  bool has_answered = false;               ///< whether the node has answered; otherwise it has only sent by itself
   std::optional<canopen::NmtState> state;  ///< state in its heartbeat; nothing: the node sends no heartbeats
   std::uint32_t device_type = 0;           ///< 0x1000
   std::uint32_t vendor = 0;                ///< 0x1018:1 to 4
@@ -41,7 +41,7 @@ struct BusScanOptions {
   Microseconds listening_us = 250'000;      ///< heartbeats have a period of 100 ms; the scan takes at least this long
   Microseconds answer_timeout_us = 60'000;  ///< timeout of each request
   unsigned attempts = 2;                    ///< attempts of the first request to each node id
-  unsigned further_attempts = 8;            ///< attempts of requests to a node that has answered, or was heard
+  unsigned further_attempts = 8;            ///< attempts of requests to a node that has answered, or sent by itself
   /// Attempts of the request to modules without a node id, spread over the time that the scan listens: on most buses
   /// no module answers it, so nothing else would show its loss.
   unsigned fresh_attempts = 5;

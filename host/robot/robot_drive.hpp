@@ -97,7 +97,7 @@ class SetpointCheck {
     no_checksum,   ///< the program of the module is older than these checksums
     no_answer,     ///< the module has not answered
     not_complete,  ///< the module has joined the robot late
-    unknown_tick,  ///< this computer does not know the set-points up to the tick of the module
+    unknown_tick,  ///< this computer does not have the set-points up to the tick of the module
   };
 
   /// joints: number of joints of the robot.

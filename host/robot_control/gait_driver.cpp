@@ -123,7 +123,7 @@ void GaitDriver::play_gait() {
     max_difference_deg_ = std::max(max_difference_deg_, std::abs(measured[joint] - commanded_deg_[joint]));
   }
   if (observer_) {
-    observer_({gait_ticks_, source_.setpoints(), commanded_deg_, measured});
+    observer_({gait_ticks_, source_.setpoints(), measured});
   }
   ++gait_ticks_;
 }

@@ -52,7 +52,6 @@ class GaitDriver {
   struct Tick {
     std::uint32_t number;                     ///< number of the tick, from 0
     std::span<const std::int32_t> setpoints;  ///< set-points of the kernels
-    std::span<const double> commanded_deg;    ///< commands, after limits and greatest speed
     std::span<const double> measured_deg;     ///< angles that were received last when the tick ended
   };
   using Observer = std::function<void(const Tick&)>;

@@ -27,7 +27,7 @@ constexpr std::array<Kind, 4> kinds{{{"position", -360.0, 360.0, " degrees"},
                                      {"current", -100'000.0, 100'000.0, " mA"},
                                      {"temperature", -100.0, 300.0, " degrees Celsius"},
                                      {"contact", 0.0, 1.0, ""}}};
-/// Bound of the values of other kinds, which only the plug-in knows; they must be finite.
+/// Bound of the values of kinds that only the plug-in defines; they must be finite.
 constexpr double max_number = std::numeric_limits<double>::max();
 
 std::uint32_t microseconds(std::chrono::milliseconds time) {

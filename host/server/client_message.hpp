@@ -37,7 +37,7 @@ struct Beat {
 
 struct Subscribe {
   std::vector<std::string> signals;   ///< at most 64, all different
-  std::optional<std::uint64_t> hash;  ///< hash of the document `telemetry` that the viewer knows
+  std::optional<std::uint64_t> hash;  ///< hash of the document `telemetry` that the viewer has
   bool newest = false;                ///< the newest present row is sent, too
 };
 

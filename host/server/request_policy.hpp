@@ -1,6 +1,6 @@
 #pragma once
 
-// Who may use a server: the secret that a program must know, and what the server does with a request.
+// Who may use a server: the secret that a program must have, and what the server does with a request.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace proleg::host {
 
-/// The secret that a program must know to use a server: 256 random bits in base64url (43 characters).
+/// The secret that a program must have to use a server: 256 random bits in base64url (43 characters).
 class AccessToken {
  public:
   /// Makes a new token from the system's random numbers.

@@ -37,7 +37,7 @@ class TransportError : public std::runtime_error {
   TransportProblem problem_;
 };
 
-/// The known state of the bus. A transport that cannot know a part leaves its default value.
+/// The state of the bus. A part that a transport cannot find out keeps its default value.
 struct BusState {
   bool is_connected = false;
   std::string reason;            ///< one line: why it is not connected, or why frames cannot be sent; else empty

@@ -20,7 +20,7 @@ struct Target {
 
 struct SenderOptions {
   std::uint8_t session = 1;  ///< number of the session, 1 to 255, random
-  /// Time-out of an answer before any answer has come; then it is four times the longest time of an answer. It doubles
+  /// Timeout of an answer before any answer has come; then it is four times the longest time of an answer. It doubles
   /// with each attempt, because frames may be waiting in the transport's queue.
   Microseconds answer_timeout_us = 50'000;
   Microseconds longest_timeout_us = 150'000;
@@ -54,7 +54,7 @@ class ImageSender {
   void receive(Microseconds now, const CanFrame& frame);
   /// Must be called when the controller has sent a frame of the sender.
   void transmitted(Microseconds now);
-  /// Handles time-outs. Must be called at next_deadline() or later.
+  /// Handles timeouts. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return deadline_; }
 
@@ -86,7 +86,6 @@ class ImageSender {
   void next_target(Microseconds now);
   void finish_round(Microseconds now);
   void end(State state);
-  void on_status(Microseconds now, const StatusAnswer& status);
   void on_report(const ReportAnswer& report);
   void on_answer(Microseconds now);
 

@@ -19,11 +19,11 @@ struct RobotConfiguration {
   std::span<const std::uint8_t> nodes;  ///< node id of the module of each joint, in kernel order; all differ
 };
 
-/// The CRC that TICK contains, and that the host reads back after set-up. It is the CRC-32 (shared/fixed/crc32.hpp) of,
-/// little-endian and without gaps: u8 joint count, u32 tick period, u32 servo period, u64 seed, u16 robot id; for each
-/// of the four slots u8 algorithm id and u64 group, both 0 if the slot is empty; for each joint u8 node id. Limits and
-/// start values are not part of it: they belong to one joint and change while the robot moves. A module knows the nodes
-/// of the other joints from the identifiers of the state frames that it receives.
+/// The CRC that TICK contains, and that the host reads back after set-up. It is the CRC-32 (shared/fixed/crc32.hpp) of
+/// these values, little-endian and without gaps: u8 joint count, u32 tick period, u32 servo period, u64 seed, u16 robot
+/// id; for each of the four slots u8 algorithm id and u64 group, both 0 if the slot is empty; for each joint u8 node
+/// id. Limits and start values are not part of it: they belong to one joint and change while the robot moves. A module
+/// takes the nodes of the other joints from the identifiers of the state frames that it receives.
 [[nodiscard]] inline std::uint32_t configuration_crc(const RobotConfiguration& robot) {
   Crc32 crc;
   crc.add_little_endian(robot.kernel.joint_count, 1);

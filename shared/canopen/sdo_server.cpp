@@ -327,7 +327,7 @@ CanFrame SdoServer::end_block_upload() const {
   return end;
 }
 
-// Time-outs.
+// Timeouts.
 
 std::optional<CanFrame> SdoServer::poll(Microseconds now) {
   if (now < next_deadline()) {

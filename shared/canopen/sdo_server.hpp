@@ -84,7 +84,7 @@ class SdoServer {
   /// The next segment of a block upload, or an abort. has_segment() must hold.
   [[nodiscard, gnu::cold, gnu::noinline]] CanFrame next_segment(Microseconds now);
 
-  /// Handles time-outs. Must be called at next_deadline() or later. Returns a frame to be sent.
+  /// Handles timeouts. Must be called at next_deadline() or later. Returns a frame to be sent.
   [[nodiscard, gnu::cold, gnu::noinline]] std::optional<CanFrame> poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
@@ -141,7 +141,6 @@ class SdoServer {
   [[nodiscard]] CanFrame end_block_upload() const;
 
   [[nodiscard]] bool is_active() const { return state_ != State::idle && state_ != State::block_download_ended; }
-  [[nodiscard]] bool is_writing() const;
   [[nodiscard]] bool is_receiving_block() const {
     return state_ == State::block_download || state_ == State::block_download_end;
   }

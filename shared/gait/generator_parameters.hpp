@@ -29,11 +29,6 @@ inline constexpr Parameter rate{"rate",
                                 raw(Unit::per_second, 100),
                                 "rate a of the critically damped filters; 95 % of a change takes 9.49/a"};
 
-/// Frequency of a generator that keeps its form only up to max_hertz.
-[[nodiscard]] constexpr Parameter frequency_up_to(std::int32_t max_hertz) {
-  return {frequency.name, frequency.unit, frequency.default_value, 0, raw(Unit::hertz, max_hertz), frequency.help};
-}
-
 /// Factor for the noise at reset; the default differs between algorithms.
 [[nodiscard]] constexpr Parameter noise(std::int32_t default_value) {
   return {"noise", Unit::ratio, default_value, 0, raw(Unit::ratio, 4), "factor on the noise of the start state"};

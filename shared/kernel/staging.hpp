@@ -1,8 +1,8 @@
 #pragma once
 
-// Changes of parameters and internal values in flight, in two phases: values are staged under a transaction number,
-// then the transaction is committed for a tick. One transaction is open at a time; committed ones wait for their ticks,
-// in the order of their commits.
+// Changes of parameters and internal values while the robot moves, in two phases: values are staged under a transaction
+// number, then the transaction is committed for a tick. One transaction is open at a time; committed ones wait for
+// their ticks, in the order of their commits.
 
 #include <array>
 #include <cstddef>

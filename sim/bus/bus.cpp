@@ -371,7 +371,7 @@ void Bus::report() {
       sender->listener_->transmitted(current_.end, current_.frame);
     }
   }
-  // By position: a listener may attach another node.
+  // Iterates by position, because a listener may attach another node.
   const std::size_t count = controllers_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const Controller& controller = *controllers_[i];

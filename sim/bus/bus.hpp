@@ -59,7 +59,7 @@ class Bus final : private ControllerBus {
   /// Adds a node's controller, switched on. It is valid as long as the bus; the listener must outlive the bus.
   Controller& attach(BusListener& listener);
 
-  /// By its index: its position in the order of attachment.
+  /// The controller with an index, which is its position in the order of attachment.
   [[nodiscard]] Controller& controller(std::size_t index) { return *controllers_.at(index); }
 
   /// The time up to which the bus has been simulated.

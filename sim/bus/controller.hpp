@@ -45,7 +45,7 @@ class ErrorCounters {
   void transmitted();
   /// Rule h: a frame was received: -1, not below 0; above 127 down to 127 (ISO: 119 to 127).
   void received();
-  /// As after power-on and after bus-off.
+  /// Sets both counters to 0, as after power-on and after bus-off.
   void reset() { transmit_ = receive_ = 0; }
 
  private:
@@ -164,7 +164,6 @@ class Controller final : public CanPort {
   /// had any. (Simplified: it does not disturb the frame on the wire when it is connected.)
   void unplug();
   void plug_in();
-  [[nodiscard]] bool is_plugged_in() const { return plugged_in_; }
   /// In bus-off: returns to the bus, with counters of 0, after 128 times 11 recessive bits, and calls
   /// error_state_changed(). In bus-off all mailboxes are empty, and the controller sends, receives and acknowledges
   /// nothing. In other states recover() has no effect.
@@ -205,7 +204,7 @@ class Controller final : public CanPort {
 
   [[nodiscard]] bool precedes(const Mailbox& left, const Mailbox& right) const;
   void choose_candidate();
-  /// After a change of presence, error state or role.
+  /// Updates the controller's part after a change of presence, error state or role.
   void update_part();
   /// The transmission of sent_mailbox_ has failed.
   void take_back();

@@ -17,7 +17,7 @@ namespace proleg::sim {
 /// What computes the motion (docs/physics.md).
 enum class PhysicsEngine : std::uint8_t {
   ode,      ///< the Open Dynamics Engine: any robot, any environment
-  reduced,  ///< chains of boxes; the same bits on every machine
+  reduced,  ///< chains of boxes; the same bits on every computer
   mujoco,   ///< a second opinion, if the program is built with it
 };
 
@@ -27,7 +27,7 @@ struct PhysicsEngineName {
   std::string_view title;  ///< in a sentence
 };
 
-/// In the order of PhysicsEngine.
+/// The names of the engines, in the order of PhysicsEngine.
 inline constexpr std::array<PhysicsEngineName, 3> physics_engines{
     {{PhysicsEngine::ode, "ode", "ODE"},
      {PhysicsEngine::reduced, "reduced", "the reduced engine"},

@@ -9,7 +9,7 @@
 namespace proleg::sim {
 namespace {
 
-// What a number is drawn for, beside the joints' numbers.
+// Uses of draw() beside the loss of frames, whose use is the number of the joint.
 constexpr std::uint32_t for_bus = 0x100;
 constexpr std::uint32_t for_touch = 0x200;
 

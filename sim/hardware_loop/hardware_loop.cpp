@@ -198,7 +198,7 @@ class HardwareLoop::Implementation {
     }
   }
 
-  /// At the end of a frame, before any node receives it.
+  /// Records a frame at its end, before any node receives it.
   void on_frame(const Transmission& transmission) {
     if (options_.on_frame) {
       options_.on_frame(transmission);
@@ -261,7 +261,7 @@ class HardwareLoop::Implementation {
     return plant_ticks_.has_ended() ? rack_.pulse_before_restart(joint) : rack_.pulse(joint);
   }
 
-  /// At the next SYNC, before the modules receive it.
+  /// Ends a tick at the next SYNC, before the modules receive it.
   void end_tick(BusTime now) {
     rack_.end_tick();
     if (has_faults()) {

@@ -75,14 +75,14 @@ class HardwareLoop {
   /// From SYNC to the first pulse width that belongs to it, in ns of bus time: in ticks whose first servo interval
   /// starts with SYNC. The program of a native module takes no time.
   [[nodiscard]] const Durations& command_latency_ns() const;
-  /// At the end of such a run: how it ended for each joint.
+  /// Ends the watch of such a run: then motion_watch() has how it ended for each joint.
   void finish_watch();
   /// The first tick that was not compared, because a fault had begun; nothing: all were.
   [[nodiscard]] std::optional<std::uint32_t> first_fault_tick() const;
 
   [[nodiscard]] const ValueHash& setpoint_hash() const;
   [[nodiscard]] const ValueHash& servo_hash() const;
-  /// Of the world after all ticks; nothing if its engine does not give the same on every machine.
+  /// Hash of the world after all ticks; nothing if its engine does not give the same on every computer.
   [[nodiscard]] std::optional<std::string> world_hash() const;
   /// Set-points and servo commands that differ from the gait in memory, so far, and the first of them.
   [[nodiscard]] std::uint64_t differences() const;

@@ -40,7 +40,7 @@ class Injector final : private BusListener {
     send();
   }
 
-  /// At the SYNC of this tick: sends the frames that are due.
+  /// Sends the frames that are due at the SYNC of this tick.
   void advance_to(std::uint32_t tick) {
     for (; !frames_.empty() && frames_.front().tick <= tick; frames_ = frames_.subspan(1)) {
       pending_.push_back(frames_.front().frame);
@@ -108,15 +108,16 @@ struct HardwareOptions {
   Bus::FrameListener on_frame;
   /// Called for what modules report by EMCY and for restarts, one line each.
   std::function<void(const std::string&)> notice;
-  /// From power on of a native module to the start of its program: 0, or what the bootloader of a chip needs.
+  /// Time from power on of a native module to the start of its program: 0, or what the bootloader of a chip needs.
   std::uint32_t start_time_us = 0;
   /// Crystals are off by up to this, each by an amount that follows from the scenario's seed.
   std::uint32_t crystal_error_ppm = 100;
-  /// For tests: changes the identities of the modules, and frames on their way into the program of a joint's module.
+  /// A hook for tests: changes the identities of the modules, and frames on their way into the program of a joint's
+  /// module.
   std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;
   std::function<void(unsigned joint, const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>
       tamper;
-  /// For tests: the touch sensors that a module reads instead.
+  /// A hook for tests: the touch sensors that a module reads instead.
   std::function<std::uint8_t(unsigned joint, std::uint8_t sensors)> change_sensors;
 };
 

@@ -22,7 +22,7 @@ class CommandLatency {
  public:
   CommandLatency(const ServoSchedule& schedule, unsigned joints) : schedule_(schedule), joints_(joints) {}
 
-  /// At the SYNC of a tick, before the modules receive it.
+  /// Begins a tick at its SYNC, before the modules receive it.
   void begin_tick(std::uint32_t tick, BusTime sync) {
     sync_ = sync;
     awaited_ = schedule_.first_start_us(tick) == 0 ? JointMask::first(joints_) : JointMask();
@@ -35,7 +35,7 @@ class CommandLatency {
     }
   }
 
-  /// In ns, of all joints and ticks so far.
+  /// The durations of all joints and ticks so far, in ns.
   [[nodiscard]] const Durations& nanoseconds() const { return nanoseconds_; }
 
  private:

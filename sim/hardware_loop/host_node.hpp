@@ -42,7 +42,7 @@ class HostNode final : private BusListener {
   [[nodiscard]] bool has_made_change(std::size_t position) const {
     return position < master_.changes_made() && !input_.changes[position].dropped;
   }
-  /// Why the start failed, or the first problem in flight, as one line; returned once.
+  /// Why the start failed, or the first problem while the robot moves, as one line; returned once.
   [[nodiscard]] std::optional<std::string> take_problem();
   /// The oldest event that this function has not returned yet, as one line for a person.
   [[nodiscard]] std::optional<std::string> take_event();

@@ -31,7 +31,7 @@ class JointModule {
   /// measured before are the readings as they are.
   virtual void catch_up_before(BusTime /*time*/) {}
 
-  /// Before a restart: does what is due up to `until` without input. What it sends is lost.
+  /// Called before a restart: does what is due up to `until` without input. What it sends is lost.
   virtual void run_out(BusTime now, BusTime until) = 0;
 
   // What fails outside of the program, and comes back. It lasts over a restart.

@@ -51,9 +51,9 @@ class ModuleRack {
   /// Calls JointModule::catch_up_before() of each module.
   void catch_up_before(BusTime time);
 
-  /// At SYNC, before the modules receive it: restarts the modules that are due.
+  /// Begins a tick at its SYNC, before the modules receive it: restarts the modules that are due.
   void begin_tick(std::uint32_t tick, BusTime now);
-  /// At the next SYNC, before the modules receive it: reads what they computed.
+  /// Ends a tick at the next SYNC, before the modules receive it: reads what they computed.
   void end_tick();
 
   /// What a module had computed at the last end_tick().

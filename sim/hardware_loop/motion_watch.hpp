@@ -34,7 +34,7 @@ enum class JointEnd : std::uint8_t {
   operation,
   hold,
   limp,    ///< no pulses, but its module sends heartbeats
-  silent,  ///< no pulses, and nothing was heard of its module for a second and a half
+  silent,  ///< no pulses, and no frame of its module for a second and a half
   unsafe,  ///< anything else; a violation says what
 };
 [[nodiscard]] const char* describe(JointEnd end);
@@ -63,17 +63,17 @@ class MotionWatch {
     canopen::PowerState power;
   };
   void note_tick(unsigned joint, BusTime now, const ModuleNow& module);
-  /// At the end of the run.
+  /// Ends the watch with the run.
   void finish(BusTime now);
 
   [[nodiscard]] const std::vector<ModuleEvent>& events() const { return events_; }
-  /// By joint; after finish().
+  /// How the run ended for each joint, by joint; known after finish().
   [[nodiscard]] const std::vector<JointEnd>& ends() const { return ends_; }
   /// Rules that were broken, each with time and joint; at most 20.
   [[nodiscard]] const std::vector<std::string>& violations() const { return violations_; }
   /// What is nearest to a bound, of all joints.
   struct Worst {
-    /// Between successive pulses, in what the greatest speed allows in a servo period.
+    /// Greatest change between successive pulses, in multiples of what the greatest speed allows in a servo period.
     double change_steps = 0.0;
     double beyond_limit_deg = -1e9;       ///< of a pulse beyond the joint's limits; negative: within
     double motion_after_command_s = 0.0;  ///< from the last tick or heartbeat of the host to the last change of a pulse
@@ -88,7 +88,8 @@ class MotionWatch {
     std::int32_t safe = 0;
     std::optional<BusTime> last_pulse;
     std::int32_t width = 0;
-    /// Of the present train of pulses: the least and greatest of width minus and plus what the speed allows by then.
+    /// Bounds of the present train of pulses: the least and greatest of width minus and plus what the speed allows by
+    /// then.
     double least_rising = 0.0;
     double greatest_falling = 0.0;
     BusTime train_begin = 0;

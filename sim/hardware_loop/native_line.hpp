@@ -25,7 +25,7 @@ class NativeLine final : public firmware::LinePort {
   /// bus: has the time.
   explicit NativeLine(const Bus& bus) : bus_(bus) {}
 
-  /// As after a reset of the module. What is being sent is cut off.
+  /// Puts the line into its state after a reset of the module. What is being sent is cut off.
   void reset();
   using Watch = std::function<void(BusTime time, std::uint8_t byte)>;
   void watch(Watch watch) { watch_ = std::move(watch); }

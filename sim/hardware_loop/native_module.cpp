@@ -10,7 +10,7 @@
 namespace proleg::sim {
 namespace {
 
-// Of the chip (docs/board.md): power-down reset, and the voltage detector of the supply.
+// Thresholds of the chip (docs/board.md): power-down reset, and the voltage detector of the supply.
 constexpr std::uint32_t reset_threshold_mv = 1'680;
 constexpr std::uint32_t detector_threshold_mv = 2'930;
 
@@ -131,7 +131,7 @@ void NativeModule::power_on(BusTime now) {
   pulse_.reset();
   line_.reset();
   next_event_ = never_on_bus;
-  deaf_until_ = 0;
+  pause_end_ = 0;
   after_pause_ = AfterPause::goes_on;
   program_.lose_ram();
   if (has_power()) {
@@ -177,12 +177,12 @@ void NativeModule::reset(BusTime now) {
 void NativeModule::pause(BusTime now, Microseconds time, AfterPause after) {
   constexpr BusTime ns_per_us = 1'000;
   after_pause_ = after;
-  deaf_until_ = now + time * ns_per_us;
-  next_event_ = deaf_until_;
+  pause_end_ = now + time * ns_per_us;
+  next_event_ = pause_end_;
 }
 
 void NativeModule::end_pause(BusTime now) {
-  deaf_until_ = 0;
+  pause_end_ = 0;
   switch (std::exchange(after_pause_, AfterPause::goes_on)) {
     case AfterPause::goes_on:
       finish_event(now);
@@ -220,8 +220,8 @@ void NativeModule::pulse(std::int32_t width, std::uint32_t /*period_us*/) {
 }
 
 void NativeModule::advance_to(BusTime now, BusTime /*quiet_until*/) {
-  if (deaf_until_ != 0) {
-    if (now >= deaf_until_) {
+  if (pause_end_ != 0) {
+    if (now >= pause_end_) {
       end_pause(now);
     }
     return;
@@ -261,7 +261,7 @@ void NativeModule::update_deadline() {
 }
 
 void NativeModule::received(BusTime time, const CanFrame& frame) {
-  if (deaf_until_ != 0) {
+  if (pause_end_ != 0) {
     return;
   }
   if (bootloader::Bootloader* const bootloader = program_.bootloader()) {
@@ -280,7 +280,7 @@ void NativeModule::transmitted(BusTime time, const CanFrame& frame) {
   } else if (runs_program()) {
     module_.transmitted(crystal_.at(time), frame);
   }
-  if (deaf_until_ == 0) {
+  if (pause_end_ == 0) {
     finish_event(time);
   }
 }

@@ -27,7 +27,7 @@ class NativeModule final : public JointModule,
   using Sensors = std::function<std::uint8_t()>;
   /// Measurements of the servo and the chip, as firmware::SensorPort has them.
   using Readings = std::function<ServoReadings()>;
-  /// For tests, between controller and program: delivers a frame, withholds it, or delivers another one.
+  /// A hook for tests between controller and program: delivers a frame, withholds it, or delivers another one.
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;
 
   /// Attaches to the bus, switched off. Without readings the module measures nothing. The board record in its flash has
@@ -66,13 +66,13 @@ class NativeModule final : public JointModule,
   /// The node id in use; 0: none.
   [[nodiscard]] std::uint8_t node() const { return module_.node(); }
 
-  /// Its slots and its bootloader. The module is to be off when they are changed.
+  /// The program with its slots and its bootloader. The module is to be off when they are changed.
   [[nodiscard]] NativeProgram& program() { return program_; }
   /// Default values and its node id, as a program writes them whose settings have this schema. The module is to be off,
   /// or about to start.
   void write_settings(std::uint8_t schema);
 
-  /// From power on to the start of the program; 0 without this call.
+  /// Sets the time from power on to the start of the program; it is 0 without this call.
   void set_start_time(Microseconds time) { start_time_us_ = time; }
 
   void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
@@ -144,8 +144,8 @@ class NativeModule final : public JointModule,
   void reset(BusTime now);
   void pause(BusTime now, Microseconds time, AfterPause after);
   void end_pause(BusTime now);
-  [[nodiscard]] bool runs_program() { return deaf_until_ == 0 && program_.bootloader() == nullptr; }
-  /// After each event.
+  [[nodiscard]] bool runs_program() { return pause_end_ == 0 && program_.bootloader() == nullptr; }
+  /// To be called after each event: serves the line, and does what the program has requested.
   void finish_event(BusTime now);
   void update_deadline();
 
@@ -167,7 +167,7 @@ class NativeModule final : public JointModule,
   Microseconds start_time_us_ = 0;
   Microseconds deadline_ = never;  ///< the program's, by its crystal
   BusTime deadline_time_ = never_on_bus;
-  BusTime deaf_until_ = 0;  ///< 0: there is no pause
+  BusTime pause_end_ = 0;  ///< end of the pause in which the module does nothing; 0: there is no pause
   AfterPause after_pause_ = AfterPause::goes_on;
   BusTime next_event_ = never_on_bus;
 };

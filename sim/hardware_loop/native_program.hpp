@@ -29,7 +29,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   // Typical times of the data sheet (STM32F405, table 41, words of 32 bits).
   static constexpr Microseconds erase_time_us = 1'000'000;
   static constexpr Microseconds word_time_us = 16;
-  /// From a reset to the start of the program, typical: the checksum of the image at 16 MHz.
+  /// Typical time from a reset to the start of the program: the checksum of the image at 16 MHz.
   static constexpr Microseconds start_time_us = 92'500;
 
   /// Slot A holds a confirmed image of the native program, without a body to speak of. port: for the bootloader.
@@ -38,7 +38,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   NativeProgram(const NativeProgram&) = delete;
   NativeProgram& operator=(const NativeProgram&) = delete;
 
-  /// As a programmer writes it: the image in slot A, confirmed or on trial; empty: none.
+  /// Writes the flash as a programmer does: the image in slot A, confirmed or on trial; empty: none.
   void write_image(std::span<const std::uint8_t> image, bool is_confirmed);
   /// Tests: how programs behave, by the header of their image. Without it all are good.
   void set_health(std::function<ProgramHealth(const image::Header& header)> health) { health_ = std::move(health); }
@@ -47,7 +47,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   void lose_ram() { handover_ = {}; }
   /// A reset of the chip. Then either bootloader() serves the bus, or the program runs.
   void reset();
-  /// Null: the program runs, or should.
+  /// The bootloader while it runs; null while the program runs, or should.
   [[nodiscard]] bootloader::Bootloader* bootloader() { return bootloader_ ? &*bootloader_ : nullptr; }
   /// The bootloader, if it serves the bus, takes part in it from now on.
   void start_bootloader(Microseconds now);

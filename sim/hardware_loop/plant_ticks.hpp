@@ -78,7 +78,7 @@ class PlantTicks {
   /// scenario, plant: must outlive this.
   PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse, BeforeAction before_action = {});
 
-  /// At the SYNC of a tick, counted from 0. The tick before may still have pending readings.
+  /// Begins a tick, counted from 0, at its SYNC. The tick before may still have pending readings.
   void begin(std::uint32_t tick, BusTime sync);
   /// The time of the next reading, step or complete().
   [[nodiscard]] BusTime next_event() const;
@@ -96,8 +96,8 @@ class PlantTicks {
 
   /// The readings of the last completed tick, in the order of time, then of joints.
   [[nodiscard]] std::span<const Reading> readings() const { return completed_; }
-  /// The readings that came too late for a step of the physics: the SYNC was early by more than pulse_timing.hpp
-  /// allows. The servos acted on these pulses from the next tick on.
+  /// The readings that came too late for a step of the physics: the SYNC was early by more than acting_time_us()
+  /// allows (sim/loop/pulse_player.hpp). The servos acted on these pulses from the next tick on.
   [[nodiscard]] std::span<const Reading> late_readings() const { return late_; }
 
  private:

@@ -31,11 +31,12 @@ class ReferenceGait {
     bool has_sent;       ///< it sent its state frame after the tick's SYNC
     bool has_restarted;  ///< the run restarted it at the tick's SYNC
   };
-  /// Before advance(), for each joint: stops it or lets it join, as its module did. Reports failures of the module.
+  /// Called for each joint before advance(): stops it or lets it join, as its module did. Reports failures of the
+  /// module.
   void follow(unsigned joint, const ModuleTick& module, HardwareReport& report);
   /// Position in the scenario of the change for the coming tick, if there is one.
   [[nodiscard]] std::optional<std::size_t> due_change() const { return gait_.due_change(); }
-  /// Before advance(): the current that the module of a joint read for the tick, in mA.
+  /// Called before advance(): the current that the module of a joint read for the tick, in mA.
   void set_current(unsigned joint, std::uint16_t current_ma);
   /// Computes the tick. link_contacts: as they were at its SYNC. is_change_made: the modules have the due change; if
   /// not, it never takes effect. Returns the change that took effect, if any.
@@ -51,7 +52,7 @@ class ReferenceGait {
   [[nodiscard]] bool stands_in_for(unsigned joint) const { return failed_[joint] && chain().is_running(joint); }
   /// Debounced touch sensors of a joint, in the bits of the state frame's flags.
   [[nodiscard]] std::uint8_t contacts(unsigned joint) const { return touch_.contacts()[joint]; }
-  /// By joint, what its algorithms got in the tick.
+  /// What the algorithms of each joint got in the tick, by joint.
   [[nodiscard]] std::span<const JointReadings> readings() const { return readings_; }
   [[nodiscard]] const KernelChain& chain() const { return gait_.chain(); }
 
@@ -72,7 +73,8 @@ class ModuleValues {
   /// scenario, rack, reference: must outlive this.
   ModuleValues(const Scenario& scenario, const ModuleRack& rack, const ReferenceGait& reference);
 
-  /// After ModuleRack::end_tick() and ReferenceGait::advance(). A module that does not compute keeps its last values.
+  /// Called after ModuleRack::end_tick() and ReferenceGait::advance(). A module that does not compute keeps its last
+  /// values.
   void read(std::uint32_t tick);
   /// After ModuleRack::end_tick(), when the reference no longer follows: what each module computed since the last one,
   /// whatever tick it was.
@@ -83,7 +85,7 @@ class ModuleValues {
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return setpoints_; }
   [[nodiscard]] std::span<const std::int32_t> internal_values() const { return internal_values_; }
   [[nodiscard]] std::span<const std::uint8_t> latched_contacts() const { return latched_contacts_; }  ///< by link
-  /// In the order of time, then of joints.
+  /// The pulses of the tick, in the order of time, then of joints.
   [[nodiscard]] std::span<const ServoPulse> pulses() const { return pulses_; }
 
  private:

@@ -19,7 +19,7 @@ class StateFrameMonitor {
   /// scenario: must outlive this.
   explicit StateFrameMonitor(const Scenario& scenario);
 
-  /// At SYNC k: the state frames that follow carry the label k + 1.
+  /// Begins a tick at SYNC k: the state frames that follow carry the label k + 1.
   void begin_tick(std::uint32_t tick);
   /// A frame has ended on the bus.
   void note(const Transmission& transmission);

@@ -62,7 +62,7 @@ class KernelChain {
   /// contacts: of each joint, at this SYNC, in bits 0 to 3 as in the state frame.
   void advance(std::span<const std::uint8_t> contacts);
 
-  /// Of each joint; a joint that does not run keeps its last one.
+  /// The set-point of each joint; a joint that does not run keeps its last one.
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return setpoints_; }
   /// Ticks so far, by joint, in which its limits cut the sum of the slots.
   [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const { return clipped_ticks_; }
@@ -137,7 +137,7 @@ class ServoPulses {
   }
 
  private:
-  /// Of a running joint, in the tick.
+  /// The way of a running joint in the tick.
   struct Way {
     unsigned joint;
     std::int32_t from;
@@ -149,7 +149,8 @@ class ServoPulses {
   std::vector<Way> ways_;                ///< in append()
 };
 
-/// The gait of a robot in memory, with its changes in flight: the kernels of the joints, and the pulses for the servos.
+/// The gait of a robot in memory, with its changes while the robot moves: the kernels of the joints, and the pulses for
+/// the servos.
 class Gait {
  public:
   /// What determines a gait, beside its contacts and readings.
@@ -157,7 +158,8 @@ class Gait {
     const KernelConfiguration& kernel;
     std::span<const AngleLimits> limits;
     std::span<const Setting> settings;
-    /// By ascending tick. They must outlive the gait; those of coming ticks may still be replaced, and others added.
+    /// The changes by ascending tick. They must outlive the gait; those of coming ticks may still be replaced, and
+    /// others added.
     const std::vector<Change>& changes;
     std::uint32_t servo_period_us;
     std::uint32_t command_speed;  ///< the greatest of a joint, in degrees a second
@@ -199,7 +201,7 @@ class Gait {
   KernelChain chain_;
   ServoPulses pulse_source_;
   std::vector<ServoPulse> pulses_;
-  std::vector<std::int32_t> internal_values_;  ///< in sample()
+  std::vector<std::int32_t> internal_values_;  ///< which the result of sample() refers to
 };
 
 }  // namespace proleg::sim

@@ -36,7 +36,7 @@ class TouchInputs {
  public:
   explicit TouchInputs(std::size_t joints) : debouncers_(joints), contacts_(joints) {}
 
-  /// At SYNC: the debounced contacts of a joint.
+  /// Samples the sensors of a joint's link at SYNC. Returns its debounced contacts.
   std::uint8_t sample(std::span<const std::uint8_t> link_contacts, std::size_t joint) {
     contacts_[joint] = debouncers_[joint].sample(joint_contacts(link_contacts, joint));
     return contacts_[joint];
@@ -75,7 +75,8 @@ class ModuleReadings {
   }
   void rest_at(std::span<const Pose> link_poses) { sensors_.rest_at(link_poses); }
 
-  /// Of the last tick. current_ma: of the joint's servo. Absent are those that no algorithm of the scenario reads.
+  /// The readings of the last tick. current_ma: of the joint's servo. Absent are those that no algorithm of the
+  /// scenario reads.
   [[nodiscard]] JointReadings of(std::size_t joint, std::uint16_t current_ma) const;
 
  private:

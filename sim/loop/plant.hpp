@@ -63,17 +63,18 @@ class Plant {
   /// fell off its environment.
   void finish_tick();
 
-  // At the end of the last finished tick.
+  // The state at the end of the last finished tick.
+
   /// The last pulse of each servo; the middle position before the first one.
   [[nodiscard]] std::span<const std::int32_t> servo_commands() const { return servo_commands_; }
   [[nodiscard]] std::span<const Pose> link_poses() const { return link_poses_; }
-  /// Of the objects that move.
+  /// The poses of the objects that move.
   [[nodiscard]] std::span<const Pose> object_poses() const { return object_poses_; }
   [[nodiscard]] std::span<const double> joint_angles() const { return joint_angles_; }
   /// Torque of each motor in Nm, and current of each servo in mA (an estimate): means over the tick.
   [[nodiscard]] std::span<const double> motor_torques() const { return motor_torques_; }
   [[nodiscard]] std::span<const double> servo_currents() const { return servo_currents_; }
-  /// Of each link: N, normal forces of its contacts, mean over the last tick.
+  /// The contact force of each link, in N: normal forces of its contacts, mean over the last tick.
   [[nodiscard]] std::span<const double> contact_forces() const { return contact_forces_; }
   /// What the sensors of the robot's file measure.
   [[nodiscard]] const AttachedSensors& sensors() const { return sensors_; }
@@ -129,14 +130,14 @@ class Plant {
 
   void act(std::size_t joint, std::int32_t command);
   void go_limp(std::size_t joint);
-  /// Of the joint's motor, after a change of its servo.
+  /// Updates the torque of a joint's motor after a change of its servo.
   void update_torque(std::size_t joint);
   void act_on_delayed_pulses();
   void step_world();
   void disturb();
   void read_world();
   void add_contact_noise();
-  /// As the beginning of an error: number, from 0, and start of the tick.
+  /// The beginning of an error's message: number, from 0, and start of the tick.
   [[nodiscard]] std::string present_tick() const;
   void require_crawling(const Eigen::Vector3d& center) const;
 
@@ -181,14 +182,14 @@ class Plant {
   std::vector<double> contact_force_sums_;  ///< N, over the steps of this tick
   std::vector<double> contact_forces_;
   std::vector<double> joint_targets_;  ///< rad, of the servos in the last step
-  // Of the joints, in a step: what they are to do, and what they did.
+  // What the joints are to do in a step, and what they did.
   std::vector<double> speeds_;               ///< rad/s
   std::vector<double> angles_;               ///< rad
   std::vector<double> torques_;              ///< Nm
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };
 
-/// Hash of the states of a world after ticks. Two runs on any two machines had the same motion if their hashes are
+/// Hash of the states of a world after ticks. Two runs on any two computers had the same motion if their hashes are
 /// equal.
 class WorldHash {
  public:

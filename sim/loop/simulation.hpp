@@ -27,7 +27,7 @@ class Simulation {
   /// scenario, losses: must outlive the simulation, which keeps references to them. losses: null for none.
   explicit Simulation(const Scenario& scenario, const Losses* losses = nullptr);
   explicit Simulation(const Scenario&& scenario, const Losses* losses = nullptr) = delete;
-  /// With a world that was made for the scenario.
+  /// A simulation with a world that was made for the scenario.
   Simulation(const Scenario& scenario, std::unique_ptr<World> world);
 
   /// The hashes below stay those of no values. For evaluations, which need none: they take a tenth of the time.
@@ -75,7 +75,7 @@ class Simulation {
   /// Hashes of all set-points and of all pulses, in the order of time, then of joints.
   [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
-  /// Hash of the states of the world after all ticks; nothing if its engine does not give the same on every machine.
+  /// Hash of the states of the world after all ticks; nothing if its engine does not give the same on every computer.
   [[nodiscard]] std::optional<std::string> world_hash() const { return world_hash_.hex(); }
 
  private:

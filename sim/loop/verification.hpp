@@ -16,7 +16,7 @@ struct Verification {
   std::uint64_t servo_commands = 0;   ///< compared
   std::uint64_t internal_values = 0;  ///< compared
   std::uint64_t differences = 0;
-  /// In a run with faults: only the ticks before this one were compared.
+  /// The end of the comparison in a run with faults: only the ticks before this one were compared.
   std::optional<std::uint32_t> first_fault_tick;
   std::optional<Difference> first;
   std::string setpoint_hash;  ///< of the recomputed set-points

@@ -62,7 +62,7 @@ struct MeasureDeclaration {
 [[nodiscard]] std::span<const MeasureDeclaration, measure_count> measures();
 [[nodiscard]] const MeasureDeclaration& declaration_of(Measure measure);
 [[nodiscard]] std::optional<Measure> find_measure(std::string_view name);
-/// The names that find_measure() knows, for messages.
+/// The names that find_measure() accepts, for messages.
 [[nodiscard]] std::vector<std::string> measure_names();
 
 /// A value of each measure; NaN if the run does not define it (the cost of transport of a robot that does not move, the

@@ -255,7 +255,7 @@ class ImportProcess {
   [[nodiscard]] MeshError refusal(const std::string& found) const {
     return {"a file " + found + ", " + in_quotes(name_), "a mesh of triangles"};
   }
-  /// For what the child sends only after the library damaged its memory.
+  /// The error for what the child sends only after the library damaged its memory.
   [[nodiscard]] MeshError damage() const { return refusal("at which the mesh library fails"); }
 
  private:

@@ -31,7 +31,7 @@ void require_area(const TriangleMesh& mesh);
 /// direction. Vertices at the same place count as one.
 void require_closed(const TriangleMesh& mesh);
 
-/// Without the triangles that have no area. Throws MeshError if none remains.
+/// The mesh without the triangles that have no area. Throws MeshError if none remains.
 [[nodiscard]] TriangleMesh without_slivers(TriangleMesh mesh);
 
 }  // namespace proleg::sim

@@ -27,7 +27,7 @@ inline constexpr std::string_view mesh_file_endings = ".stl, .obj, .dae or .off"
 [[nodiscard]] TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes,
                                           const MeshCompanion& companion);
 
-/// As read_mesh_file(), but in this process: a damaged file can end it. For fuzz tests.
+/// Reads a mesh as read_mesh_file() does, but in this process: a damaged file can end it. For fuzz tests.
 [[nodiscard]] TriangleMesh import_mesh(const std::string& name, const std::string& bytes,
                                        const MeshCompanion& companion);
 

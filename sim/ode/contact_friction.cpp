@@ -94,7 +94,7 @@ void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis
 
 void ContactFriction::set_surface(dContact& contact, double coefficient) {
   const Point& point = note_point(contact);
-  // In this mode mu is a coefficient; without it mu would be a force.
+  // In this mode mu is a coefficient; without it, mu would be a force.
   contact.surface.mode = dContactApprox1;
   contact.surface.mu = coefficient;
   if (coefficient <= 0.0) {

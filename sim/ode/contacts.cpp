@@ -158,7 +158,8 @@ void Contacts::add(dGeomID a, dGeomID b, std::span<const dContactGeom> points) {
   count_ += points.size();
 }
 
-/// For bodies whose friction has another coefficient across an axis. If both have such an axis, the first one decides.
+/// Sets the surface if a body's friction has another coefficient across an axis. If both have such an axis, the first
+/// one decides.
 void Contacts::set_surface_with_axis(dContact& contact, double along, dGeomID a, dGeomID b) {
   const ShapeData& data_a = data_of(a);
   const ShapeData& data_b = data_of(b);

@@ -15,8 +15,8 @@ namespace proleg::sim {
 ///   torque * axis - force * moment,  moment = axis x (anchor - centre of mass)
 ///
 /// The engine computes the angle of a hinge with stops in every step, only to see whether it is at a stop. This class
-/// computes it once a step and makes the same test. The engine has the stops while it must know them: the motion is the
-/// same.
+/// computes it once a step and makes the same test. The engine has the stops while they can be reached: the motion is
+/// the same.
 class HingeMotor {
  public:
   /// hinge: the hinge of the joint, with its stops; body: the body of the link, which must be the hinge's first. The

@@ -31,7 +31,7 @@ class World {
 
   /// The speed, in rad/s, that the motor of a joint tries to reach with the torque it has.
   virtual void set_joint_speed(std::size_t joint, double speed) = 0;
-  /// Of all joints.
+  /// Sets the wanted speeds of all joints.
   virtual void set_joint_speeds(std::span<const double> speeds) {
     for (std::size_t joint = 0; joint < speeds.size(); ++joint) {
       set_joint_speed(joint, speeds[joint]);
@@ -54,7 +54,7 @@ class World {
   /// energy per radian that the joint turns. At a stop of the joint it is the sum of stop and motor, limited to what
   /// the motor has. 0 before the first step.
   [[nodiscard]] virtual double motor_torque(std::size_t joint) const = 0;
-  /// Both of all joints.
+  /// Reads the angles and the torques of all joints.
   virtual void read_joints(std::span<double> angles, std::span<double> torques) const {
     for (std::size_t joint = 0; joint < angles.size(); ++joint) {
       angles[joint] = joint_angle(joint);
@@ -114,7 +114,8 @@ class World {
   [[nodiscard]] virtual std::size_t solver_messages() const = 0;
   /// The first of these messages that differ, at most ten.
   [[nodiscard]] virtual std::span<const std::string> solver_message_texts() const = 0;
-  /// The numbers on which the next poses depend, if the engine gives the same ones on every machine; otherwise nothing.
+  /// The numbers on which the next poses depend, if the engine gives the same ones on every computer; otherwise
+  /// nothing.
   [[nodiscard]] virtual std::vector<double> state() const { return {}; }
 };
 

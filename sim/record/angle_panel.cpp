@@ -80,7 +80,7 @@ void draw_lines(Svg& svg, const Recording& recording, const FigureContents& cont
 /// Levels of the map on each side of 0.
 constexpr int levels = 8;
 
-/// From blue (the largest negative angle) over white to orange.
+/// The colour of a level: from blue (the largest negative angle) over white to orange.
 std::string level_colour(int level) {
   constexpr std::array<double, 3> negative{0, 90, 150};
   constexpr std::array<double, 3> positive{200, 80, 0};

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double between_panels = 44.0;
 
-/// Where the panels over time are, in pixels.
+/// Places of the panels over time, in pixels.
 struct Layout {
   std::vector<AnglePanel> angles;
   std::optional<double> losses_top;  ///< nothing if no state frame was lost

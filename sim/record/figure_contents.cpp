@@ -80,7 +80,7 @@ void set_window(const Recording& recording, const TimeWindow& window, FigureCont
 
 Point from_above(const Eigen::Vector3d& position) { return {bounded(position.x()), bounded(position.y())}; }
 
-/// From the head's front to the tail's rear end.
+/// The line of the chain, from the head's front to the tail's rear end.
 Polyline chain_of(const std::vector<Pose>& poses, const RobotModel* robot) {
   Polyline chain;
   for (std::size_t link = 0; link < poses.size(); ++link) {

@@ -137,7 +137,7 @@ struct PathPanel {
     const Point p = view.across(world);
     return {x.pixel(p.x), y.pixel(p.y)};
   }
-  /// Without points that lie too close together to be seen.
+  /// The trace in pixels, without points that lie too close together to be seen.
   [[nodiscard]] Polyline pixels(const Polyline& trace) const;
 };
 

@@ -32,7 +32,8 @@ inline constexpr const char* frame_style = R"(fill="none" stroke="#777777" strok
 inline constexpr std::array<const char*, 7> distinct_colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                              "#e69f00", "#56b4e9", "#000000"};
 
-/// At the head of the page. The subtitle leaves room for another text at the right edge, at the height subtitle_y.
+/// Draws title and subtitle at the head of the page. The subtitle leaves room for another text at the right edge, at
+/// the height subtitle_y.
 inline constexpr double subtitle_y = 58.0;
 inline void draw_title(Svg& svg, std::string_view title, std::string_view subtitle) {
   svg.text({page_left, 36.0}, title, TextAnchor::start, 20.0, ink, R"(font-weight="bold")");
@@ -97,7 +98,7 @@ struct LegendEntry {
   std::string style;  ///< of the line or mark
   std::string mark;   ///< as Svg::marks has it; empty: a line
 };
-/// In one row, the last entry's text ending at `right`.
+/// Draws the legend in one row; the last entry's text ends at `right`.
 void draw_legend(Svg& svg, double right, double y, std::span<const LegendEntry> entries);
 
 }  // namespace proleg::sim

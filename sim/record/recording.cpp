@@ -21,7 +21,7 @@ struct ValueName {
   Unit unit;
 };
 
-/// From columns 2 to 8.
+/// The pose in columns 2 to 8.
 Pose pose_of(const Statement& row) {
   return {{finite(row, 2), finite(row, 3), finite(row, 4)},
           {finite(row, 5), finite(row, 6), finite(row, 7), finite(row, 8)}};

@@ -58,12 +58,12 @@ class Recording {
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
-  /// By ascending tick; those of a tick in their order.
+  /// The moves by ascending tick; those of a tick in their order.
   [[nodiscard]] std::vector<RobotMove> moves() const;
   /// The losses, summed over up to so many parts of the run of equal length; parts without losses are left out. Reads
   /// at most the first million losses.
   [[nodiscard]] std::vector<RecordedLosses> losses_in_parts(std::uint32_t parts) const;
-  /// By ascending start. Empty for a run without faults.
+  /// The faults by ascending start. Empty for a run without faults.
   [[nodiscard]] std::vector<RecordedFault> faults() const;
   /// The first tick in which something fails; nothing: none does. The gait can be recomputed up to it.
   [[nodiscard]] std::optional<std::uint32_t> first_fault_tick() const;

@@ -65,7 +65,7 @@ Eigen::Vector3d center_of(const std::vector<Pose>& poses) {
   return sum / static_cast<double>(poses.size());
 }
 
-/// From tail to head, horizontal; along x if the robot stands upright.
+/// The horizontal direction from tail to head; along x if the robot stands upright.
 Eigen::Vector3d body_direction(const std::vector<Snapshot>& snapshots) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Snapshot& snapshot : snapshots) {
@@ -100,7 +100,7 @@ Point middle_of(const RobotView& view, const Snapshot& snapshot) {
   return {center.x, view.from_above ? center.y : view.center_y};
 }
 
-/// Of all snapshots, relative to the robot's centre; upright seen from the side.
+/// The extent of all snapshots, relative to the robot's centre; upright seen from the side.
 Extent extent_of(const Scenario& scenario, const std::vector<Snapshot>& snapshots, const View& view, bool from_above) {
   Extent extent;
   for (const Snapshot& snapshot : snapshots) {
@@ -228,7 +228,7 @@ void draw_robot(Svg& svg, const Scenario& scenario, const RobotView& view, const
   for (std::size_t link = 0; link < snapshot.link_poses.size(); ++link) {
     const Link& model = scenario.robot.links[link];
     const Pose& pose = snapshot.link_poses[link];
-    // From joint to joint, since the shapes that touch may be smaller than the link.
+    // The line of a link goes from joint to joint, since the shapes that touch may be smaller than the link.
     const Pose to_link{model.pose.orientation.conjugate() * -model.pose.position, model.pose.orientation.conjugate()};
     const LinkEnds ends = link_ends(scenario.robot, link);
     const Point rear = cell.pixel(view.view.of(pose * (to_link * ends.rear)));

@@ -136,7 +136,7 @@ void make_scales_equal(Axis& x, Axis& y) {
   finer.high = middle + half;
 }
 
-/// Without points that would be at the place of the one before.
+/// The path in pixels, without points that would be at the place of the one before.
 Polyline path_in_pixels(const Polyline& run, const Axis& x, const Axis& y) {
   constexpr double min_distance = 0.4;
   Polyline pixels;

@@ -51,7 +51,7 @@ class Svg {
 /// Text as it must be written in XML. What XML cannot hold (control characters, bytes that are not UTF-8) becomes '?'.
 [[nodiscard]] std::string xml_text(std::string_view text);
 
-/// At most `decimals` decimals, without trailing zeros.
+/// The number with at most `decimals` decimals, without trailing zeros.
 [[nodiscard]] std::string plain_number(double value, int decimals);
 
 }  // namespace proleg::sim

@@ -15,7 +15,7 @@
 
 namespace proleg::sim::reduced {
 
-/// All that a ChainBatch needs to know of a chain.
+/// The properties of a chain that a ChainBatch needs.
 template <typename Kind>
 struct ChainModel {
   // Equal in all chains of a batch.

@@ -42,7 +42,7 @@ struct ChainMemory : OwnMemory<Kind, Number> {
   Number* inverse_mass;  ///< 1 / mass of the chain, 1/kg
   Number* gravity;       ///< a vector, m/s^2
   Number* friction;      ///< Coulomb coefficients, by pair (ChainModel::friction)
-  // What the servos want.
+  // The speeds that the servos command.
   Number* wanted_speed;  ///< rad/s, by joint
   Number* max_torque;    ///< Nm, by joint
   Number* is_free;       ///< 1 or 0, by joint: in the step that is made, its motor is too weak to keep the wanted speed
@@ -181,7 +181,7 @@ struct OwnScratch<Spatial, Number> {
 };
 
 /// What a step computes and nothing keeps. A free joint is one whose speed follows from its torque, because its motor
-/// is not strong enough to keep the speed that its servo wants; the others turn as their servos want. The first
+/// is not strong enough to keep the speed that its servo commands; the others turn as commanded. The first
 /// Kind::spin_axes "unknowns" are the rotation of the first link; then come the speeds of the free joints.
 template <typename Kind, typename Number>
 struct ChainScratch : OwnScratch<Kind, Number> {

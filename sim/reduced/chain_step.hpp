@@ -8,7 +8,7 @@
 //
 // Method. The state is kept as velocities of the links. In a step their momenta are projected onto the motions that the
 // joints allow in the present pose, as an engine in maximal coordinates does; so results are near those of sim/ode.
-// - A motor reaches the speed that its servo wants if its torque suffices. While all do, joint speeds are given, and
+// - A motor reaches the speed that its servo commands if its torque suffices. While all do, joint speeds are given, and
 //   three unknowns remain (six in space): the velocity of the centre of mass and the rotation of the first link.
 //   Contacts are solved against these.
 // - From the result follows the torque of each motor. Where one is too large, the step is solved again with the speed
@@ -132,7 +132,7 @@ class ChainStep {
     }
   }
 
-  /// Joint j gets the speed that its servo wants, but not beyond its stops.
+  /// Joint j gets the speed that its servo commands, but not beyond its stops.
   void bound_speed(std::size_t j) const {
     const double steps_per_s = 1.0 / form_.step_s;
     s_.lowest_speed[j] = (form_.joints[j].lower - m_.joint_angle[j]) * steps_per_s;

@@ -51,7 +51,7 @@ inline bool find_least_deep_side(const Outline<width>& outline, const Outline<wi
   using Number = typename Lanes<width>::Number;
   const Plane<Number> apart = other.center - outline.center;
   const Plane<Number> up = turned(outline.along);
-  // Of two opposite sides, the one on the side of the other outline is less deep.
+  // Of two opposite sides, the one that faces the other outline is less deep.
   const Number height = dot(apart, up);
   const Number above = magnitude(height) - outline.half_height - half_extent<width>(other, up);
   if (!any(above < 0.0)) {

@@ -13,7 +13,7 @@
 namespace proleg::sim::reduced {
 
 /// A robot and its environment as the reduced engine sees them. All numbers of the model are rounded(), so they are the
-/// same on every machine: lengths and coefficients to 30 bits, moments of inertia to 50.
+/// same on every computer: lengths and coefficients to 30 bits, moments of inertia to 50.
 template <typename OfKind>
 struct RobotChain : ChainModel<OfKind> {
   using Kind = OfKind;

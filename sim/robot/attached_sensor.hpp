@@ -49,14 +49,14 @@ struct AttachedSensor {
   /// Of a touch sensor: half the sides of the box, in the sensor's frame, in which contacts press it. Nothing: the
   /// whole link is the sensor.
   std::optional<Eigen::Vector3d> extents;
-  /// Of a touch sensor: the input of the link's module to which it is wired, instead of the sensor under the link.
+  /// The input of the link's module to which a touch sensor is wired, instead of the sensor under the link.
   std::optional<TouchInput> input;
   LaserScan scan;    ///< of a laser
   std::string file;  ///< where it is described, for messages
   int line = 0;
 };
 
-/// As files and recordings name it.
+/// The name that files and recordings have for the kind.
 [[nodiscard]] constexpr std::string_view name_of(SensorKind kind) {
   switch (kind) {
     case SensorKind::touch:

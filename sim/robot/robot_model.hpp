@@ -167,7 +167,7 @@ inline LinkEnds link_ends(const RobotModel& robot, std::size_t link) {
 }
 
 /// The <robot_control> of a robot's file: the plug-in that drives a robot without Proleg's modules. The simulation
-/// ignores it; only the plug-in knows which parameters there are.
+/// ignores it; only the plug-in defines which parameters there are.
 struct RobotControlEntry {
   struct Parameter {
     std::string name;

@@ -51,7 +51,7 @@ std::vector<ModuleText> find_modules(std::string_view text) {
   return modules;
 }
 
-/// For an attribute in double quotes.
+/// The text as an attribute in double quotes needs it.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char character : text) {

@@ -199,7 +199,7 @@ std::optional<double> lowest_point(const RobotModel& robot, const Pose& start) {
   return lowest;
 }
 
-/// Of any link in a solid; at least 0.
+/// The greatest depth of any link in a solid; at least 0.
 double depth_in(const Geometry& solid, const Pose& body, const RobotModel& robot, const Pose& start) {
   double deepest = 0.0;
   for (const Link& link : robot.links) {
@@ -250,7 +250,7 @@ struct Overlap {
   const StaticObject* object = nullptr;
 };
 
-/// Of a link and a shape without a mesh that the robot can be lifted onto. highest: of its top, m.
+/// The deepest overlap of a link and a shape without a mesh that the robot can be lifted onto. highest: of its top, m.
 Overlap deepest_overlap(const RobotModel& robot, const EnvironmentModel& environment, const Pose& start,
                         double highest) {
   Overlap deepest;
@@ -268,7 +268,7 @@ Overlap deepest_overlap(const RobotModel& robot, const EnvironmentModel& environ
   return deepest;
 }
 
-/// Of an object that is oblique or round, and of one that only some links are in.
+/// Lifts the robot out of an object that is oblique or round, and out of one that only some links are in.
 void lift_out_of_solids(const RobotModel& robot, const EnvironmentModel& environment, Lift& lift) {
   constexpr double rounding = 1e-9;   // m
   constexpr double min_step = 0.001;  // m

@@ -20,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// For viewers only.
+/// Tags that only viewers use.
 constexpr std::array<std::string_view, 5> visual_tags{"diffuseColor", "ambientColor", "transparency", "render",
                                                       "visible"};
 
@@ -147,7 +147,7 @@ bool is_mesh(const XmlElement& render, std::vector<std::string>& remarks) {
   return false;
 }
 
-/// Of volume, in the frame of the body.
+/// The centre of the geometry's volume, in the frame of the body.
 Eigen::Vector3d center_of(const Geometry& geometry) {
   return geometry.mesh ? geometry.pose * solid_of(*geometry.mesh).center : geometry.pose.position;
 }

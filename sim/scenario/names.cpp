@@ -19,7 +19,7 @@ struct TwoNames {
 constexpr std::array<TwoNames, 1> thesis_algorithms{{{"Global Adaptive Touch", "SensingModule_global_adaptive_touch"}}};
 
 constexpr std::array<TwoNames, 15> thesis_parameters{{
-    // As the dialogues of figure 4.20 show them, and the command of figure 4.12.
+    // The names in the dialogues of figure 4.20 and in the command of figure 4.12.
     {"amplitude: a", "amplitude"},
     {"frequency: f", "frequency"},
     {"phase: p", "phase_difference"},
@@ -37,7 +37,7 @@ constexpr std::array<TwoNames, 15> thesis_parameters{{
     {"Constant 8", "constant_8"},
 }};
 
-/// In front of the number of a joint, in small letters.
+/// The text in front of the number of a joint, in small letters.
 constexpr std::string_view joint_of_thesis = "joint_";
 
 std::string_view proleg_name(std::span<const TwoNames> names, std::string_view name) {

@@ -41,7 +41,7 @@ Geometry equivalent_box(const MassProperties& mass) {
   return box;
 }
 
-/// Of everything that a link is known to have, in the robot's frame.
+/// The bounds of everything that a link is known to have, in the robot's frame.
 Bounds bounds_of_link(const Link& link) {
   const Bounds box = bounds_of(equivalent_box(link.mass), link.pose);
   const std::optional<Bounds> geometries = bounds_of(link.geometries, link.pose);
@@ -188,7 +188,7 @@ class RobotCheck {
     return is_one_size;
   }
 
-  /// Only of a link with geometries: the box of a thin rod has no volume.
+  /// To be called only for a link with geometries. Without them its bounds may be a thin rod, which has no volume.
   void check_density(std::size_t link) {
     constexpr double min_density = 1.0;       // air
     constexpr double max_density = 25'000.0;  // above every metal

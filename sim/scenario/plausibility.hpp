@@ -27,7 +27,7 @@ inline constexpr double largest_start_depth = 0.003;
 /// the world.
 [[nodiscard]] double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right,
                                    const Pose& right_body);
-/// Of the geometry of a body that is deepest in `right`; 0 if none is in it.
+/// The greatest depth in `right` of any geometry of a body; 0 if none is in it.
 [[nodiscard]] double overlap_depth(const std::vector<Geometry>& left, const Pose& left_body, const Geometry& right,
                                    const Pose& right_body);
 

@@ -39,7 +39,8 @@ void check_steps_in_tick(const XmlElement& place, const Scenario& scenario) {
   }
 }
 
-/// For tags of the thesis without a counterpart: any value but `off` asks for something that this program does not do.
+/// Reports a tag of the thesis without a counterpart: any value but `off` asks for something that this program does not
+/// do.
 void remark_unless(const XmlElement& parent, std::string_view tag, std::string_view off, std::string_view reason,
                    std::vector<std::string>& remarks) {
   const std::optional<XmlElement> child = parent.child(tag);

@@ -49,7 +49,7 @@ struct Scenario {
   std::vector<ModulePlace> modules;       ///< kernel order, one for each joint, no node id twice
   std::optional<RobotControlEntry> robot_control;  ///< plug-in of a robot without modules; no effect in a simulation
   std::vector<Setting> settings;                   ///< start values that differ from the defaults
-  std::vector<Change> changes;                     ///< in flight, by ascending tick
+  std::vector<Change> changes;                     ///< while the robot moves, by ascending tick
   std::vector<RobotMove> moves;                    ///< by ascending tick; those of a tick in their order
 
   double duration_s = 30.0;

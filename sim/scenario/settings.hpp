@@ -47,9 +47,9 @@ void set_start_value(Scenario& scenario, const Setting& setting);
 ///   JOINT   a joint of the robot file; without it all joints of the module
 ///   VALUE   a decimal number in the declared unit
 ///   TICK    0 to 2^32 - 1
-/// A parameter without a tick gets a new start value; with a tick it changes in flight. An internal value is
-/// overwritten (a distortion) at the tick, by default 0. Throws InputError with the word as its file, and then does not
-/// change the scenario.
+/// A parameter without a tick gets a new start value; with a tick it changes while the robot moves. An internal value
+/// is overwritten (a distortion) at the tick, by default 0. Throws InputError with the word as its file, and then does
+/// not change the scenario.
 void apply_setting(Scenario& scenario, const std::string& word);
 
 /// The values that a `--set` word changes.

@@ -62,7 +62,7 @@ class SourceTexts final : public FileSource {
 
 /// The bytes of a source: those of a text that data_url() made, otherwise the text itself.
 [[nodiscard]] std::string bytes_of_source(const std::string& text);
-/// Their number.
+/// Number of the bytes that bytes_of_source() would give.
 [[nodiscard]] std::size_t size_of_source(std::string_view text);
 
 /// The files of one scenario.
@@ -109,7 +109,7 @@ class SourceSet {
   [[nodiscard]] const std::string* text_of(const std::filesystem::path& path, Contents contents);
   [[nodiscard]] Found find(const XmlElement& mention, const std::string& reference, Contents contents);
   void count_bytes(const XmlElement& mention, std::size_t bytes);
-  /// For a file that counts once.
+  /// Counts a file that is mentioned more than once only the first time.
   void count_once(const XmlElement& mention, const std::filesystem::path& path, std::size_t bytes);
 
   FileSource* files_;

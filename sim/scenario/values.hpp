@@ -42,7 +42,7 @@ inline constexpr Range turns{-360.0, 360.0, "degrees"};
 [[nodiscard]] double read_number(const XmlElement& element, const Range& range,
                                  std::initializer_list<std::string_view> attributes = {});
 
-/// As read_number; an attribute `unit` is optional and must be the unit of the range.
+/// Reads a number as read_number does; an attribute `unit` is optional and must be the unit of the range.
 [[nodiscard]] double read_quantity(const XmlElement& element, const Range& range);
 
 /// A quantity in ms that is a whole number of microseconds.

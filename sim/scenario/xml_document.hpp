@@ -29,7 +29,7 @@ class XmlElement {
 
   [[nodiscard]] const XmlDocument& document() const { return *document_; }
   [[nodiscard]] int line() const;
-  /// As written, for messages: "<Geom>".
+  /// The tag as it is written, for messages: "<Geom>".
   [[nodiscard]] std::string label() const;
   [[nodiscard]] bool is(std::string_view tag) const;
 

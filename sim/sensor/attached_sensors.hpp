@@ -24,7 +24,7 @@ struct SensorSummary {
   double sum = 0.0;
   std::uint64_t count = 0;
 
-  /// Not a number before the first tick.
+  /// Mean of the samples; not a number before the first tick.
   [[nodiscard]] double mean() const { return sum / static_cast<double>(count); }
 };
 
@@ -36,9 +36,9 @@ class AttachedSensors {
   AttachedSensors(const std::vector<AttachedSensor>& sensors, const Eigen::Vector3d& gravity, double step_s,
                   std::uint32_t tick_period_us, World& world);
 
-  /// After each step of the world.
+  /// Called after each step of the world.
   void add_step(const World& world);
-  /// After the last step of each tick. currents: of the servos, mA, means over the tick.
+  /// Called after the last step of each tick. currents: of the servos, mA, means over the tick.
   void finish_tick(const World& world, std::span<const Pose> link_poses, std::span<const double> currents);
   /// The robot was put elsewhere and rests.
   void rest_at(std::span<const Pose> link_poses);

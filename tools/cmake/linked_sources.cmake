@@ -1,13 +1,19 @@
 # Which sources a program is made of, by its libraries: for what depends on all of them, as the key of a search's results.
 
-# Sets `out` to a target and all targets of this project that it links, directly or through others.
-function(proleg_link_closure target out)
+# Sets `out_targets` to a target and all targets of this project that it links, directly or through others, and
+# `out_libraries` to the files of the libraries of the system that these link themselves.
+function(proleg_link_closure target out_targets out_libraries)
   set(pending ${target})
   set(closure)
+  set(imported)
+  set(files)
   while(pending)
     list(POP_FRONT pending next)
     string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" next "${next}")
     if(NOT TARGET ${next})
+      if(IS_ABSOLUTE ${next})
+        list(APPEND files ${next})
+      endif()
       continue()  # a library of the system, or an option
     endif()
     get_target_property(aliased ${next} ALIASED_TARGET)
@@ -15,11 +21,25 @@ function(proleg_link_closure target out)
       set(next ${aliased})
     endif()
     get_target_property(is_imported ${next} IMPORTED)
-    if(is_imported OR next IN_LIST closure)
+    if(next IN_LIST closure OR next IN_LIST imported)
       continue()
     endif()
-    list(APPEND closure ${next})
     get_target_property(type ${next} TYPE)
+    if(is_imported)
+      list(APPEND imported ${next})
+    else()
+      list(APPEND closure ${next})
+    endif()
+    if(is_imported AND NOT type STREQUAL "INTERFACE_LIBRARY")
+      get_target_property(configurations ${next} IMPORTED_CONFIGURATIONS)
+      foreach(property IMPORTED_LOCATION IMPORTED_LOCATION_${configurations})
+        get_target_property(file ${next} ${property})
+        if(file)
+          list(APPEND files ${file})
+        endif()
+      endforeach()
+      continue()  # what it links in turn is the system's choice
+    endif()
     set(property LINK_LIBRARIES)
     if(type STREQUAL "INTERFACE_LIBRARY")
       set(property INTERFACE_LINK_LIBRARIES)
@@ -29,7 +49,8 @@ function(proleg_link_closure target out)
       list(APPEND pending ${libraries})
     endif()
   endwhile()
-  set(${out} ${closure} PARENT_SCOPE)
+  set(${out_targets} ${closure} PARENT_SCOPE)
+  set(${out_libraries} ${files} PARENT_SCOPE)
 endfunction()
 
 # Options without the folders of this computer, as one string.
@@ -41,10 +62,16 @@ endfunction()
 
 # proleg_write_linked_sources(<target> <file>)
 #   Writes the sources of all targets that a target links: a line "source PATH OPTIONS" for each, from the top of the tree,
-#   or "generated PATH OPTIONS", from the build folder. To be called when all these targets are complete.
+#   or "generated PATH OPTIONS", from the build folder; and a line "library FILE" for each library of the system, where the
+#   file's name has the version. To be called when all these targets are complete.
 function(proleg_write_linked_sources target file)
-  proleg_link_closure(${target} closure)
+  proleg_link_closure(${target} closure libraries)
   set(lines)
+  foreach(library IN LISTS libraries)
+    file(REAL_PATH ${library} library)
+    cmake_path(GET library FILENAME library)
+    list(APPEND lines "library ${library}\n")
+  endforeach()
   foreach(linked IN LISTS closure)
     get_target_property(sources ${linked} SOURCES)
     get_target_property(folder ${linked} SOURCE_DIR)

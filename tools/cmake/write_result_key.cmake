@@ -1,6 +1,6 @@
 # Writes the result key into a header: two programs with equal keys give equal results of a search. It is a hash of the
-# sources that the program links, of all files of the project that they include, and of SETTINGS (compiler, flags,
-# libraries). Does not touch a header that already has it. Beside the header, OUTPUT.txt has what was hashed.
+# sources that the program links, of all files of the project that they include, of the names of the libraries, and of
+# SETTINGS (compiler, flags, versions). Does not touch a header that already has it. Beside the header, OUTPUT.txt has what was hashed.
 # Called at every build with SOURCE_DIR, BINARY_DIR, SOURCES (the file of proleg_write_linked_sources), SETTINGS and OUTPUT.
 cmake_minimum_required(VERSION 3.25)
 
@@ -20,6 +20,7 @@ endfunction()
 
 file(STRINGS ${SOURCES} lines)
 set(pending)
+list(FILTER lines EXCLUDE REGEX "^library ")
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^(source|generated) ([^ ]+)" matched "${line}")
   set(base ${SOURCE_DIR})

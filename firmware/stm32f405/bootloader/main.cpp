@@ -66,7 +66,7 @@ bool is_second_press(const Handover& left) {
   return false;
 }
 
-/// Prepares the program that may run: it runs after a reset of the chip. Returns if there is none.
+/// Resets the chip if a program may run, which then starts. Returns only if no program may run or the flash failed.
 void prepare_program(Slots& slots) {
   switch (slots.prepare_start()) {
     case StartResult::run:

@@ -62,7 +62,7 @@ class GuardedAlgorithm::Call {
     given_[given_count_++] = {array, {values, count}, nullptr};
     return memory_.arrays.place(array, {values, count});
   }
-  /// Passes values in an array of the call. They are copied back when the call has ended without an error.
+  /// Copies values into a guarded array for the call. They are copied back when the call has ended without an error.
   std::int32_t* lend(Array array, std::int32_t* values, std::size_t count) {
     given_[given_count_++] = {array, {values, count}, values};
     return memory_.arrays.place(array, {values, count});

@@ -26,7 +26,7 @@
 namespace proleg {
 namespace {
 
-/// Of the watchdog to a thread. No program of the tree uses it.
+/// The signal that the watchdog sends to a thread. No program of the tree uses it for anything else.
 constexpr int time_out_signal = SIGVTALRM;
 constexpr std::array caught_signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, time_out_signal};
 constexpr std::size_t signal_stack_size = 64 * 1024;
@@ -395,8 +395,6 @@ enum class End : std::uint8_t { returned, exception, signal };
 }
 
 }  // namespace
-
-unsigned process_generation() { return generation; }
 
 void blame_for_crashes(const char* file) {
   const char* none = nullptr;

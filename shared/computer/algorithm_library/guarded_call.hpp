@@ -26,9 +26,6 @@ struct CallFailure {
 inline constexpr double longest_call_cpu_s = 1.0;
 inline constexpr double longest_call_wall_s = 20.0;
 
-/// Increases in the child of a fork(): what a thread had set up in the parent is not valid there.
-[[nodiscard]] unsigned process_generation();
-
 /// Calls function(context). Returns false if it throws, breaks a rule of the processor (SIGSEGV, SIGBUS, SIGFPE,
 /// SIGILL), calls abort(), or takes too long; `failure` says which. What the function had locked or allocated is then
 /// lost: do not call its code again. If that are locks of the C library, or its lists of memory are damaged, or the

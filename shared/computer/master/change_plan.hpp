@@ -1,7 +1,7 @@
 #pragma once
 
-// The changes that the master makes in flight: the next one, those that wait for their tick, and the SDO writes of each
-// change.
+// The changes that the master makes while the robot moves: the next one, those that wait for their tick, and the SDO
+// writes of each change.
 
 #include <cstddef>
 #include <cstdint>

@@ -25,6 +25,11 @@ void LssExchange::begin(Microseconds now, const CanFrame& request, const Answer&
   hand_over();
 }
 
+void LssExchange::cancel_and_release() {
+  cancel();
+  static_cast<void>(port_.send(lss_release_request()));
+}
+
 void LssExchange::hand_over() {
   if (is_pending_ && port_.send(request_)) {
     is_pending_ = false;
@@ -288,10 +293,7 @@ void LssMaster::fail(LssProblem problem, std::uint8_t detail) {
   state_ = State::failed;
   problem_ = problem;
   problem_detail_ = detail;
-  exchange_.cancel();
-  // No module stays selected: it would be configured with the next one. If this frame is lost, the next start releases
-  // the module.
-  static_cast<void>(port_.send(lss_release_request()));
+  exchange_.cancel_and_release();
 }
 
 }  // namespace proleg::canopen

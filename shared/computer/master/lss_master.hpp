@@ -12,7 +12,7 @@
 
 namespace proleg::canopen {
 
-/// The request by which all modules stop waiting for configuration.
+/// The request after which no module is selected: all are in the LSS state "waiting".
 [[nodiscard]] constexpr CanFrame lss_release_request() {
   return lss::make(identifier::lss_request, lss::Service::switch_state_global,
                    static_cast<std::uint8_t>(lss::State::waiting));
@@ -47,6 +47,9 @@ class LssExchange {
   void begin(Microseconds now, const CanFrame& request) { begin(now, request, {}, 0); }
   /// Ends the exchange: frames from now on do not belong to one.
   void cancel() { deadline_ = never; }
+  /// Cancels, and sends the request that leaves no module selected: one that stays selected would be configured with
+  /// the next one. If this frame is lost, the next start of a service releases the module.
+  void cancel_and_release();
 
   void receive(Microseconds now, const CanFrame& frame);
   void transmitted(Microseconds now, const CanFrame& frame);
@@ -100,7 +103,7 @@ struct LssMasterOptions {
   Microseconds settle_us = 2'000;  ///< time without an answer before the next request
   Microseconds store_timeout_us = storing_time_us;
   Microseconds boot_timeout_us = 100'000;
-  Microseconds send_timeout_us = 1'000'000;  ///< time-out of a frame that no node acknowledges
+  Microseconds send_timeout_us = 1'000'000;  ///< timeout of a frame that no node acknowledges
 };
 
 enum class LssProblem : std::uint8_t {
@@ -127,10 +130,7 @@ class LssMaster {
 
   /// port: must be used by this master only. modules: must outlive the master.
   LssMaster(CanPort& port, std::span<LssModule> modules, const LssMasterOptions& options = {})
-      : port_(port),
-        modules_(modules),
-        options_(options),
-        exchange_(port, options.send_timeout_us, options.settle_us) {}
+      : modules_(modules), options_(options), exchange_(port, options.send_timeout_us, options.settle_us) {}
   LssMaster(const LssMaster&) = delete;
   LssMaster& operator=(const LssMaster&) = delete;
 
@@ -141,7 +141,7 @@ class LssMaster {
   void receive(Microseconds now, const CanFrame& frame);
   /// Must be called when the controller has sent a frame of the master.
   void transmitted(Microseconds now, const CanFrame& frame);
-  /// Handles time-outs. Must be called at next_deadline() or later.
+  /// Handles timeouts. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return exchange_.deadline(); }
 
@@ -179,7 +179,6 @@ class LssMaster {
   [[nodiscard]] LssModule* find_entry() const;
   void fail(LssProblem problem, std::uint8_t detail = 0);
 
-  CanPort& port_;
   std::span<LssModule> modules_;
   LssMasterOptions options_;
 

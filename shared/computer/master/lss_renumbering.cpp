@@ -200,9 +200,7 @@ void LssRenumbering::fail(LssProblem problem, std::uint8_t detail) {
   state_ = State::failed;
   problem_ = problem;
   problem_detail_ = detail;
-  exchange_.cancel();
-  // No module stays selected.
-  static_cast<void>(port_.send(lss_release_request()));
+  exchange_.cancel_and_release();
 }
 
 }  // namespace proleg::canopen

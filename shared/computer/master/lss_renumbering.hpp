@@ -40,17 +40,14 @@ class LssRenumbering {
   /// port: must be used by this object only. modules: must outlive this object. No drive may have power, and no module
   /// may be Operational: they would refuse to store.
   LssRenumbering(CanPort& port, std::span<RenumberedModule> modules, const LssRenumberingOptions& options = {})
-      : port_(port),
-        modules_(modules),
-        options_(options),
-        exchange_(port, options.send_timeout_us, options.settle_us) {}
+      : modules_(modules), options_(options), exchange_(port, options.send_timeout_us, options.settle_us) {}
   LssRenumbering(const LssRenumbering&) = delete;
   LssRenumbering& operator=(const LssRenumbering&) = delete;
 
   void start(Microseconds now);
   void receive(Microseconds now, const CanFrame& frame);
   void transmitted(Microseconds now, const CanFrame& frame) { exchange_.transmitted(now, frame); }
-  /// Handles time-outs. Must be called at next_deadline() or later.
+  /// Handles timeouts. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return exchange_.deadline(); }
 
@@ -74,7 +71,6 @@ class LssRenumbering {
   [[nodiscard]] std::size_t first_missing() const;
   void fail(LssProblem problem, std::uint8_t detail);
 
-  CanPort& port_;
   std::span<RenumberedModule> modules_;
   LssRenumberingOptions options_;
   LssExchange exchange_;

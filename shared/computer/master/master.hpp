@@ -138,7 +138,7 @@ class Master final : private SdoWork {
       read,
     };
     State state = State::not_read;
-    /// Number of ticks from tick 0 on; 0: the module does not know the set-points of all ticks.
+    /// Number of ticks from tick 0 on; 0: the module has not computed the set-points of all ticks.
     std::uint32_t ticks = 0;
     std::uint32_t crc = 0;  ///< CRC-32 (shared/fixed/crc32.hpp) of the int32 set-points, little-endian
   };
@@ -167,12 +167,13 @@ class Master final : private SdoWork {
   void receive(Microseconds now, const CanFrame& frame);
   /// Must be called when the controller has sent a frame of the master.
   void transmitted(Microseconds now, const CanFrame& frame);
-  /// Handles time-outs. Must be called at next_deadline() or later.
+  /// Handles timeouts. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
   [[nodiscard]] MasterState state() const { return state_; }
-  /// The problem that ended the start or the run, or the first problem in flight; code `none` without a problem.
+  /// The problem that ended the start or the run, or the first problem while the robot moves; code `none` without a
+  /// problem.
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] std::optional<Event> take_event() { return events_.take(); }
   /// Number of events that were dropped because the log was full.
@@ -188,7 +189,7 @@ class Master final : private SdoWork {
   /// Checksum of the module of a joint, with options.reads_checksums, from stop() on. joint: below the joint count.
   [[nodiscard]] const SetpointChecksum& checksum(unsigned joint) const { return checksums_[joint]; }
   /// The angle that the joint had when it got power (90 degrees = 2^30), with options.holds and while running;
-  /// position_not_measured: its module does not know it. joint: below the joint count.
+  /// position_not_measured: its module does not measure it. joint: below the joint count.
   [[nodiscard]] std::int32_t held_angle(unsigned joint) const { return static_cast<std::int32_t>(measured_[joint]); }
   /// Joints whose modules have booted.
   [[nodiscard]] JointMask booted() const { return booted_; }

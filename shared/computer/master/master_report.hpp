@@ -116,8 +116,8 @@ namespace proleg {
 /// The name of a node in a message: "node 3 (J3)".
 using NodeName = std::function<std::string(std::uint8_t node)>;
 
-/// Text of the problem that ended the start, or of the first problem in flight: the module, what was found and what was
-/// expected. problem: with a code other than `none`.
+/// Text of the problem that ended the start, or of the first problem while the robot moves: the module, what was found
+/// and what was expected. problem: with a code other than `none`.
 [[nodiscard]] std::string problem_text(const canopen::Problem& problem, const NodeName& name);
 
 /// Text of an event.

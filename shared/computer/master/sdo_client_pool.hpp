@@ -27,7 +27,8 @@ struct SdoRequest {
   friend bool operator==(const SdoRequest&, const SdoRequest&) = default;
 };
 
-/// The source of the transfers, which receives their results. Its functions must not begin new lists; all may cancel.
+/// Names the transfers of the lists, and receives their results. Its functions must not call begin(); they may call
+/// cancel().
 class SdoWork {
  public:
   /// The transfer at a position in the list of a joint; nothing after the last one.

@@ -112,7 +112,7 @@ void SdoTransfer::fail(AbortCode code) {
   abort_code_ = code;
 }
 
-/// Begins another attempt. The server has aborted this one, or knows that the client has.
+/// Begins another attempt. The server has aborted this one, or was sent the abort of the client.
 void SdoTransfer::retry(AbortCode code) {
   if (attempts_ < options_.attempts) {
     state_ = State::running;

@@ -47,7 +47,7 @@ class SdoTransfer {
   [[nodiscard]] std::optional<CanFrame> next_frame(Microseconds now);
   /// Takes any frame from the bus. Frames that do not belong to the transfer are ignored.
   void receive(Microseconds now, const CanFrame& frame);
-  /// Handles time-outs. Must be called at next_deadline() or later.
+  /// Handles timeouts. Must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return state_ == State::running ? deadline_ : never; }
 

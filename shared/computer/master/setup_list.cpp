@@ -6,25 +6,25 @@ namespace proleg::canopen {
 namespace {
 
 /// Counts writes and keeps the write at a position.
-class Picker {
+class WriteAtPosition {
  public:
-  explicit Picker(std::size_t position) : position_(position) {}
+  explicit WriteAtPosition(std::size_t position) : position_(position) {}
 
   void operator()(Address address, DataType type, std::uint32_t value) {
     if (count_ == position_) {
-      picked_ = {address, size_of(type), value};
+      found_ = {address, size_of(type), value};
     }
     ++count_;
   }
   void operator()(const Object& object, std::uint32_t value) { (*this)(object.address, object.type, value); }
 
   [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] const SdoRequest& picked() const { return picked_; }
+  [[nodiscard]] const SdoRequest& found() const { return found_; }
 
  private:
   std::size_t position_;
   std::size_t count_ = 0;
-  SdoRequest picked_{};
+  SdoRequest found_{};
 };
 
 }  // namespace
@@ -36,15 +36,15 @@ SetupList::SetupList(const RobotSetup& setup, unsigned joint)
     return;
   }
   collect_start_values();
-  Picker counter(0);
+  WriteAtPosition counter(0);
   visit_all(counter);
   size_ = counter.count();
 }
 
 SdoRequest SetupList::at(std::size_t position) const {
-  Picker picker(position);
-  visit_all(picker);
-  return picker.picked();
+  WriteAtPosition write(position);
+  visit_all(write);
+  return write.found();
 }
 
 void SetupList::collect_start_values() {

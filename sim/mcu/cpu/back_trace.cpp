@@ -183,7 +183,7 @@ class BackTracer::Implementation {
         if (frames.size() > 1 || registers[dwarf_pc] == registers[dwarf_lr]) {
           break;
         }
-        // Not known, or no code at all: treats it as just called.
+        // The place is not known, or has no code at all: treats the function as just called.
         registers[dwarf_pc] = registers[dwarf_lr];
       } else if (registers[dwarf_sp] < old_sp ||
                  (registers[dwarf_sp] == old_sp && frames.size() > 1 && is_return_address)) {
@@ -292,7 +292,7 @@ class BackTracer::Implementation {
     if (file == nullptr || dwarf_lineno(line, &number) != 0) {
       return {};
     }
-    // Without the folder of the build.
+    // Leaves out the folder of the build.
     std::string_view name = file;
     Dwarf_Attribute attribute;
     const char* const folder = dwarf_formstring(dwarf_attr(&unit, DW_AT_comp_dir, &attribute));
@@ -303,7 +303,7 @@ class BackTracer::Implementation {
     return std::string(name) + ":" + std::to_string(number);
   }
 
-  /// For images without a table of address ranges.
+  /// Searches all units, for images without a table of address ranges.
   bool find_unit(std::uint32_t address, Dwarf_Die& unit) const {
     Dwarf_Off offset = 0;
     Dwarf_Off next = 0;

@@ -67,7 +67,7 @@ class Cpu {
   void limit(std::uint64_t instructions);
   /// Ends it until reset(), before the next block; for what is not modelled.
   void halt(std::string reason = {});
-  /// Of the first halt() since reset(): one line that names what was found; empty if there was none.
+  /// The reason of the first halt() since reset(): one line that names what was found; empty if there was none.
   [[nodiscard]] const std::string& halt_reason() const;
 
   /// The level of a line to the NVIC, position 0 to 81 (RM0090, table 61). It pends when it rises, and again if it is

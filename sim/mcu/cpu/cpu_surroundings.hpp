@@ -20,9 +20,9 @@ inline constexpr LocalTime never_on_chip = ~LocalTime{0};
 struct Clocks {
   static constexpr LocalTime hsi = local_time_per_us / 16;
   LocalTime core = hsi;         ///< HCLK: one instruction takes one of these
-  LocalTime apb1 = hsi;         ///< CAN1, USART2
-  LocalTime apb2 = hsi;         ///< ADC1
-  LocalTime apb1_timers = hsi;  ///< TIM2, TIM5
+  LocalTime apb1 = hsi;         ///< clock of CAN1 and USART2
+  LocalTime apb2 = hsi;         ///< clock of ADC1
+  LocalTime apb1_timers = hsi;  ///< clock of TIM2 and TIM5
   LocalTime apb2_timers = hsi;
 };
 

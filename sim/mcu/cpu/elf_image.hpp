@@ -56,7 +56,7 @@ class ElfImage {
   /// ElfError if there is none, or more than one.
   [[nodiscard]] const Symbol& symbol(std::string_view name) const;
 
-  /// For messages: "function+offset", demangled, or the bare address.
+  /// Describes an address for messages: "function+offset", demangled, or the bare address.
   [[nodiscard]] std::string describe(std::uint32_t address) const;
 
  private:

@@ -126,7 +126,8 @@ class Engine {
     }
     read_batch(ids.data(), places.data(), static_cast<int>(count));
   }
-  /// In the order given. Writing xpsr changes mode and stack pointer according to its exception number.
+  /// Writes registers in the order given. Writing xpsr changes mode and stack pointer according to its exception
+  /// number.
   template <std::size_t count>
   void write(const std::array<CoreRegister, count>& names, const std::array<std::uint32_t, count>& values) {
     std::array<int, 2 * count> ids;

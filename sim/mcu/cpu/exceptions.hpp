@@ -21,7 +21,7 @@ class Exceptions {
  public:
   Exceptions(Engine& engine, Nvic& nvic, SystemControl& system_control);
 
-  /// Registers as after reset; the start address is executed from next.
+  /// Sets the registers as after a reset. The next instruction is at the address in the reset vector.
   void reset();
 
   /// Number of the exception that is being handled; 0: thread mode.
@@ -61,7 +61,7 @@ class Exceptions {
 
   [[nodiscard]] Vector vector(unsigned number);
   void enter(unsigned number);
-  /// Without saving registers: after tail-chaining, or a fault of the stack itself.
+  /// Enters a handler without saving registers: after tail-chaining, or a fault of the stack itself.
   void enter_without_frame(unsigned number, std::uint32_t exc_return);
   void go_to(const Vector& vector);
   /// Raises a fault, or HardFault in its place.

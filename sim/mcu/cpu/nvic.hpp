@@ -92,7 +92,7 @@ class Nvic {
 
   /// An exception is being taken: active, no longer pending.
   void activate(unsigned number);
-  /// Its handler has returned. An interrupt whose line is still high pends again.
+  /// Called when the handler has returned. An interrupt whose line is still high pends again.
   void deactivate(unsigned number);
   [[nodiscard]] int active_count() const { return active_.count(); }
 

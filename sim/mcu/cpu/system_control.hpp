@@ -60,7 +60,7 @@ class SystemControlOwner {
   [[nodiscard]] virtual unsigned active_exception() const = 0;
   /// What is pending may have changed.
   virtual void attend() = 0;
-  /// SysTick::next_exception() may be earlier than before.
+  /// SystemTick::next_exception() may be earlier than before.
   virtual void reschedule() = 0;
   virtual void request_reset() = 0;
   /// The CPU stops at something that is not modelled.
@@ -96,7 +96,6 @@ class SystemControl {
   void note_configurable(std::uint32_t bits) { configurable_status_ |= bits; }
   void note_hard(std::uint32_t bits) { hard_status_ |= bits; }
   void set_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
-  void set_memory_fault_address(std::uint32_t address) { memory_fault_address_ = address; }
 
   [[nodiscard]] SystemTick& system_tick() { return system_tick_; }
   [[nodiscard]] const SystemTick& system_tick() const { return system_tick_; }

@@ -342,7 +342,7 @@ std::string GdbCommands::write_memory(std::string_view text, bool binary) {
   if (std::uint64_t{wanted->start} + wanted->length > std::uint64_t{1} << 32U) {
     return no_memory;
   }
-  // With no bytes a client asks whether the server knows the command.
+  // A client sends no bytes to ask whether the server supports the command.
   return bytes->empty() || target_->write_memory(wanted->start, *bytes) ? done : no_memory;
 }
 

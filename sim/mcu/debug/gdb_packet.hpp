@@ -30,7 +30,7 @@ struct GdbInput {
     too_long,   ///< a packet of more than GdbDecoder::max_packet bytes
     interrupt,  ///< the byte 0x03 between packets
     accepted,   ///< `+`
-    refused,    ///< `-`: the client wants the last packet again
+    refused,    ///< `-`: the client requests the last packet again
   };
   Kind kind = Kind::packet;
   std::string payload;  ///< payload of a packet, without escapes

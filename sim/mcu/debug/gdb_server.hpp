@@ -51,7 +51,7 @@ class GdbServer {
   [[nodiscard]] std::uint16_t port() const { return listener_.port(); }
   [[nodiscard]] bool has_client() const { return connection_.has_value(); }
 
-  /// Answers the user's `monitor TEXT`.
+  /// Sets the function that answers the user's `monitor TEXT`.
   void set_monitor(MonitorCommand monitor) { commands_.set_monitor(std::move(monitor)); }
 
   /// Blocks until there is a client; false if `interrupted` was true before.

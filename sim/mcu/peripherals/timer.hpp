@@ -49,7 +49,7 @@ class Timer final : public RegisterBlock {
   /// from the next update on). Nothing unless the counter runs, the channel is in a PWM mode and its output is enabled.
   [[nodiscard]] std::optional<std::uint32_t> pulse_width(unsigned channel) const;
   /// Time for which the output is high in each period, at ChipServices::now(): in the period that runs; or, if the
-  /// program wrote another width while the output was active, in the next one. Nothing where pulse_width() is nothing.
+  /// program wrote another width while the output was active, in the next one. Empty if pulse_width() is empty.
   [[nodiscard]] std::optional<LocalTime> high_time(unsigned channel);
   struct Output {
     bool driven = false;  ///< CCxE

@@ -164,7 +164,7 @@ sim::Scenario with_engine(sim::Scenario scenario, PhysicsEngine engine) {
   return scenario;
 }
 
-/// The first one is the one that knows most robots.
+/// The engines other than this one; the first one supports most robots.
 std::vector<PhysicsEngine> engines_beside(PhysicsEngine engine) {
   std::vector<PhysicsEngine> others;
   for (const sim::PhysicsEngineName& name : sim::physics_engines) {
@@ -266,7 +266,7 @@ WorldDistances distances_in_worlds(const sim::Scenario& scenario, std::uint32_t 
 
 bool GaitConfirmation::is_real() const { return std::ranges::all_of(findings, &ConfirmationFinding::is_good); }
 
-std::vector<ConfirmationFinding> find_doubts(const GaitConfirmation& confirmation) {
+std::vector<ConfirmationFinding> findings_of(const GaitConfirmation& confirmation) {
   const ConfirmedRun& first = confirmation.runs.front();
   if (!first.failure.empty()) {
     return {{"as it is", "no result: " + first.failure, false}};
@@ -324,7 +324,7 @@ GaitConfirmation confirm_gait(const sim::Scenario& scenario, const ConfirmationO
                                               options.seed, {usual_spread(), confirmation_start_m}, show);
   result.perturbed = std::move(worlds.distances);
   result.failed_worlds = worlds.failed;
-  result.findings = find_doubts(result);
+  result.findings = findings_of(result);
   return result;
 }
 

@@ -81,7 +81,7 @@ inline constexpr double confirmation_start_m = 0.005;
                                             const std::function<bool(double share)>& progress);
 
 /// What the runs of a gait say about it. confirmation: its findings are not read.
-[[nodiscard]] std::vector<ConfirmationFinding> find_doubts(const GaitConfirmation& confirmation);
+[[nodiscard]] std::vector<ConfirmationFinding> findings_of(const GaitConfirmation& confirmation);
 
 /// The page: a table of the runs, the worlds, and a line for each finding.
 [[nodiscard]] std::string confirmation_text(const GaitConfirmation& confirmation);

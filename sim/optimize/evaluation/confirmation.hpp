@@ -35,7 +35,7 @@ struct Confirmation {
 [[nodiscard]] std::vector<Evaluation> best_candidates(const Experiment& experiment,
                                                       std::span<const Evaluation> evaluations, std::size_t count);
 
-/// As many of them as fresh_runs() says; and the baseline, if it has a score.
+/// Chooses as many finalists as fresh_runs() says; and the baseline, if it has a score.
 [[nodiscard]] std::vector<Evaluation> choose_finalists(const Experiment& experiment,
                                                        std::span<const Evaluation> evaluations);
 

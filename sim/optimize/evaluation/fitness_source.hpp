@@ -19,7 +19,8 @@ class FitnessSource {
   [[nodiscard]] virtual std::size_t lookahead() const = 0;
   /// The scores of a candidate, one for each objective. Throws SearchEnded when the search must end.
   virtual std::vector<double> fitness(const Candidate& candidate) = 0;
-  /// From the next expect() or fitness() on: the score that a candidate needs to be of use (racing); nothing: none.
+  /// Sets the score that a candidate needs to be of use (racing), from the next expect() or fitness() on; nothing:
+  /// none.
   virtual void set_needed_score(std::optional<double> score) = 0;
 };
 

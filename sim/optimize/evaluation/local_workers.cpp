@@ -82,7 +82,7 @@ class LocalWorkers::Implementation {
       }
       const std::optional<int> ready = poll_workers(std::min(timeout, max_poll_time));
       if (!ready) {
-        return std::nullopt;  // a signal: the caller may want to stop
+        return std::nullopt;  // a signal: the caller may have to stop
       }
       for (std::uint32_t i = 0; *ready > 0 && i < workers_.size(); ++i) {
         if (workers_[i].readable) {

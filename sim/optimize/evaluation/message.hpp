@@ -19,9 +19,9 @@ using Bytes = std::vector<std::byte>;
 [[nodiscard]] Bytes to_bytes(std::span<const Task> tasks);
 [[nodiscard]] Bytes to_bytes(std::span<const TrialResult> results);
 
-/// Nothing if the bytes are not exactly tasks.
+/// The tasks that the bytes encode; nothing if the bytes are not exactly tasks.
 [[nodiscard]] std::optional<std::vector<Task>> tasks_from(std::span<const std::byte> bytes);
-/// Nothing if the bytes are not exactly results.
+/// The results that the bytes encode; nothing if the bytes are not exactly results.
 [[nodiscard]] std::optional<std::vector<TrialResult>> results_from(std::span<const std::byte> bytes);
 
 /// Two sockets that are connected and keep messages separate (SOCK_SEQPACKET). Throws std::system_error.

@@ -29,9 +29,9 @@ struct TrialResult {
 
 /// What becomes of a simulation's result. i: place of its scenario.
 struct RunWatch {
-  /// After each tick before the last; sets given_up to end the simulation. Null: nothing is done.
+  /// Called after each tick before the last; sets given_up to end the simulation. Null: nothing is done.
   std::function<void(std::size_t i, const sim::Simulation& simulation, TrialResult& result)> after_tick;
-  /// At the end of a simulation that neither failed nor was given up.
+  /// Called at the end of a simulation that neither failed nor was given up.
   std::function<void(std::size_t i, const sim::Simulation& simulation, TrialResult& result)> at_end;
 };
 

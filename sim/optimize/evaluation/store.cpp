@@ -38,7 +38,8 @@ class Store::Implementation {
       if (opening == Opening::resume) {
         require_same_experiment(path, *database_, experiment, result_key);
       }
-      // As for recordings: readers never block the writer, and a killed process leaves whole transactions.
+      // The journal is that of recordings: readers never block the writer, and a killed process leaves whole
+      // transactions.
       database_->execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; BEGIN IMMEDIATE; ROLLBACK");
       statements_ = std::make_unique<Statements>(*database_, columns_);
       read_last_numbers();

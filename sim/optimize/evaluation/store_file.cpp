@@ -129,7 +129,7 @@ StoreLock::StoreLock(const std::filesystem::path& store, const std::string& fail
   if (descriptor_ < 0) {
     throw StoreError(store.string() + ": " + failure + ": " + std::strerror(errno));
   }
-  // On a file system without such locks the store has none.
+  // On a file system without such locks the store is not locked.
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     close(descriptor_);
     throw StoreError(store.string() + ": another program is writing to it; wait until it ends, or stop it");

@@ -25,7 +25,8 @@ inline constexpr sim::PhysicsEngine judging_engine = sim::PhysicsEngine::ode;
 struct Task {
   std::uint32_t run = 0;     ///< repetition of the experiment, from 0
   std::uint64_t number = 0;  ///< of the evaluation in its run, from 0: the individual
-  /// From 0. From the experiment's number of trials on: fresh runs of a finalist, in the judging engine.
+  /// Number of the trial, from 0. From the experiment's number of trials on: fresh runs of a finalist, in the judging
+  /// engine.
   std::uint32_t trial = 0;
   Candidate candidate;
   /// Racing: the trial is given up if its score, extrapolated, is below this.

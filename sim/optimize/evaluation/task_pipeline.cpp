@@ -64,7 +64,7 @@ void TaskPipeline::set_wanted(std::span<const Task> tasks) {
   drop_unwanted(wanted_before);
 }
 
-/// With ResultScope::all_numbers a result stays: it may be wanted again.
+/// Drops results that nobody wants. With ResultScope::all_numbers a result stays: it may be wanted again.
 void TaskPipeline::drop_unwanted(const std::unordered_map<Task, Task, TaskHash>& wanted_before) {
   for (const auto& [its_key, task] : wanted_before) {
     const auto known = results_.find(its_key);

@@ -38,7 +38,7 @@ class TaskPipeline {
   /// Replaces the wanted tasks; the first ones are simulated first. Tasks that workers already have continue.
   void set_wanted(std::span<const Task> tasks);
   /// Gives idle workers tasks and collects results: all that are ready, or else the first one within the time. Workers
-  /// that are idle afterwards wait for the next call: the optimiser may want other tasks after a result.
+  /// that are idle afterwards wait for the next call: the optimiser may request other tasks after a result.
   void run(std::chrono::milliseconds timeout);
 
   /// Whether the result of a wanted task has arrived.

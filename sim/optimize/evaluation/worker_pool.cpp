@@ -28,10 +28,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// An idle worker waits so long for more tasks than there are: the searches that got their results a moment ago are
-/// about to ask for the next ones.
+/// Time for which an idle worker waits for more tasks than there are: the searches that got their results a moment ago
+/// are about to ask for the next ones.
 constexpr milliseconds collecting_time{5};
-/// Without an idle worker nothing is urgent but results.
+/// Longest time until results are read. Without an idle worker nothing else is urgent.
 constexpr milliseconds result_time{100};
 
 constexpr const char* pool_has_ended = "the process that simulates for all searches has ended";
@@ -151,7 +151,7 @@ class Pool {
     }
   }
 
-  /// From the front of the queue: its share for an idle worker. The judging engine has no batches.
+  /// Takes the share of an idle worker from the front of the queue. The judging engine has no batches.
   [[nodiscard]] std::vector<TicketedTask> take_batch() {
     const auto is_alone = [&](const Task& task) { return is_judged(experiment_) && is_fresh_run(experiment_, task); };
     const std::size_t idle = workers_.idle();

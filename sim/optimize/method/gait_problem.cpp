@@ -4,8 +4,7 @@
 
 namespace proleg::optimize {
 
-GaitProblemHub::GaitProblemHub(const SearchSpace& space, const std::vector<Objective>& objectives,
-                               FitnessSource& source)
+GaitEvaluator::GaitEvaluator(const SearchSpace& space, const std::vector<Objective>& objectives, FitnessSource& source)
     : space_(space), objectives_(objectives), source_(source) {
   for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
     if (space.dimensions[i].values.size() > 1) {
@@ -15,11 +14,11 @@ GaitProblemHub::GaitProblemHub(const SearchSpace& space, const std::vector<Objec
   answer = [this](const std::vector<double>& x) { return costs(source_.fitness(candidate(x))); };
 }
 
-double GaitProblemHub::last_index(std::size_t i) const {
+double GaitEvaluator::last_index(std::size_t i) const {
   return static_cast<double>(space_.dimensions[choices_[i]].values.size() - 1);
 }
 
-Candidate GaitProblemHub::candidate(const std::vector<double>& x) const {
+Candidate GaitEvaluator::candidate(const std::vector<double>& x) const {
   Candidate result(space_.dimensions.size(), 0);
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     if (x[i] > 0.0) {  // false for NaN
@@ -29,7 +28,7 @@ Candidate GaitProblemHub::candidate(const std::vector<double>& x) const {
   return result;
 }
 
-std::vector<double> GaitProblemHub::numbers(const Candidate& candidate) const {
+std::vector<double> GaitEvaluator::numbers(const Candidate& candidate) const {
   std::vector<double> result;
   result.reserve(choices_.size());
   for (const std::size_t dimension : choices_) {
@@ -38,7 +37,7 @@ std::vector<double> GaitProblemHub::numbers(const Candidate& candidate) const {
   return result;
 }
 
-std::vector<double> GaitProblemHub::costs(const std::vector<double>& scores) const {
+std::vector<double> GaitEvaluator::costs(const std::vector<double>& scores) const {
   std::vector<double> result;
   result.reserve(objectives_.size());
   for (std::size_t i = 0; i < objectives_.size(); ++i) {
@@ -48,13 +47,13 @@ std::vector<double> GaitProblemHub::costs(const std::vector<double>& scores) con
 }
 
 std::pair<std::vector<double>, std::vector<double>> GaitProblem::get_bounds() const {
-  if (hub_ == nullptr) {
+  if (evaluator_ == nullptr) {
     return {{0.0}, {1.0}};
   }
   std::pair<std::vector<double>, std::vector<double>> bounds;
-  for (std::size_t i = 0; i < hub_->size(); ++i) {
+  for (std::size_t i = 0; i < evaluator_->size(); ++i) {
     bounds.first.push_back(0.0);
-    bounds.second.push_back(hub_->last_index(i));
+    bounds.second.push_back(evaluator_->last_index(i));
   }
   return bounds;
 }

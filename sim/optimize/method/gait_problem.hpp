@@ -10,15 +10,15 @@
 
 namespace proleg::optimize {
 
-/// All copies that pagmo makes of a GaitProblem share one hub. It turns a vector of numbers into a candidate and its
-/// costs.
+/// Turns a vector of numbers into a candidate and its costs. All copies that pagmo makes of a GaitProblem share one, so
+/// it is a class of its own.
 ///
 /// The vector has one number for each dimension that has a choice (more than one value): the index of its value, as a
 /// real number from 0 to n - 1. The candidate is at the nearest index. So the step of every value set is 1.
-class GaitProblemHub {
+class GaitEvaluator {
  public:
-  /// All three arguments must outlive the hub.
-  GaitProblemHub(const SearchSpace& space, const std::vector<Objective>& objectives, FitnessSource& source);
+  /// All three arguments must outlive the evaluator.
+  GaitEvaluator(const SearchSpace& space, const std::vector<Objective>& objectives, FitnessSource& source);
 
   [[nodiscard]] std::size_t size() const { return choices_.size(); }  ///< length of the vectors
   [[nodiscard]] std::size_t objectives() const { return objectives_.size(); }
@@ -45,17 +45,19 @@ class GaitProblemHub {
 class GaitProblem {
  public:
   GaitProblem() = default;  ///< required by pagmo; never evaluated
-  /// hub must outlive all copies; its size() is at least 1.
-  explicit GaitProblem(GaitProblemHub& hub) : hub_(&hub) {}
+  /// evaluator must outlive all copies; its size() is at least 1.
+  explicit GaitProblem(GaitEvaluator& evaluator) : evaluator_(&evaluator) {}
 
-  [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const { return hub_->answer(x); }
+  [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const { return evaluator_->answer(x); }
   [[nodiscard]] std::pair<std::vector<double>, std::vector<double>> get_bounds() const;
-  [[nodiscard]] std::vector<double>::size_type get_nobj() const { return hub_ == nullptr ? 1 : hub_->objectives(); }
+  [[nodiscard]] std::vector<double>::size_type get_nobj() const {
+    return evaluator_ == nullptr ? 1 : evaluator_->objectives();
+  }
   [[nodiscard]] std::string get_name() const { return "gait"; }
-  [[nodiscard]] GaitProblemHub& hub() const { return *hub_; }
+  [[nodiscard]] GaitEvaluator& evaluator() const { return *evaluator_; }
 
  private:
-  GaitProblemHub* hub_ = nullptr;
+  GaitEvaluator* evaluator_ = nullptr;
 };
 
 }  // namespace proleg::optimize

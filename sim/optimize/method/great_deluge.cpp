@@ -206,7 +206,7 @@ class GreatDeluge::DelugeSearch {
     }
     if (announced_water_ != water) {
       announced_water_ = water;
-      gait_->hub().source().set_needed_score(gait_->hub().costs({-water})[0]);
+      gait_->evaluator().source().set_needed_score(gait_->evaluator().costs({-water})[0]);
     }
   }
 
@@ -218,22 +218,22 @@ class GreatDeluge::DelugeSearch {
     if (gait_ == nullptr) {
       return;
     }
-    const GaitProblemHub& hub = gait_->hub();
-    const std::size_t count = hub.source().lookahead();
+    const GaitEvaluator& evaluator = gait_->evaluator();
+    const std::size_t count = evaluator.source().lookahead();
     std::vector<Candidate> next;
     while (next.size() < std::min<std::size_t>(count, times)) {
-      next.push_back(hub.candidate(again));
+      next.push_back(evaluator.candidate(again));
     }
     for (; next.size() < count && next_turn(chains, turn); ++turn) {
       const std::vector<double> place = chains[turn].draw(settings_, algorithm_.seed_, box_);
-      next.push_back(hub.candidate(place));
+      next.push_back(evaluator.candidate(place));
       if (chains[turn].acceptance_rate > 0.5 && !algorithm_.scores_depend_on_level_) {
         chains[turn].accept(settings_, place);
       } else {
         chains[turn].fail(settings_);
       }
     }
-    hub.source().expect(next);
+    evaluator.source().expect(next);
   }
 
   void log(const DelugeChain& chain, const std::vector<double>& place, double level, double radius, bool accepted) {
@@ -309,10 +309,10 @@ std::string search_great_deluge(const Experiment& experiment, std::uint32_t run,
       settings.target = -*settings.target;
     }
   }
-  GaitProblemHub hub(experiment.space, experiment.objectives, source);
-  pagmo::population population{pagmo::problem{GaitProblem{hub}}, 0U, static_cast<unsigned>(seed)};
+  GaitEvaluator evaluator(experiment.space, experiment.objectives, source);
+  pagmo::population population{pagmo::problem{GaitProblem{evaluator}}, 0U, static_cast<unsigned>(seed)};
   for (const Candidate& start : starts) {
-    population.push_back(hub.numbers(start));
+    population.push_back(evaluator.numbers(start));
   }
   GreatDeluge deluge(settings, seed);
   deluge.set_scores_depend_on_level(experiment.racing.on());

@@ -28,10 +28,10 @@ class RequestPredictor {
   /// Thrown through an algorithm that stagnates, when its candidates no longer differ.
   struct Stagnated {};
 
-  /// hub receives the requests of the algorithm's problem; it must outlive the predictor, which answers them from now
-  /// on. population: number of evaluations in a generation. stagnates: whether to end when all requests of a generation
-  /// lie within half a step, or are the same candidate.
-  RequestPredictor(GaitProblemHub& hub, std::uint32_t population, bool stagnates);
+  /// evaluator receives the requests of the algorithm's problem; it must outlive the predictor, which answers them from
+  /// now on. population: number of evaluations in a generation. stagnates: whether to end when all requests of a
+  /// generation lie within half a step, or are the same candidate.
+  RequestPredictor(GaitEvaluator& evaluator, std::uint32_t population, bool stagnates);
 
   /// Runs `perform`. rehearse: does the work of `perform` on copies, any number of times, and changes nothing else.
   void run(const std::function<void()>& rehearse, const std::function<void()>& perform);
@@ -46,7 +46,7 @@ class RequestPredictor {
   void check_stagnation(const std::vector<double>& x);
   [[nodiscard]] std::size_t remaining() const { return expected_.size() - next_; }
 
-  GaitProblemHub& hub_;
+  GaitEvaluator& evaluator_;
   std::uint32_t population_;
   bool stagnates_;
   std::uint64_t asked_ = 0;
@@ -76,12 +76,12 @@ constexpr double very_bad_cost = 1e30;
 /// Thrown through the algorithm to end a rehearsal.
 struct EnoughPredicted {};
 
-RequestPredictor::RequestPredictor(GaitProblemHub& hub, std::uint32_t population, bool stagnates)
-    : hub_(hub),
+RequestPredictor::RequestPredictor(GaitEvaluator& evaluator, std::uint32_t population, bool stagnates)
+    : evaluator_(evaluator),
       population_(population),
       stagnates_(stagnates),
-      min_checked_(std::max(population, static_cast<std::uint32_t>(2 * hub.size() + 3))) {
-  hub_.answer = [this](const std::vector<double>& x) { return answer(x); };
+      min_checked_(std::max(population, static_cast<std::uint32_t>(2 * evaluator.size() + 3))) {
+  evaluator_.answer = [this](const std::vector<double>& x) { return answer(x); };
 }
 
 void RequestPredictor::run(const std::function<void()>& rehearse, const std::function<void()>& perform) {
@@ -97,18 +97,18 @@ std::vector<double> RequestPredictor::answer(const std::vector<double>& x) {
   if (is_rehearsing_) {
     return answer_rehearsal(x);
   }
-  const Candidate candidate = hub_.candidate(x);
+  const Candidate candidate = evaluator_.candidate(x);
   if (stagnates_) {
     check_stagnation(x);
   }
   const bool needs_more = asked_ % population_ == 0 && raise_needed_score();
   const bool is_unpredicted = remaining() == 0 || expected_[next_] != candidate;
-  if (is_unpredicted || (!expected_all_ && remaining() < hub_.source().lookahead())) {
+  if (is_unpredicted || (!expected_all_ && remaining() < evaluator_.source().lookahead())) {
     predict(candidate);
   } else if (needs_more) {
-    hub_.source().expect(std::span(expected_).subspan(next_));
+    evaluator_.source().expect(std::span(expected_).subspan(next_));
   }
-  std::vector<double> costs = hub_.costs(hub_.source().fitness(candidate));
+  std::vector<double> costs = evaluator_.costs(evaluator_.source().fitness(candidate));
   ++next_;
   ++asked_;
   if (!best_cost_ || costs[0] < *best_cost_) {
@@ -123,19 +123,19 @@ std::vector<double> RequestPredictor::answer_rehearsal(const std::vector<double>
   if (repeated_ < answered_.size()) {
     return answered_[repeated_++];
   }
-  if (expected_.size() == 2 * static_cast<std::size_t>(population_) + hub_.source().lookahead()) {
+  if (expected_.size() == 2 * static_cast<std::size_t>(population_) + evaluator_.source().lookahead()) {
     throw EnoughPredicted{};
   }
-  expected_.push_back(hub_.candidate(x));
-  return std::vector<double>(hub_.objectives(), very_bad_cost);
+  expected_.push_back(evaluator_.candidate(x));
+  return std::vector<double>(evaluator_.objectives(), very_bad_cost);
 }
 
 bool RequestPredictor::raise_needed_score() {
-  if (hub_.objectives() > 1 || !has_new_best_) {  // with several scores none of them decides
+  if (evaluator_.objectives() > 1 || !has_new_best_) {  // with several scores none of them decides
     return false;
   }
   has_new_best_ = false;
-  hub_.source().set_needed_score(hub_.costs({*best_cost_})[0]);
+  evaluator_.source().set_needed_score(evaluator_.costs({*best_cost_})[0]);
   return true;
 }
 
@@ -156,7 +156,7 @@ void RequestPredictor::predict(const Candidate& wanted) {
     expected_.assign(1, wanted);
     expected_all_ = true;
   }
-  hub_.source().expect(expected_);
+  evaluator_.source().expect(expected_);
 }
 
 void RequestPredictor::check_stagnation(const std::vector<double>& x) {
@@ -173,7 +173,7 @@ void RequestPredictor::check_stagnation(const std::vector<double>& x) {
   if (checked_++ == 0) {
     min_ = x;
     max_ = x;
-    first_ = hub_.candidate(x);
+    first_ = evaluator_.candidate(x);
     all_equal_ = true;
     return;
   }
@@ -181,7 +181,7 @@ void RequestPredictor::check_stagnation(const std::vector<double>& x) {
     min_[i] = std::min(min_[i], x[i]);
     max_[i] = std::max(max_[i], x[i]);
   }
-  all_equal_ = all_equal_ && hub_.candidate(x) == first_;
+  all_equal_ = all_equal_ && evaluator_.candidate(x) == first_;
 }
 
 double spread_of_costs(const pagmo::population& population) {
@@ -190,19 +190,19 @@ double spread_of_costs(const pagmo::population& population) {
   return spread > 0.0 ? spread : 1.0;
 }
 
-double max_index(const GaitProblemHub& hub) {
+double max_index(const GaitEvaluator& evaluator) {
   double max = 0.0;
-  for (std::size_t i = 0; i < hub.size(); ++i) {
-    max = std::max(max, hub.last_index(i));
+  for (std::size_t i = 0; i < evaluator.size(); ++i) {
+    max = std::max(max, evaluator.last_index(i));
   }
   return max;
 }
 
 /// Whether all individuals are the same candidate.
-bool is_one_candidate(const pagmo::population& population, const GaitProblemHub& hub) {
+bool is_one_candidate(const pagmo::population& population, const GaitEvaluator& evaluator) {
   const auto& places = population.get_x();
-  const Candidate first = hub.candidate(places.front());
-  return std::ranges::all_of(places, [&](const auto& place) { return hub.candidate(place) == first; });
+  const Candidate first = evaluator.candidate(places.front());
+  return std::ranges::all_of(places, [&](const auto& place) { return evaluator.candidate(place) == first; });
 }
 
 /// Runs searches one after another, each from its own population, until the generations are used up.
@@ -212,11 +212,11 @@ class PagmoSearch {
       : settings_(std::get<PagmoSettings>(experiment.method)),
         chosen_(*find_pagmo_algorithm(settings_.algorithm)),
         seed_(seed),
-        hub_(experiment.space, experiment.objectives, source),
+        evaluator_(experiment.space, experiment.objectives, source),
         own_values_(settings_.start == Start::scenario
-                        ? std::optional(hub_.numbers(experiment.space.nearest(experiment.scenario)))
+                        ? std::optional(evaluator_.numbers(experiment.space.nearest(experiment.scenario)))
                         : std::nullopt),
-        problem_(GaitProblem{hub_}),
+        problem_(GaitProblem{evaluator_}),
         generations_(chosen_.evolves_by_generation ? settings_.generations : std::min(settings_.generations, 1U)) {
     source.set_needed_score(std::nullopt);
   }
@@ -233,17 +233,17 @@ class PagmoSearch {
  private:
   /// Searches for at least one generation, until none is left or the search converges. Returns why it ended.
   std::string run_from(std::uint64_t seed) {
-    RequestPredictor predictor(hub_, settings_.population, chosen_.stagnates);
+    RequestPredictor predictor(evaluator_, settings_.population, chosen_.stagnates);
     try {
       pagmo::population population;
       predictor.run([&] { static_cast<void>(make_population(seed)); }, [&] { population = make_population(seed); });
       own_values_.reset();
       const pagmo::algorithm algorithm = chosen_.make({.settings = settings_,
                                                        .seed = static_cast<unsigned>(seed >> 32U),
-                                                       .variables = hub_.size(),
-                                                       .max_index = max_index(hub_),
+                                                       .variables = evaluator_.size(),
+                                                       .max_index = max_index(evaluator_),
                                                        .cost_spread = spread_of_costs(population),
-                                                       .objectives = hub_.objectives()});
+                                                       .objectives = evaluator_.objectives()});
       double best = best_cost(population);
       std::uint32_t without_gain = 0;
       while (generations_ > 0 && (without_gain < settings_.restart_after || settings_.restart_after == 0)) {
@@ -255,7 +255,7 @@ class PagmoSearch {
                       [&] { population = algorithm.evolve(population); });
         const std::uint64_t due =
             chosen_.evolves_by_generation ? 1 : std::uint64_t{settings_.generations} * settings_.population;
-        if (predictor.asked() - asked_before < due || (chosen_.stagnates && is_one_candidate(population, hub_))) {
+        if (predictor.asked() - asked_before < due || (chosen_.stagnates && is_one_candidate(population, evaluator_))) {
           return "converged";
         }
         const double now = best_cost(population);
@@ -286,7 +286,7 @@ class PagmoSearch {
   const PagmoSettings& settings_;
   const PagmoAlgorithm& chosen_;
   std::uint64_t seed_;
-  GaitProblemHub hub_;
+  GaitEvaluator evaluator_;
   std::optional<std::vector<double>> own_values_;  ///< values in the first population of the first start
   pagmo::problem problem_;
   std::uint64_t generations_;  ///< number of generations left

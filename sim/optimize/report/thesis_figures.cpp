@@ -165,7 +165,7 @@ std::vector<Level> reference_levels(std::span<const Reference> references) {
   return levels;
 }
 
-/// The best of all runs of a method, as a level.
+/// A line across the picture at the best score of all runs of a method.
 std::vector<Level> best_level(const BestCurves& curves, const std::string& colour) {
   if (curves.max.empty()) {
     return {};
@@ -173,7 +173,7 @@ std::vector<Level> best_level(const BestCurves& curves, const std::string& colou
   return {{curves.max.back(), "best " + fixed_text(curves.max.back(), 3), colour, dotted}};
 }
 
-/// The thesis's best for a method, as a level.
+/// A line across the picture at the best score that the thesis has for a method.
 std::vector<Level> thesis_level(const ThesisExperiment& experiment, const MethodRuns& method,
                                 const std::string& colour) {
   const ThesisResult* const thesis = find_thesis_result(experiment.name, method.method);

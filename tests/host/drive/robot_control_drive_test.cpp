@@ -29,16 +29,19 @@ TEST_F(ServoRun, TheGoalsOfFiveSecondsAreTheSetpointsOfSimulate) {
     const sim::Scenario scenario = shipped_gait(name);
     constexpr std::uint32_t ticks = 500;
     servos = ServoEmulator(5);
-    std::uint64_t first_tick_us = 0;
+    std::vector<std::size_t> first_goals;  // of the gait, for each servo; the ramp has others before
     RobotControlDrive options;
     options.ticks = ticks;
-    options.before_tick = [&](ScenarioGait& gait) {
-      first_tick_us = gait.chain().tick() == 0 ? now_us : first_tick_us;
+    options.observer = [&](const host::GaitDriver::Tick& tick) {
+      for (std::size_t joint = 0; tick.number == 0 && joint < 5; ++joint) {
+        first_goals.push_back(servos.servos[joint].goals.size() - 1);
+      }
     };
     const DriveResult result = drive(scenario, options);
     ASSERT_FALSE(result.failure) << *result.failure;
     EXPECT_EQ(result.gait_ticks, ticks);
     EXPECT_EQ(result.late_ticks, 0U);
+    ASSERT_EQ(first_goals.size(), 5U);
 
     std::vector<std::vector<std::int32_t>> expected(5);
     sim::Simulation simulation(scenario);
@@ -50,11 +53,10 @@ TEST_F(ServoRun, TheGoalsOfFiveSecondsAreTheSetpointsOfSimulate) {
     }
     for (std::size_t joint = 0; joint < 5; ++joint) {
       std::vector<std::int32_t> sent;
-      for (const EmulatedServo::Goal& goal : servos.servos[joint].goals) {
-        if (goal.time_us >= first_tick_us && sent.size() < ticks) {
-          EXPECT_TRUE(goal.has_power);
-          sent.push_back(goal.position);
-        }
+      const std::vector<EmulatedServo::Goal>& goals = servos.servos[joint].goals;
+      for (std::size_t i = first_goals[joint]; i < goals.size() && sent.size() < ticks; ++i) {
+        EXPECT_TRUE(goals[i].has_power);
+        sent.push_back(goals[i].position);
       }
       EXPECT_EQ(sent, expected[joint]) << name << " joint " << joint;
     }

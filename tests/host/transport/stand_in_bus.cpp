@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   if (std::string(argv[1]) == "stay") {
     signal(SIGTERM, SIG_IGN);
   }
-  alarm(120);  // in case the test has been killed
+  alarm(1200);  // in case the test has been killed
   boost::asio::io_context context;
   Bus bus(context, argv[1]);
   if (std::string(argv[1]) == "offer") {

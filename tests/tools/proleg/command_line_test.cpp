@@ -85,7 +85,7 @@ TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
 TEST_F(CommandLine, SimulatePrintsOneJsonObjectWithTheFiguresOfTheRun) {
   const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "2", "--json"});
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_TRUE(finished.err.empty()) << "no progress in the first ten seconds: " << finished.err;
+  EXPECT_EQ(finished.err, "");
   const Json object(finished.out);
   EXPECT_GT(object["displacement_m"].number(), 0.03);
   EXPECT_DOUBLE_EQ(object["simulated_s"].number(), 2.0);

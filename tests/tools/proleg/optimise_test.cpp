@@ -12,7 +12,7 @@ namespace {
 TEST_F(Optimise, PrintsTheBestAndWritesStoreTablesFiguresAndTheBestScenario) {
   const Finished finished = proleg(words("great_deluge", "out", {"--evaluations", "12"}));
   const Json object = json_of(finished);
-  EXPECT_TRUE(finished.err.empty()) << "no progress in the first ten seconds: " << finished.err;
+  EXPECT_EQ(finished.err, "");
   EXPECT_EQ(object["evaluations"], 12);
   EXPECT_EQ(object["best_values"].size(), 5U);
   EXPECT_TRUE(object["best_values"].contains("amplitude:J5"));

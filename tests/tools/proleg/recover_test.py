@@ -7,7 +7,6 @@ Usage: recover_test.py SOURCE_FOLDER PROGRAM_FOLDER
 import json
 import random
 import struct
-import subprocess
 import sys
 import tempfile
 import unittest

@@ -74,6 +74,14 @@ class ResultKey(unittest.TestCase):
                     "gcc 12.2;-O2;ODE 0.16.3"]
         self.assertEqual(len({self.key(each) for each in settings}), 4)
 
+    def test_changes_with_a_library_of_the_system(self):
+        sources = "source sim/ode/world.cpp -O2"
+        keys = set()
+        for libraries in [(), ("library libassimp.so.5.2.5",), ("library libassimp.so.5.2.6",)]:
+            self.list_sources(*libraries, sources)
+            keys.add(self.key())
+        self.assertEqual(len(keys), 3)
+
     def test_stays_when_other_files_change_or_the_tree_moves(self):
         key = self.key()
         for path in ["tools/other.cpp", "docs/notes.md"]:
@@ -112,6 +120,18 @@ class KeyOfTheProgram(unittest.TestCase):
     def test_is_the_hash_of_the_listed_files(self):
         header = (BUILD / "build_id_text/result_key_text.hpp").read_text()
         self.assertIn(hashlib.sha256(self.hashed).hexdigest(), header)
+
+    def test_lists_every_library_that_the_program_loads(self):
+        of_the_compiler = re.compile(r"lib(stdc\+\+|m|gcc_s|c|pthread|asan|ubsan)\.so|ld-linux")
+        dynamic = subprocess.run(["readelf", "--dynamic", "--wide", BUILD / "bin/proleg-optimise"], check=True, text=True,
+                                 capture_output=True).stdout
+        listed = re.findall(r"^library (\S+)$", self.hashed.decode(), re.MULTILINE)
+        loaded = [name for name in re.findall(r"NEEDED.*\[(\S+)\]", dynamic) if not of_the_compiler.match(name)]
+        for expected in ["libode", "libpagmo", "libga", "libassimp", "libqhull_r"]:
+            self.assertTrue(any(name.startswith(expected) for name in loaded), expected)
+        for name in loaded:
+            with self.subTest(name):
+                self.assertTrue(any(file.startswith(name) for file in listed), listed)
 
     def test_lists_every_file_of_the_program_with_its_hash(self):
         listed = dict(re.findall(r"^(\S+) ([0-9a-f]{64})$", self.hashed.decode(), re.MULTILINE))

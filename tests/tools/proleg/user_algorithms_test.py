@@ -210,7 +210,8 @@ class UserAlgorithms(unittest.TestCase):
     def evaluations(self):
         """How many the search has stored."""
         try:
-            with contextlib.closing(sqlite3.connect(self.folder / "parts/store.sqlite")) as store:
+            # Without `mode` a file would be made, which the search takes for the store of another one.
+            with contextlib.closing(sqlite3.connect(f"file:{self.folder}/parts/store.sqlite?mode=rw", uri=True)) as store:
                 return store.execute("SELECT count(*) FROM evaluation").fetchone()[0]
         except sqlite3.OperationalError:  # it has not made its store yet, or is writing
             return 0

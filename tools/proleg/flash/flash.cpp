@@ -367,7 +367,7 @@ int Flashing::run() {
   return bad == 0 && changed == 0 && silent_.empty() ? exit_success : exit_failed;
 }
 
-/// With a probe, on a chip without a bootloader.
+/// Flashes with a probe a chip that has no bootloader.
 int run_bare(const FlashOptions& options) {
   const struct {
     const char* name;

@@ -97,7 +97,7 @@ BareProbe parse_probe(const std::optional<std::string>& word) {
   throw InputError("--probe", 0, in_quotes(*word), expected);
 }
 
-/// Absolute: the commands run in another folder.
+/// The port as an absolute path, because the commands run in another folder.
 std::string parse_port(const BareOptions& options, BareProbe probe) {
   if (probe != BareProbe::uart) {
     if (options.port) {

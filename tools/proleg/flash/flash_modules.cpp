@@ -113,7 +113,7 @@ void ask_programs(BusAccess& bus, std::span<FlashCandidate> modules) {
 
 namespace {
 
-/// Whether a module is missing that was asked for, or has been heard.
+/// Whether a module is missing that was asked for, or that has sent frames.
 bool is_any_missing(const FoundModules& found, const std::optional<std::vector<std::uint8_t>>& nodes) {
   if (!nodes) {
     return found.modules.empty() || !found.silent.empty();

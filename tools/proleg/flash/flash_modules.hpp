@@ -17,7 +17,7 @@ namespace proleg::tools {
 struct FoundModules {
   std::vector<host::FlashCandidate> modules;  ///< by node id, those without one last
   std::vector<std::uint8_t> foreign;          ///< nodes that are no joint modules
-  std::vector<std::uint8_t> silent;           ///< node ids that were heard, and belong to no module that was found
+  std::vector<std::uint8_t> silent;           ///< node ids that sent frames, and belong to no module that was found
 };
 
 enum class SilentSearch : std::uint8_t { after_signs, always };

@@ -69,7 +69,7 @@ std::string revisions_text(const Header& header) {
              : "hardware revisions " + lowest + " to " + std::to_string(header.highest_revision);
 }
 
-/// In percent.
+/// The share of a slot that the image takes, in percent.
 std::string slot_share_text(const Header& header) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.1f", 100.0 * header.length / host::slot_room);

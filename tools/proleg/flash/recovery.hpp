@@ -65,7 +65,7 @@ class Recovery {
   void look();
   void ask_all();
   void await_absent();
-  /// Null: no module has this serial number.
+  /// The module with this serial number; null: none has it.
   [[nodiscard]] RecoveredModule* find(std::uint32_t serial);
   void diagnose(RecoveredModule& module);
   void require_no_power() const;

@@ -36,7 +36,7 @@ class MovingJoint {
  public:
   /// Returns when the joint moves.
   MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMotionOptions& options);
-  /// Without stop(): takes the power as well as it can.
+  /// If stop() was not called: takes the power as well as it can.
   ~MovingJoint();
   MovingJoint(const MovingJoint&) = delete;
   MovingJoint& operator=(const MovingJoint&) = delete;

@@ -67,7 +67,7 @@ class Drive {
     throw std::runtime_error(reason);
   }
 
-  /// Until the end of the run, or until the user ends it. Throws std::runtime_error if the robot fails.
+  /// Follows the run to its end, or until the user ends it. Throws std::runtime_error if the robot fails.
   void follow() {
     RunProgress progress("driving", run_.scenario.duration_s);
     while (check().ticks() < run_.ticks && !interrupted() && !wants_stop_) {
@@ -116,7 +116,8 @@ class Drive {
  private:
   static constexpr Microseconds look_period_us = 20'000;
 
-  /// At the end of a run: a joint that has just lost its gait must not pass as one that has followed it.
+  /// Looks at the joints at the end of a run: one that has just lost its gait must not pass as one that has followed
+  /// it.
   void look_at_the_joints() {
     constexpr Microseconds at_most = 1'000'000;
     gait_.gait_watch().look_at_all();

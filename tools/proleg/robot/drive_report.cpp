@@ -10,7 +10,7 @@
 namespace proleg::tools {
 namespace {
 
-/// Of all bits of the set-points; empty if no module was asked.
+/// The verdict on all bits of the set-points; empty if no module was asked.
 std::string setpoint_verdict(const GaitCheck& check) {
   if (!check.different_setpoints().empty()) {
     return "the set-points of " + listed(check.different_setpoints()) +

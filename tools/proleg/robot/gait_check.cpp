@@ -17,7 +17,7 @@ std::string bytes_text(const StateFrame& frame) {
   return text;
 }
 
-/// Without what the gait does not decide: the drive's fault, and whether a SYNC was missing.
+/// The frame without what the gait does not decide: the drive's fault, and whether a SYNC was missing.
 StateFrame comparable(StateFrame frame) {
   constexpr unsigned not_computed = StateFrame::fault | StateFrame::holdover;
   frame.bytes[6] = static_cast<std::uint8_t>(frame.bytes[6] & ~not_computed);

@@ -43,9 +43,9 @@ class GaitCheck {
   /// modules do not measure is 0.
   [[nodiscard]] sim::TickSample sample(const host::RobotDrive& drive);
 
-  /// Of the gait, after the last tick: 90 degrees = 2^30.
+  /// The set-points of the gait after the last tick: 90 degrees = 2^30.
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return gait_.chain().setpoints(); }
-  /// Of the run, without those while the robot stopped.
+  /// Number of ticks of the run, without those while the robot stopped.
   [[nodiscard]] std::uint32_t ticks() const { return ticks_; }
   [[nodiscard]] std::uint64_t compared() const { return compared_; }
   [[nodiscard]] std::uint64_t missing() const { return missing_; }
@@ -87,7 +87,7 @@ class GaitCheck {
   std::vector<std::string> not_compared_setpoints_;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
-  // For sample().
+  // The samples that sample() returns refer to these.
   std::vector<std::uint8_t> link_contacts_;
   std::vector<std::int32_t> commands_;
   std::vector<sim::Pose> poses_;

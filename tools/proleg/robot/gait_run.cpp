@@ -222,7 +222,7 @@ void GaitRun::give_new_change(const std::string& what) {
   give_changes(what);
 }
 
-/// To the master: those that are behind the ones that it has. what: the last one. Throws InputError.
+/// Gives the master the changes that are behind those that it has. what: the last one. Throws InputError.
 void GaitRun::give_changes(const std::string& what) {
   if (!drive_.master().extend_changes(bus_.now(), changes_.span())) {
     changes_.remove_last();

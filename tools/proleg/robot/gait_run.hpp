@@ -78,12 +78,12 @@ class GaitRun {
 
   /// Sets the modules up and gives the servos power. Then state() is `running`, or has_ended().
   void start() { drive_.master().start(bus_.now()); }
-  /// From now on the joints should follow.
+  /// Watches from now on whether the joints follow.
   void watch() { watch_.start(bus_.now()); }
   [[nodiscard]] canopen::MasterState state() const { return drive_.master().state(); }
   /// The start has failed, the connection is lost, or a joint does not follow any more.
   [[nodiscard]] bool has_ended() const;
-  /// In one line.
+  /// The reason of the end in one line.
   [[nodiscard]] std::string why_ended() const;
 
   /// What the modules have reported since the last call, in lines. is_verbose: also the end of an error.
@@ -118,7 +118,7 @@ class GaitRun {
   static constexpr Microseconds stop_time_us = 20'000'000;
   /// Since stop(): whether all modules have confirmed that their servos have no power.
   [[nodiscard]] bool are_all_off() const { return are_all_off_ && state() == canopen::MasterState::stopped; }
-  /// Compares all bits of the set-points. After stop().
+  /// Compares all bits of the set-points. To be called after stop().
   void compare_setpoints();
 
   [[nodiscard]] host::RobotDrive& drive() { return drive_; }

@@ -119,7 +119,7 @@ void add_lines(Module& module, bool all) {
   add_algorithms(module, all);
 }
 
-/// With an object that shows whether the module answers at all.
+/// Reads the algorithms of each module. These objects also show whether the module answers at all.
 void read_algorithms_of(BusAccess& bus, host::SdoQueue& queue, std::vector<Module>& modules) {
   for (Module& module : modules) {
     for (std::uint8_t slot = 0; slot < max_slots; ++slot) {

@@ -40,7 +40,7 @@ class Mirror {
     double root_mean_square = 0.0;
     double largest = 0.0;  ///< absolute, degrees
   };
-  /// Of each joint; empty lines where nothing was measured.
+  /// The difference of each joint; empty lines where nothing was measured.
   [[nodiscard]] std::vector<Difference> differences() const;
 
   /// The differences as an SVG picture.
@@ -80,9 +80,9 @@ class MirroredRun {
 
   /// Writes the files. seconds: length of the run. check: of the real robot.
   void finish(double seconds, const GaitCheck& check);
-  /// For --json.
+  /// The results for --json.
   [[nodiscard]] Json json() const;
-  /// For people, on standard output.
+  /// Prints the results for people, on standard output.
   void print() const;
 
  private:

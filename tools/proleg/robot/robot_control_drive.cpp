@@ -11,6 +11,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/actuation_module.hpp"
+#include "sim/loop/gait.hpp"
 #include "tools/proleg/common/command_line.hpp"
 
 namespace proleg {
@@ -32,30 +33,23 @@ bool senses_contacts(const sim::Scenario& scenario) {
   });
 }
 
-/// Calls a hook before each tick.
-class HookedGait final : public host::SetpointSource {
+/// The gait of a scenario in memory, with its changes.
+class ScenarioGait final : public host::SetpointSource {
  public:
-  HookedGait(ScenarioGait& gait, const std::function<void(ScenarioGait&)>& hook) : gait_(gait), hook_(hook) {}
+  /// scenario: must outlive the gait.
+  explicit ScenarioGait(const sim::Scenario& scenario) : gait_(scenario) {}
 
-  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return gait_.setpoints(); }
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return gait_.chain().setpoints(); }
   void advance(std::span<const std::uint8_t> contacts) override {
-    if (hook_) {
-      hook_(gait_);
-    }
+    gait_.apply_due_changes();
     gait_.advance(contacts);
   }
 
  private:
-  ScenarioGait& gait_;
-  const std::function<void(ScenarioGait&)>& hook_;
+  sim::Gait gait_;
 };
 
 }  // namespace
-
-void ScenarioGait::advance(std::span<const std::uint8_t> contacts) {
-  gait_.apply_due_changes();
-  gait_.advance(contacts);
-}
 
 host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario) {
   const sim::RobotControlEntry& entry = entry_of(scenario);
@@ -115,8 +109,7 @@ host::DriveResult drive_robot_control(const sim::Scenario& scenario, const Robot
          " has none: all read 'not pressed'");
   }
   ScenarioGait gait(scenario);
-  HookedGait hooked(gait, drive.before_tick);
-  host::GaitDriver driver(control, hooked, drive_limits(scenario), drive.ticks, drive.observer);
+  host::GaitDriver driver(control, gait, drive_limits(scenario), drive.ticks, drive.observer);
   return host::drive(driver, clock, drive.must_stop);
 }
 

@@ -9,28 +9,10 @@
 
 #include "host/robot_control/gait_driver.hpp"
 #include "host/robot_control/robot_control.hpp"
-#include "sim/loop/gait.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg {
-
-/// The gait of a scenario in memory, with its changes.
-class ScenarioGait final : public host::SetpointSource {
- public:
-  /// scenario: must outlive the gait.
-  explicit ScenarioGait(const sim::Scenario& scenario) : gait_(scenario) {}
-  explicit ScenarioGait(const sim::Scenario&&) = delete;
-
-  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return chain().setpoints(); }
-  void advance(std::span<const std::uint8_t> contacts) override;
-  /// A change for the coming tick, beside those of the scenario.
-  void apply(const Change& change) { gait_.chain().apply(change); }
-  [[nodiscard]] const sim::KernelChain& chain() const { return gait_.chain(); }
-
- private:
-  sim::Gait gait_;
-};
 
 /// What the plug-in learns of the scenario's robot. Throws InputError if the robot's file has no <robot_control>.
 [[nodiscard]] host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario);
@@ -42,11 +24,10 @@ class ScenarioGait final : public host::SetpointSource {
 [[nodiscard]] host::Plugin robot_control_plugin(const sim::Scenario& scenario);
 
 struct RobotControlDrive {
-  std::uint32_t ticks = 0;                           ///< of the gait; 0: until must_stop
-  std::function<bool()> must_stop{};                 ///< asked before each tick; true ends the run with a ramp down
-  std::function<void(const std::string&)> show{};    ///< lines for the user; called from several threads, never at once
-  std::function<void(ScenarioGait&)> before_tick{};  ///< before each tick of the gait: may apply changes
-  host::GaitDriver::Observer observer{};             ///< after each tick of the gait
+  std::uint32_t ticks = 0;                         ///< of the gait; 0: until must_stop
+  std::function<bool()> must_stop{};               ///< asked before each tick; true ends the run with a ramp down
+  std::function<void(const std::string&)> show{};  ///< lines for the user; called from several threads, never at once
+  host::GaitDriver::Observer observer{};           ///< after each tick of the gait
 };
 
 /// Connects, ramps in, plays the gait, ramps down and takes the power from the servos. Nothing moves before all parts

@@ -25,10 +25,6 @@ constexpr double slowest_pose = 1.0;
 constexpr double fastest_pose = 180.0;
 constexpr double usual_pose_speed = 60.0;
 
-json text_or_null(const std::string& text) { return text.empty() ? json() : json(text); }
-
-std::string entry_name(const ChangeHistory::Entry* entry) { return entry == nullptr ? std::string() : entry->name; }
-
 json gait_json(const GaitCheck& check) {
   return {{"compared", check.compared()},
           {"differences", check.differences()},
@@ -367,7 +363,7 @@ void BusSession::poll_robot() {
   }
 }
 
-/// To the modules, when they have those before.
+/// Gives the modules the coming changes, when they have those before.
 void BusSession::give_changes() {
   if (!robot_->has_room_for_changes()) {
     return;
@@ -451,8 +447,8 @@ void BusSession::publish_session() {
                               {"started_with", robot_ ? text_or_null(started_with_) : json()},
                               {"recording", text_or_null(recording)},
                               {"changed", edits_.differs_from_file()},
-                              {"undo", text_or_null(entry_name(edits_.history().to_undo()))},
-                              {"redo", text_or_null(entry_name(edits_.history().to_redo()))},
+                              {"undo", text_or_null(edits_.history().name_to_undo())},
+                              {"redo", text_or_null(edits_.history().name_to_redo())},
                               {"failure", text_or_null(failure_)},
                               {"gait", gait_}});
 }

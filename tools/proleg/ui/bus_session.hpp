@@ -30,7 +30,7 @@ struct BusSessionOptions {
 
 class BusSession final : private SessionThread {
  public:
-  /// Does what `requests` has, and tells it `output`. file, bus, requests, output: must outlive the session. Another
+  /// Carries out `requests`, and reports to `output`. file, bus, requests, output: must outlive the session. Another
   /// thread must not use the bus.
   BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
              SessionRequests& requests, host::SessionOutput& output);
@@ -42,7 +42,7 @@ class BusSession final : private SessionThread {
 
  private:
   static constexpr std::chrono::milliseconds publish_period{500};
-  /// Nobody drives for so long: the robot stops.
+  /// The robot stops when nobody has driven for this time.
   static constexpr std::chrono::milliseconds longest_absence{1'000};
 
   // SessionThread
@@ -90,7 +90,7 @@ class BusSession final : private SessionThread {
   BusSessionOptions options_;
   host::BusConnection& bus_;
 
-  // Of the thread.
+  // The members from here on are used on the session's thread only.
   host::BusMonitor monitor_;
   host::BusAttachment monitor_attachment_;
   RobotStops stops_;

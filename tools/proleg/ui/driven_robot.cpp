@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t last_tick = 0xFFFF'FFFF;
 /// Commands for direct positions in a tick of 10 ms: they and the state frames of 60 modules fit on the bus.
 constexpr std::size_t commands_per_tick = 16;
-/// With which joints go to a gait that moves, degrees a second.
+/// Speed at which joints move to a gait that is running, in degrees a second.
 constexpr double joining_speed = 180.0;
 /// A joint that is so near to the gait has joined it: what it moves in two ticks at the greatest speed of a servo.
 constexpr std::int32_t nearness = (1 << 30) / 90 * 4;
@@ -225,7 +225,7 @@ void DrivenRobot::hold() {
   }
 }
 
-/// In all modules. For direct positions they say where they hold.
+/// Sets the mode of all modules. For direct positions the modules report first where they hold.
 void DrivenRobot::set_mode(std::int8_t mode) {
   mode_on_the_way_ = mode;
   gait_.drive().master().set_holds(mode == canopen::mode_direct_position);
@@ -275,7 +275,7 @@ void DrivenRobot::stop() {
 
 void DrivenRobot::quick_stop(const std::function<void(unsigned joint)>& confirmed) {
   for (unsigned joint = 0; joint < commands_.size(); ++joint) {
-    // Without waiting for answers first: this is the fast way, the other one is sure.
+    // Sends the frame without waiting for answers first: this is the fast way, the other one is sure.
     static_cast<void>(
         bus_.send(encode(canopen::Command{node(joint), canopen::quick_stop_controlword, targets_.positions()[joint]})));
   }

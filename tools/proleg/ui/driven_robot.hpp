@@ -65,7 +65,7 @@ class DrivenRobot {
     stopping,  ///< joints ramp to the safe pose, then servos lose their power
     stopped,
   };
-  /// What it tells, while poll() is called.
+  /// What it reports, while poll() is called.
   struct Listener {
     /// A tick is over. simulated_angles: rad, empty without a simulation beside the robot. measured: of each joint
     /// whether its angle is measured.
@@ -74,7 +74,7 @@ class DrivenRobot {
         tick;
     /// A change has become part of the gait.
     std::function<void(const Change& change)> changed;
-    /// For people, one line. is_error: the robot does not do what it should.
+    /// Reports one line for people. is_error: the robot does not do what it should.
     std::function<void(const std::string& line, bool is_error)> report;
   };
 
@@ -85,7 +85,7 @@ class DrivenRobot {
   DrivenRobot(const DrivenRobot&) = delete;
   DrivenRobot& operator=(const DrivenRobot&) = delete;
 
-  /// After time has passed on the bus.
+  /// Called after time has passed on the bus.
   void poll();
   [[nodiscard]] State state() const { return state_; }
   /// Why it stops by itself.

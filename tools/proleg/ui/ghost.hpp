@@ -18,7 +18,7 @@ namespace proleg::tools {
 
 class Ghost {
  public:
-  /// Of the simulated robot at a tick.
+  /// State of the simulated robot at a tick.
   struct State {
     std::vector<sim::Pose> link_poses;
     std::vector<double> joint_angles;    ///< rad

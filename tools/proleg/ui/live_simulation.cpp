@@ -310,7 +310,7 @@ void LiveSimulation::add_words(std::vector<LiveSetting> settings, bool with_tick
                                std::vector<std::string>& words) const {
   while (!settings.empty()) {
     const LiveSetting first = settings.front();
-    // The same value for all joints of the module is one word.
+    // One word sets the same value for all joints of the module.
     const auto is_same = [&](const LiveSetting& other) {
       return other.tick == first.tick && other.setting.slot == first.setting.slot &&
              other.setting.number == first.setting.number && other.setting.internal == first.setting.internal &&

@@ -108,14 +108,14 @@ class LiveSimulation {
 
   /// The last tick of the simulation, and its change.
   static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const Change* change);
-  /// Without what was done to the run before.
+  /// Forgets what was done to the run before.
   void clear_run();
   void begin();
   /// Whether a change for this tick or a later one sets the parameter.
   [[nodiscard]] bool was_asked_for(const ParameterPlace& place, std::uint32_t from_tick) const;
   [[nodiscard]] bool fits(std::uint32_t tick, const std::vector<Setting>& settings) const;
   void schedule(std::uint32_t tick, const Setting& setting);
-  /// Each of them as soon as possible.
+  /// Schedules each of them as soon as possible.
   void schedule_each(const std::vector<Setting>& settings);
   void add_words(std::vector<LiveSetting> settings, bool with_tick, std::vector<std::string>& words) const;
 

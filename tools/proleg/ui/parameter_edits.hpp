@@ -69,6 +69,9 @@ class ChangeHistory {
   /// The entry that undo takes back; null: none.
   [[nodiscard]] const Entry* to_undo() const { return done_ > 0 ? &entries_[done_ - 1] : nullptr; }
   [[nodiscard]] const Entry* to_redo() const { return done_ < entries_.size() ? &entries_[done_] : nullptr; }
+  /// The name of to_undo(), or nothing.
+  [[nodiscard]] std::string name_to_undo() const { return to_undo() == nullptr ? std::string() : to_undo()->name; }
+  [[nodiscard]] std::string name_to_redo() const { return to_redo() == nullptr ? std::string() : to_redo()->name; }
   /// Only if there is such an entry.
   void undone() { --done_; }
   void redone() { ++done_; }
@@ -86,7 +89,7 @@ class ParameterEdits {
   /// What words mean, as for --set, without a tick. Changes nothing. Throws InputError.
   [[nodiscard]] std::vector<Setting> read(const std::vector<std::string>& words) const;
 
-  // Each of these wants other values and returns them.
+  // Each of these changes the wanted values, and returns the new ones.
 
   /// Words as for read(). Internal values are among the result; they are not wanted longer than once. Throws
   /// InputError, and then changes nothing. gesture: as in ChangeHistory.
@@ -94,7 +97,7 @@ class ParameterEdits {
   /// Nothing if there is nothing to undo.
   std::optional<std::vector<Setting>> undo();
   std::optional<std::vector<Setting>> redo();
-  /// As the file has them.
+  /// Wants the values of the file again.
   std::vector<Setting> reset(const std::vector<ParameterPlace>& places);
 
   /// The places that names like those of set() mean, of each joint that they mean; without names all. Throws
@@ -130,7 +133,7 @@ class ChangeDelivery {
   /// Internal values that the modules are to get once.
   void add(const std::vector<Setting>& internal_values);
   /// The next change for the modules: all that is wanted and not given, but at most max_staged_values of a joint.
-  /// Empty: there is none.
+  /// Empty if there is nothing to give.
   [[nodiscard]] std::vector<Setting> next();
   /// The modules have made a change.
   void confirm(const Change& change);

@@ -59,11 +59,12 @@ class RowPyramid {
 /// A recording that viewers look at, finished or growing. It reads the file and never changes it.
 class RecordedRun {
  public:
-  /// Of a request for rows, and for each block of an answer.
+  /// Limits of a request for rows, and of each block of an answer.
   static constexpr std::uint32_t max_points = 2048;
   static constexpr std::size_t max_bytes = std::size_t{4} << 20U;
 
-  /// Which rows a viewer wants: of some signals, from tick `from` to tick `to`, in at most `points` rows or blocks.
+  /// The rows that a viewer requests: of some signals, from tick `from` to tick `to`, in at most `points` rows or
+  /// blocks.
   struct Request {
     std::vector<std::string> signals;
     std::uint32_t from = 0;
@@ -97,7 +98,7 @@ class RecordedRun {
   /// Names of the joints, from the head on.
   [[nodiscard]] std::vector<std::string> joint_names() const;
   [[nodiscard]] std::uint32_t tick_period_us() const { return tick_period_us_; }
-  /// As far as the file had grown when it was last read.
+  /// First and last tick of the file, as far as it had grown when it was last read.
   [[nodiscard]] std::uint32_t first_tick() const { return first_tick_; }
   [[nodiscard]] std::uint32_t last_tick() const { return last_tick_; }
 
@@ -105,7 +106,7 @@ class RecordedRun {
   [[nodiscard]] bool is_current() const;
 
  private:
-  /// A file as the system tells them apart.
+  /// The numbers by which the system distinguishes files.
   struct Identity {
     std::uint64_t device = 0;
     std::uint64_t number = 0;

@@ -65,7 +65,7 @@ class RecordedSession final : private SessionThread {
   static constexpr std::size_t max_open_runs = 6;
   static constexpr std::size_t max_comparisons = 2;
 
-  /// Does what `requests` has, and tells it `output`, which both must outlive the session. Throws InputError if there
+  /// Carries out `requests`, and reports to `output`, which both must outlive the session. Throws InputError if there
   /// is no such folder.
   RecordedSession(RecordedSessionOptions options, SessionRequests& requests, host::SessionOutput& output);
   ~RecordedSession() override;

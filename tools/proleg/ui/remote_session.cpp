@@ -30,7 +30,7 @@ constexpr host::RequestId own_request = host::RequestId{1} << 63U;
 constexpr const char* own_name = "remote control";
 
 constexpr RemoteTime values_period{100};
-/// For as long the values are published after a viewer has said that it looks at them.
+/// Time for which the values are published after a viewer has said that it looks at them.
 constexpr RemoteTime watch_time{5'000};
 constexpr RemoteTime search_period{1'000};
 
@@ -87,7 +87,7 @@ RemoteTime RemoteSession::now() {
 void RemoteSession::run() {
   try {
     devices_ = make_devices_(remote_);
-  } catch (const std::system_error& error) {
+  } catch (const std::exception& error) {
     remote_.problems_changed({"gamepads cannot be read: " + one_line(error.what())});
   }
   constexpr std::chrono::milliseconds pause_after_error{20};
@@ -96,7 +96,7 @@ void RemoteSession::run() {
       serve();
     } catch (const std::exception& error) {
       fail(one_line(error.what()));
-      std::this_thread::sleep_for(pause_after_error);  // an error that stays does not take the processor
+      std::this_thread::sleep_for(pause_after_error);  // an error that persists must not keep the processor busy
     }
   }
 }

@@ -30,7 +30,7 @@ class TaskQueue {
   /// Throws std::system_error if the system has no descriptors left.
   TaskQueue();
 
-  /// From any thread.
+  /// Posts a task, from any thread.
   void post(std::function<void()> task);
   /// Can be read when there are tasks.
   [[nodiscard]] int descriptor() const { return event_.number(); }
@@ -106,7 +106,7 @@ class RemoteSession final : public host::RobotSession, public host::SessionOutpu
   host::SessionOutput* viewers_ = nullptr;
   MakeDevices make_devices_;
 
-  // Of the thread.
+  // The members from here on are used on the thread of the remote control only.
   host::BindingStore store_;
   ParameterWords words_;
   host::RemoteControl remote_{*this};

@@ -30,7 +30,7 @@ class RepeatedRun {
   /// computed again, and as Recording does.
   RepeatedRun(const std::filesystem::path& path, std::uint32_t last_tick);
 
-  /// As the recorded files have it, with the options that the run was started with.
+  /// The scenario of the recorded files, with the options that the run was started with.
   [[nodiscard]] const sim::Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const RunInputs& inputs() const { return inputs_; }
   /// Frames that were lost, to the end of the recording.
@@ -48,7 +48,7 @@ class RepeatedRun {
   [[nodiscard]] std::string verdict() const;
 
  private:
-  /// Of a recorded tick: what would differ first.
+  /// The parts of a recorded tick that would differ first.
   struct Expected {
     std::vector<std::int32_t> setpoints;
     sim::Pose head;

@@ -31,7 +31,7 @@ class RobotStops {
   /// The robot starts again: no module has a STOP.
   void clear();
 
-  /// Of each joint whether its module has confirmed the last STOP; nothing: there was none since clear().
+  /// Whether the module of each joint has confirmed the last STOP; nothing: there was none since clear().
   [[nodiscard]] const std::vector<std::optional<bool>>& confirmed() const { return confirmed_; }
 
  private:

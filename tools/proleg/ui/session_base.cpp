@@ -139,7 +139,7 @@ void SessionThread::run() {
       } catch (const std::exception& second) {
         report(one_line(second.what()));
       }
-      std::this_thread::sleep_for(pause_after_error);  // an error that stays does not take the processor
+      std::this_thread::sleep_for(pause_after_error);  // an error that persists must not keep the processor busy
     }
   }
   try {

@@ -54,6 +54,11 @@ inline std::optional<std::uint32_t> whole_argument(const nlohmann::json& argumen
   return found->get<std::uint32_t>();
 }
 
+/// For the documents of sessions: null if the text is empty.
+inline nlohmann::json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
+
 /// The names of the operation `reset`; nothing: all parameters. Throws InputError.
 inline std::optional<std::vector<std::string>> parameter_names(const nlohmann::json& arguments) {
   return argument<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
@@ -111,14 +116,14 @@ class SessionRequests final : public host::RobotSession {
     bool is_away = false;   ///< the page of the viewer that drives does not answer
   };
 
-  // For any thread.
+  // The calls from here on are for any thread.
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
   void holder_changed(bool has_holder, bool is_away) override;
   /// Requests the end of the session.
   void end();
 
-  // For the session's thread.
+  // The calls from here on are for the session's thread.
 
   /// All STOPs that wait, at most host::max_pending_stops. If there are any, the operations that wait as well go into
   /// `outdated`: what was asked for before a STOP has no effect after it.

@@ -41,10 +41,6 @@ json measures_json(const LiveSimulation& live) {
   return values;
 }
 
-std::string entry_name(const ChangeHistory::Entry* entry) { return entry == nullptr ? std::string() : entry->name; }
-
-json text_or_null(const std::string& text) { return text.empty() ? json() : json(text); }
-
 }  // namespace
 
 SimulatedSession::SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
@@ -97,7 +93,7 @@ void SimulatedSession::fail(const std::string& why) {
   set_state(State::failed);
 }
 
-/// Until there is something to do.
+/// Waits until there is something to do.
 void SimulatedSession::wait() {
   const bool has_news = live_ != nullptr && is_session_new_;
   if (has_news || steps_left_ > 0 || (may_tick() && Clock::now() >= pace_.due())) {
@@ -429,8 +425,8 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"repeats", repeats},
                       {"recording", text_or_null(recording_)},
                       {"changed", live_->differs_from_file()},
-                      {"undo", text_or_null(entry_name(live_->history().to_undo()))},
-                      {"redo", text_or_null(entry_name(live_->history().to_redo()))},
+                      {"undo", text_or_null(live_->history().name_to_undo())},
+                      {"redo", text_or_null(live_->history().name_to_redo())},
                       {"set", std::string(1, live_->set_name())},
                       {"failure", text_or_null(failure_)},
                       {"measures", measures_json(*live_)}};

@@ -82,7 +82,7 @@ struct SimulatedSessionOptions {
 
 class SimulatedSession final : private SessionThread {
  public:
-  /// Does what `requests` has, and tells it `output`; both must outlive the session. live: null if there is no
+  /// Carries out `requests`, and reports to `output`; both must outlive the session. live: null if there is no
   /// simulation until a recording is continued. Throws InputError if there is no folder of recordings.
   SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options, SessionRequests& requests,
                    host::SessionOutput& output);
@@ -107,7 +107,7 @@ class SimulatedSession final : private SessionThread {
   void wait();
   void stop_at_once();
   void tick();
-  /// What all viewers must know of another simulation.
+  /// Publishes what viewers need of another simulation.
   void publish_robot();
   /// Compares the last tick with that of the recording that is continued.
   void check_repetition(const sim::TickSample& sample);
@@ -146,7 +146,7 @@ class SimulatedSession final : private SessionThread {
   SimulatedSessionOptions options_;
   RecordingFolder folder_;
 
-  // Of the thread.
+  // The members from here on are used on the session's thread only.
   std::unique_ptr<RepeatedRun> repeated_;  ///< the recording that is continued; it has the losses of the simulation
   bool is_repeating_ = false;              ///< its ticks are computed again
   std::unique_ptr<LiveSimulation> live_;

@@ -5,7 +5,7 @@ import { noValue } from '../wire/messages.js';
 import { MinMaxPyramid, pyramidBlock } from './min_max_pyramid.js';
 
 // The default capacity is two minutes at 100 ticks a second.
-export const defaultCapacity = 3 * pyramidBlock;
+const defaultCapacity = 3 * pyramidBlock;
 
 export interface SignalRing {
   count: number; // values in a row

@@ -21,8 +21,6 @@ export function subtract(a: Vector, b: Vector): Vector {
   return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 }
 
-export const identityPose: Pose = { position: [0, 0, 0], orientation: [1, 0, 0, 0] };
-
 export function poseFromArray(values: readonly number[]): Pose {
   const [x, y, z, qw, qx, qy, qz] = values as [number, number, number, number, number, number, number];
   return { position: [x, y, z], orientation: normalise([qw, qx, qy, qz]) };

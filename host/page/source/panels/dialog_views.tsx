@@ -16,7 +16,7 @@ const keyNames: Record<string, string> = {
   ArrowRight: '→',
 };
 
-export function keyText(key: string): string {
+function keyText(key: string): string {
   return key
     .split('+')
     .map((part) => keyNames[part] ?? part)

@@ -12,7 +12,7 @@ const panels = [
 ] as const;
 
 // The columns: all joints of the strip, then the lines of the plots that are not among them.
-export function shownColumns(opened: OpenedRecording): TsvColumn[] {
+function shownColumns(opened: OpenedRecording): TsvColumn[] {
   const signals = opened.state.telemetry.value?.signals ?? [];
   const strip = signals.find((signal) => signal.name === opened.selection.strip.value);
   const columns: TsvColumn[] = Array.from({ length: strip?.count ?? 0 }, (_, index) => ({ signal: strip as TsvColumn['signal'], index }));

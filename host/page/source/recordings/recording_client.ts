@@ -10,7 +10,7 @@ export interface OpenDocuments extends Pick<Documents, 'robot' | 'parameters' | 
 
 // The most rows of an answer, and the strides that it may have (docs/page-interface.md).
 export const mostPoints = 2048;
-export const strides = [1, 8, 64, 512, 4096] as const;
+const strides = [1, 8, 64, 512, 4096] as const;
 
 // The stride of an answer for this number of ticks.
 export function strideFor(ticks: number): number {

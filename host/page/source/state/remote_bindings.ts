@@ -25,7 +25,7 @@ export function readLearned(value: unknown): LearnedElement | null {
 }
 
 // All values that a parameter may have, in steps of about a hundredth.
-export function wholeRange(parameter: Parameter): { lower: number; upper: number; step: number } {
+function wholeRange(parameter: Parameter): { lower: number; upper: number; step: number } {
   const decimals = 6;
   const low = parameter.wraps ? -180 : parameter.minimum * parameter.scale;
   const high = parameter.wraps ? 180 : parameter.maximum * parameter.scale;

@@ -8,7 +8,7 @@ import { resultOf, shownCommand } from './support/command_line.js';
 import { countDifferences, isBlue, pixelsInside, pixelsOf } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram, uniform } from './support/ui_program.js';
-import { waitUntil } from './support/waiting.js';
+import { waitForFrames, waitUntil } from './support/waiting.js';
 
 describe('moving the robot', () => {
   const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
@@ -48,11 +48,25 @@ describe('moving the robot', () => {
     );
     return ui.viewer.head();
   };
+  // The picture of where the program has the robot: the view of a busy computer comes later.
+  const stillPicture = async () => {
+    assert.ok(await waitUntil(async () => distance(await ui.viewer.head(), await headOfProgram()) <= 0.002));
+    const scene = ui.viewer.page.getByTestId('scene');
+    let picture = await pixelsOf(ui.viewer.page, scene);
+    const isStill = await waitUntil(async () => {
+      const before = picture;
+      await waitForFrames(ui.viewer.page, 20);
+      picture = await pixelsOf(ui.viewer.page, scene);
+      return countDifferences(before, picture) === 0;
+    });
+    assert.ok(isStill, 'the picture of a paused robot stands still');
+    return picture;
+  };
   // A point of the robot on the page, near its middle. Not at an edge: between two links the robot has gaps.
   const middleOfRobot = async () => {
     const scene = ui.viewer.page.getByTestId('scene');
     const box = await scene.boundingBox();
-    const inside = pixelsInside(await pixelsOf(ui.viewer.page, scene), isBlue);
+    const inside = pixelsInside(await stillPicture(), isBlue);
     assert.ok(inside.length > 20, 'the robot is in the picture');
     const mean = (axis: 'x' | 'y') => inside.reduce((sum, point) => sum + point[axis], 0) / inside.length;
     const [meanX, meanY] = [mean('x'), mean('y')];
@@ -73,7 +87,7 @@ describe('moving the robot', () => {
     const { mouse } = ui.viewer.page;
     await ui.viewer.button('Move').click();
     const before = await headOfProgram();
-    const picture = await pixelsOf(ui.viewer.page, ui.viewer.page.getByTestId('scene'));
+    const picture = await stillPicture();
     const { x, y } = await middleOfRobot();
     await mouse.move(x, y);
     await mouse.down();

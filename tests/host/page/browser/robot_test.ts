@@ -105,6 +105,8 @@ describe('a robot on a bus', () => {
 
   it('stops while it starts', async () => {
     await ui.viewer.button('Run gait').click();
+    // STOP has a connection of its own, so it could come before the request that it stops.
+    await ui.viewer.page.getByTestId('state').getByText('power off', { exact: true }).waitFor({ state: 'detached' });
     await ui.viewer.page.keyboard.press('Escape');
     await assertStopped();
   });

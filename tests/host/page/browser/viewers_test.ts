@@ -2,12 +2,15 @@
 import assert from 'node:assert/strict';
 import { beforeEach, describe, it } from 'node:test';
 import { useUi } from './support/ui_fixture.js';
-import { UiProgram } from './support/ui_program.js';
+import { slowTime, UiProgram, uniform } from './support/ui_program.js';
 import { lostConnection, type Viewer } from './support/viewer.js';
-import { longest } from './support/waiting.js';
+import { longest, waitUntil } from './support/waiting.js';
+
+// In slow time: control goes to the next viewer when its holder's page is silent for a second.
+const start = () => UiProgram.serve([uniform, '--paused'], slowTime);
 
 describe('viewers', () => {
-  const ui = useUi(() => UiProgram.start());
+  const ui = useUi(start);
   let first: Viewer;
   let second: Viewer;
 
@@ -45,7 +48,7 @@ describe('viewers', () => {
     await first.button('Keep control').click();
     await second.page.getByRole('list', { name: 'Notices' }).getByRole('listitem').first().waitFor();
     await first.button('Release').waitFor();
-    assert.equal(await second.button('Ask for control').isEnabled(), true);
+    assert.ok(await waitUntil(() => second.button('Ask for control').isEnabled()));
   });
 
   it('may take control at once after it was released', async () => {
@@ -79,7 +82,7 @@ describe('viewers', () => {
 });
 
 describe('viewers of a program that ends', () => {
-  const ui = useUi(() => UiProgram.start(), { isPerTest: true, takesControl: true });
+  const ui = useUi(start, { isPerTest: true, takesControl: true });
 
   it('read that the program has ended', async () => {
     ui.viewer.expected.push(lostConnection);

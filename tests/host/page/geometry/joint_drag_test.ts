@@ -2,11 +2,12 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { JointDrag, type Ray } from '../../../../host/page/source/geometry/joint_drag.js';
 import { ForwardKinematics } from '../../../../host/page/source/geometry/forward_kinematics.js';
-import { compose, identityPose, invert, subtract, type Pose, type Vector } from '../../../../host/page/source/geometry/quaternion.js';
+import { compose, invert, subtract, type Pose, type Vector } from '../../../../host/page/source/geometry/quaternion.js';
 import type { PoseArray, RobotDocument } from '../../../../host/page/source/wire/messages.js';
 import { Random } from '../support/random.js';
 
 const eye: Vector = [0.3, -2, 0.5];
+const identityPose: Pose = { position: [0, 0, 0], orientation: [1, 0, 0, 0] };
 
 function rayTo(point: Vector, from: Vector = eye): Ray {
   const way = subtract(point, from);

@@ -21,6 +21,7 @@ GdbProcess::GdbProcess(const std::string& image, unsigned port, const std::vecto
   execute("set confirm off");
   execute("set pagination off");
   execute("set width 0");
+  execute("set remotetimeout 300");  // 2 s are little for a server that waits for a processor
   words.push_back(image);
   execute("target remote 127.0.0.1:" + std::to_string(port));
   for (const std::string& command : commands) {

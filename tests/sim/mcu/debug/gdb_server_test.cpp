@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -63,7 +64,8 @@ class Client {
     for (int patience = 6'000; patience > 0 && !something_comes(); --patience) {
     }
     char byte = 0;
-    return recv(socket_, &byte, 1, MSG_DONTWAIT) <= 0;
+    const ssize_t count = recv(socket_, &byte, 1, MSG_DONTWAIT);
+    return count == 0 || (count < 0 && errno == ECONNRESET);
   }
   void say_no_more() const { shutdown(socket_, SHUT_WR); }
   void leave() {

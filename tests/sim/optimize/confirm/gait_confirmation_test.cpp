@@ -126,11 +126,11 @@ TEST(GaitConfirmation, ADistanceThatMujocoDoesNotGiveIsADoubt) {
     confirmation.runs.push_back(run);
   }
   confirmation.perturbed = {1.0};
-  confirmation.findings = find_doubts(confirmation);
+  confirmation.findings = findings_of(confirmation);
   EXPECT_FALSE(finding(confirmation, "MuJoCo").is_good);
   EXPECT_FALSE(confirmation.is_real()) << confirmation_text(confirmation);
   confirmation.runs.back().distance = 0.9;
-  EXPECT_TRUE(std::ranges::all_of(find_doubts(confirmation), &ConfirmationFinding::is_good));
+  EXPECT_TRUE(std::ranges::all_of(findings_of(confirmation), &ConfirmationFinding::is_good));
 }
 
 TEST(GaitConfirmation, IsTheSameForTheSameSeed) {

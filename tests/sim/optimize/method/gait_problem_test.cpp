@@ -14,26 +14,26 @@ namespace {
 struct GaitProblemOfFour : testing::Test {
   Experiment experiment = make_experiment({5, 1, 161, 2}, GreatDelugeSettings{});
   FakeSource source{[](const Candidate&) { return std::vector<double>{0.5}; }};
-  GaitProblemHub hub{experiment.space, experiment.objectives, source};
+  GaitEvaluator evaluator{experiment.space, experiment.objectives, source};
 };
 
 TEST_F(GaitProblemOfFour, HasAVariableForEachDimensionWithAChoice) {
-  const pagmo::problem problem{GaitProblem{hub}};
+  const pagmo::problem problem{GaitProblem{evaluator}};
   EXPECT_EQ(problem.get_lb(), (std::vector<double>{0, 0, 0}));
   EXPECT_EQ(problem.get_ub(), (std::vector<double>{4, 160, 1}));
   EXPECT_EQ(problem.get_nobj(), 1U);
 }
 
 TEST_F(GaitProblemOfFour, RoundsToTheNearestCandidateAndKeepsInside) {
-  EXPECT_EQ(hub.candidate({1.49, 80.5, 0.5}), (Candidate{1, 0, 81, 1}));
-  EXPECT_EQ(hub.candidate({-3.0, 160.49, 1.7}), (Candidate{0, 0, 160, 1}));
-  EXPECT_EQ(hub.candidate({1e300, 0.4, -0.0}), (Candidate{4, 0, 0, 0}));
-  EXPECT_EQ(hub.candidate({std::numeric_limits<double>::quiet_NaN(), 3, 1}), (Candidate{0, 0, 3, 1}));
-  EXPECT_EQ(hub.candidate(hub.numbers({2, 0, 77, 1})), (Candidate{2, 0, 77, 1}));
+  EXPECT_EQ(evaluator.candidate({1.49, 80.5, 0.5}), (Candidate{1, 0, 81, 1}));
+  EXPECT_EQ(evaluator.candidate({-3.0, 160.49, 1.7}), (Candidate{0, 0, 160, 1}));
+  EXPECT_EQ(evaluator.candidate({1e300, 0.4, -0.0}), (Candidate{4, 0, 0, 0}));
+  EXPECT_EQ(evaluator.candidate({std::numeric_limits<double>::quiet_NaN(), 3, 1}), (Candidate{0, 0, 3, 1}));
+  EXPECT_EQ(evaluator.candidate(evaluator.numbers({2, 0, 77, 1})), (Candidate{2, 0, 77, 1}));
 }
 
 TEST_F(GaitProblemOfFour, HasCopiesThatAskTheSameSource) {
-  const pagmo::problem problem{GaitProblem{hub}};
+  const pagmo::problem problem{GaitProblem{evaluator}};
   const pagmo::population population(problem, 6U, 1U);
   pagmo::population copy(population);
   copy.push_back({1, 2, 1});
@@ -45,11 +45,11 @@ TEST(GaitProblem, MakesCostsOfScores) {
   Experiment experiment = make_experiment({5}, PagmoSettings{}, Goal::maximise, 2);
   experiment.objectives[1].goal = Goal::minimise;
   FakeSource source{[](const Candidate&) { return std::vector<double>{0.5, 7.0}; }};
-  GaitProblemHub hub(experiment.space, experiment.objectives, source);
-  const pagmo::problem problem{GaitProblem{hub}};
+  GaitEvaluator evaluator(experiment.space, experiment.objectives, source);
+  const pagmo::problem problem{GaitProblem{evaluator}};
   EXPECT_EQ(problem.get_nobj(), 2U);
   EXPECT_EQ(problem.fitness({1.0}), (std::vector<double>{-0.5, 7.0}));
-  EXPECT_EQ(hub.costs({-0.5, 7.0}), (std::vector<double>{0.5, 7.0}));
+  EXPECT_EQ(evaluator.costs({-0.5, 7.0}), (std::vector<double>{0.5, 7.0}));
 }
 
 }  // namespace

@@ -215,6 +215,20 @@ TEST_F(Remote, PausesAndAnswersViewersAfterAnErrorOfADevice) {
   EXPECT_TRUE(viewers.log.has("answer 2 {}"));
 }
 
+TEST(RemoteWithoutDevices, AnswersViewersIfTheDevicesCannotBeRead) {
+  const TemporaryFolder folder;
+  Robot robot;
+  Viewers viewers;
+  RemoteSession session(robot, host::BindingStore(folder / "robot.remote.json"),
+                        [](host::DeviceListener& /*receiver*/) -> std::unique_ptr<host::DeviceSource> {
+                          throw std::runtime_error("no driver");
+                        });
+  const RemoteThread thread(session, viewers);
+  EXPECT_TRUE(viewers.log.has("gamepads cannot be read: no driver"));
+  session.operate({1, "remote.unbind", {{"place", 0}}, 1, "viewer"});
+  EXPECT_TRUE(viewers.log.has("refuse 1 "));
+}
+
 TEST_F(Remote, StopsWithoutControl) {
   ask(1, "remote.bind", bound_button("stop"));
   ASSERT_TRUE(viewers.log.has("answer 1"));

@@ -98,7 +98,7 @@ export class ScriptedRobot {
   // What the script may change; `publish` sends it.
   readonly bus = initialBus();
   readonly session = initialSession();
-  isSilent = false; // sends nothing at all
+  isSilent = false; // sends nothing but the answer to a greeting
   unmeasured: number | null = null; // a joint that does not measure its angle
   // Arguments of `pose`, and when they came, in milliseconds.
   readonly poses: { time: number; angles: (number | null)[]; speed: number }[] = [];
@@ -173,7 +173,8 @@ export class ScriptedRobot {
     const answer = (fields: object) => this.sendTo(viewer, fields);
     switch (message['type']) {
       case 'hello':
-        answer({ type: 'welcome', protocol, client: viewer.client, program: 'script' });
+        // Also while it is silent: a page that reconnects would wait for it forever.
+        viewer.peer.sendText(JSON.stringify({ type: 'welcome', protocol, client: viewer.client, program: 'script' }));
         if (message['only'] !== 'stop') {
           this.viewers.push(viewer);
           this.sendDocuments(viewer);

@@ -7,8 +7,9 @@ export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
 export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
 export const sixty = 'sim/scenarios/long_chain/sixty.simulation.xml';
 
-// A robot stops when the page of its driver is silent for a second, and a STOP is answered within half a second. A browser
-// on a busy computer can be slower: in slow time (tests/support/slow_time) these are four seconds and two.
+// A robot stops, and control may go to another viewer, when the page of its driver is silent for a second; a STOP is answered
+// within half a second. A browser on a busy computer can be slower: in slow time (tests/support/slow_time) these are four
+// seconds and two.
 const slowTimeLibrary = process.env['PROLEG_SLOW_TIME_LIBRARY'];
 export const slowTime = slowTimeLibrary === undefined ? {} : { LD_PRELOAD: slowTimeLibrary, PROLEG_SLOW_TIME: '4' };
 

@@ -43,7 +43,7 @@ class ErrorCounters {
   void receiver_error();
   /// Rule g: a frame was transmitted: -1, not below 0.
   void transmitted();
-  /// Rule h: a frame was received: -1, not below 0; above 127 down to 127 (ISO: 119 to 127).
+  /// Rule h: a frame was received: -1, not below 0; a counter above 127 becomes 127 (ISO: 119 to 127).
   void received();
   /// Sets both counters to 0, as after power-on and after bus-off.
   void reset() { transmit_ = receive_ = 0; }

@@ -65,7 +65,7 @@ class ModuleRack {
   [[nodiscard]] bool has_computed_anew(unsigned joint) const {
     return records_[joint].tick != firmware::TickRecord::none && records_[joint].tick != ticks_before_[joint];
   }
-  /// Whether the run restarted it at the last SYNC.
+  /// Whether the run restarted the module of the joint at the last SYNC.
   [[nodiscard]] bool has_restarted(unsigned joint) const { return restarted_.contains(joint); }
 
   /// The pulse that the servo of a joint gets now.

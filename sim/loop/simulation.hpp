@@ -30,7 +30,8 @@ class Simulation {
   /// A simulation with a world that was made for the scenario.
   Simulation(const Scenario& scenario, std::unique_ptr<World> world);
 
-  /// The hashes below stay those of no values. For evaluations, which need none: they take a tenth of the time.
+  /// Leaves out the hashes, which take a tenth of the time: those below stay the hashes of no values. For evaluations,
+  /// which need none.
   void leave_out_hashes() { has_hashes_ = false; }
 
   /// The moves of the present tick take effect now. Otherwise advance() begins with them. Throws InputError for a move

@@ -24,7 +24,7 @@ using std::numbers::pi;
 constexpr std::array<std::string_view, 5> visual_tags{"diffuseColor", "ambientColor", "transparency", "render",
                                                       "visible"};
 
-/// 1 by default, for each of the three.
+/// Range of red, green and blue in a colour.
 constexpr Range colour_parts{0.0, 1.0, ""};
 
 double volume(const Geometry& geometry) {

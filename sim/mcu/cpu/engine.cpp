@@ -301,7 +301,7 @@ void Engine::on_interrupt(uc_engine* uc, std::uint32_t number, void* self) {
         engine.end_ = End::memory_fault;
         break;
       case data_abort_number:
-        // The only access that must be aligned.
+        // Exclusive accesses are the only ones that must be aligned.
         engine.end_ = End::unaligned_exclusive;
         break;
       default:

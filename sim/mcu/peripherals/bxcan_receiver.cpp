@@ -200,7 +200,7 @@ std::optional<BxCanFilters::Match> BxCanFilters::match(std::uint16_t identifier)
     return std::nullopt;
   }
   std::optional<Match> best;
-  unsigned best_rank = 0;  // 32 bits before 16, then list before mask, then the lower number
+  unsigned best_rank = 0;  // filters of 32 bits come before those of 16, then lists before masks, then lower numbers
   std::array<unsigned, 2> numbers{};
   // Banks after the last active one do not count: most programs use few, and each node filters each frame.
   const unsigned end = std::min<unsigned>(first_bank_of_can2(), static_cast<unsigned>(std::bit_width(active_)));

@@ -329,6 +329,7 @@ TEST_F(SimulatedSessionTest, RefusesToMoveARobotThatRunsOrToABadPlace) {
 
 TEST_F(SimulatedSessionTest, ContinuesARecordingBitForBit) {
   record_run("run.proleg", 300);
+  std::size_t read_notices = 0;  // those of the runs before
   for (const std::uint32_t tick : {0U, 79U, 80U, 120U, 299U}) {
     SCOPED_TRACE(tick);
     open(nullptr, false);
@@ -336,7 +337,9 @@ TEST_F(SimulatedSessionTest, ContinuesARecordingBitForBit) {
     ASSERT_TRUE(answer.is_done) << answer.text;
     wait_for_continued(tick);
     EXPECT_EQ(viewers_.document("robot")["joints"].size(), 5U);
-    EXPECT_NE(viewers_.notices().find("bit for bit"), std::string::npos) << viewers_.notices();
+    const std::string notices = viewers_.notices().substr(read_notices);
+    EXPECT_NE(notices.find("bit for bit"), std::string::npos) << notices;
+    read_notices += notices.size();
     if (tick < 80) {
       // What was done later is left out.
       continue;

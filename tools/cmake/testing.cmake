@@ -67,8 +67,10 @@ function(proleg_add_test name)
     list(APPEND inputs --compiles)
   endif()
   if(test_VIRTUAL_TIME)
+    # tools/run_test adds the first word of the command itself.
+    list(GET test_COMMAND 0 program)
+    list(APPEND inputs --program ${program} --program $<TARGET_FILE:virtual_time_clock>)
     list(PREPEND test_COMMAND $<TARGET_FILE:run_in_virtual_time> $<TARGET_FILE:virtual_time_clock>)
-    list(APPEND inputs --program $<TARGET_FILE:virtual_time_clock>)
   endif()
   set(name ${PROLEG_TEST_PREFIX}${name})
   add_test(NAME ${name}

@@ -104,7 +104,11 @@ export class Viewer {
   }
 
   async waitForState(state: string): Promise<void> {
-    await this.page.getByTestId('state').getByText(state, { exact: true }).waitFor();
+    try {
+      await this.page.getByTestId('state').getByText(state, { exact: true }).waitFor();
+    } catch (error) {
+      throw new Error(`${String(error)}\nthe page: ${await this.page.locator('body').innerText()}`);
+    }
   }
 
   async tick(): Promise<number> {

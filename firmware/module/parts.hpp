@@ -60,8 +60,8 @@ struct Parts {
   /// Resets application and communication to the state after power-on (NMT reset node).
   void reset(Microseconds now);
   /// Resets the communication objects, 0x1000 to 0x1FFF, to the state after power-on, and takes the servo's power (NMT
-  /// reset communication). The application remains as it is: the state of robot, gait and servo. A node id
-  /// that LSS has configured takes effect.
+  /// reset communication). The application remains as it is: the state of robot, gait and servo. A node id that
+  /// LSS has configured takes effect.
   void reset_communication(Microseconds now);
 
   ModuleIdentity identity;

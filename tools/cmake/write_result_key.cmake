@@ -1,6 +1,7 @@
 # Writes the result key into a header: two programs with equal keys give equal results of a search. It is a hash of the
 # sources that the program links, of all files of the project that they include, of the names of the libraries, and of
-# SETTINGS (compiler, flags, versions). Does not touch a header that already has it. Beside the header, OUTPUT.txt has what was hashed.
+# SETTINGS (compiler, flags, versions). Does not touch a header that already has it. Beside the header, OUTPUT.txt has what
+# was hashed.
 # Called at every build with SOURCE_DIR, BINARY_DIR, SOURCES (the file of proleg_write_linked_sources), SETTINGS and OUTPUT.
 cmake_minimum_required(VERSION 3.25)
 

@@ -64,7 +64,8 @@ void TaskPipeline::set_wanted(std::span<const Task> tasks) {
   drop_unwanted(wanted_before);
 }
 
-/// Drops results that nobody wants. With ResultScope::all_numbers a result stays: it may be wanted again.
+/// Drops the results of tasks that are not wanted any more. With ResultScope::all_numbers a result stays: its task may
+/// be wanted again.
 void TaskPipeline::drop_unwanted(const std::unordered_map<Task, Task, TaskHash>& wanted_before) {
   for (const auto& [its_key, task] : wanted_before) {
     const auto known = results_.find(its_key);

@@ -78,10 +78,11 @@ TOOLS = """
 namespace {
 int* volatile volatile_null = nullptr;
 volatile int volatile_zero = 0;
-const std::string_view chosen_mistake = std::getenv("PROLEG_TEST_MISTAKE") ? std::getenv("PROLEG_TEST_MISTAKE") : "";
+const char* const mistake = std::getenv("%s");
+const std::string_view chosen_mistake = mistake == nullptr ? "" : mistake;
 int deep(int n) { volatile char room[4096]; room[0] = 1; return n > 1'000'000'000 ? n : deep(n + room[0]) + room[0]; }
 }
-"""
+""" % MISTAKE
 
 
 def proleg(name, *arguments, cwd=None, mistake=""):

@@ -42,7 +42,7 @@ class BusSession final : private SessionThread {
 
  private:
   static constexpr std::chrono::milliseconds publish_period{500};
-  /// The robot stops when nobody has driven for this time.
+  /// Time without a driver after which the robot stops.
   static constexpr std::chrono::milliseconds longest_absence{1'000};
 
   // SessionThread

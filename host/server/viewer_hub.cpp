@@ -89,11 +89,15 @@ void ViewerHub::handle(ServerTime now, Viewer& viewer, const Operation& operatio
     return;
   }
   lease_.advance(now);
-  const std::string refusal =
-      options_.free_operations.contains(operation.name) ? "" : lease_.refusal(viewer.client(), operation.epoch);
-  if (!refusal.empty()) {
-    viewer.finish_operation(operation.id, false, nullptr, refusal);
-    return;
+  if (!options_.free_operations.contains(operation.name)) {
+    const std::string refusal = lease_.refusal(viewer.client(), operation.epoch);
+    if (!refusal.empty()) {
+      viewer.finish_operation(operation.id, false, nullptr, refusal);
+      return;
+    }
+    // Else a robot that starts right after the page was silent would stop before the next beat comes.
+    lease_.beat(now, viewer.client(), 0);
+    report_lease(now);
   }
   const RequestId request = ++last_request_;
   operations_[request] = {viewer.client(), operation.id};

@@ -187,6 +187,21 @@ TEST_F(Hub, TellsTheSessionWhetherSomebodyDrives) {
   EXPECT_EQ(session.holders, (std::vector<std::string>{"held", "held, away", "held", "free"}));
 }
 
+TEST_F(Hub, TakesAnOperationOfTheHolderAsASignOfLife) {
+  const ClientId anna = join("Anna");
+  const ClientId ben = join("Ben");
+  operate(anna, 1, "control.take");
+  hub.advance(now += 1s);
+  operate(ben, 1, "walk", 1);
+  operate(anna, 2, "walk", 0);
+  operate(anna, 3, "look");
+  EXPECT_EQ(session.holders.back(), "held, away") << "these are not the holder's: refused, or free for everybody";
+  operate(anna, 4, "walk", 1);
+  EXPECT_EQ(session.holders.back(), "held");
+  hub.advance(now += 1s);
+  EXPECT_EQ(session.holders.back(), "held, away");
+}
+
 TEST_F(Hub, RefusesOperationsOnControlThatItDoesNotKnow) {
   const ClientId anna = join("Anna");
   operate(anna, 1, "control.steal");

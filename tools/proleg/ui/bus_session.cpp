@@ -287,6 +287,7 @@ void BusSession::start_robot(bool holds) {
     throw std::runtime_error(robot_->state() == RobotState::stopping ? "the robot is stopping"
                                                                      : "the robot has power already");
   }
+  look_at_holder();  // whoever asks for the start may have taken control since the last look
   if (absent_since_) {
     throw std::runtime_error("nobody drives");
   }

@@ -70,7 +70,9 @@ void Master::stop(Microseconds now) {
   reset_joints_ = {};
   start_all_pending_ = false;
   joints_ = booted_;
-  enter(options_.ramps_down && is_powered_ ? Phase::ramp : Phase::disable);
+  const bool ramps = options_.ramps_down && is_powered_;
+  stop_joints_ = ramps ? booted_ : JointMask();
+  enter(ramps ? Phase::ramp : Phase::disable);
   advance(now);
 }
 

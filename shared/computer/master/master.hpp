@@ -20,8 +20,10 @@
 //                                            tick: stage, commit; (hold,) enable,
 //                                            nmt_start
 //   stop      stop()                         (ramp, ramping,) disable, sync_off     booted_; sync_off: only the SYNC
-//                                                                                   producer. While they are ramping,
-//                                                                                   their checksums are read
+//                                                                                   producer. Before `ramp` all get the
+//                                                                                   quick stop without a confirmation.
+//                                                                                   While they are ramping, their
+//                                                                                   checksums are read
 //   none      no other mission               none                                   not used
 //
 // Phases in parentheses are left out unless the options demand them.
@@ -157,7 +159,8 @@ class Master final : private SdoWork {
   /// or be replaced by another call. False, without an effect, if one of the new ones is not possible.
   [[nodiscard]] bool extend_changes(Microseconds now, std::span<Change> changes);
   /// Switches off the servos and the SYNC of the robot. It may be called in any state after start(). It sends nothing
-  /// as long as the master has only listened, or if the robot belongs to another host. A module that does not confirm
+  /// as long as the master has only listened, or if the robot belongs to another host. With options.ramps_down all
+  /// joints that move get the quick stop at once, whether their modules answer or not. A module that does not confirm
   /// that its servo has no power is reported as an event.
   void stop(Microseconds now);
   /// Must be called when the host has switched the mode of the joints: a module that restarts gets the same mode
@@ -259,6 +262,7 @@ class Master final : private SdoWork {
 
   void advance(Microseconds now);
   void send_network_requests();
+  void send_quick_stops();
   [[nodiscard]] bool is_phase_done() const;
   void next_phase();
   void enter(Phase phase);
@@ -316,6 +320,7 @@ class Master final : private SdoWork {
   JointMask given_up_;              ///< joints that could not be set up again, and wait for a restart
   JointMask start_joints_ = {};     ///< joints to which NMT start is pending
   JointMask reset_joints_ = {};     ///< joints to which NMT reset node is pending
+  JointMask stop_joints_ = {};      ///< joints to which the command for a quick stop is pending
   JointMask reset_again_;           ///< joints that were reset once more in `scan`: both of their boot-ups may come
   bool start_all_pending_ = false;  ///< NMT start to all is pending
   bool reset_all_pending_ = false;  ///< NMT reset node to all is pending

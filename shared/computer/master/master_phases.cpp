@@ -1,3 +1,5 @@
+#include "shared/canopen/declared_objects.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "shared/computer/master/master.hpp"
 
 // The order of phases and missions; master.hpp has the table.
@@ -34,8 +36,21 @@ void Master::send_network_requests() {
   reset_all_pending_ = reset_all_pending_ && !send(NmtCommand::reset_node, 0);
   pre_operational_all_pending_ = pre_operational_all_pending_ && !send(NmtCommand::enter_pre_operational, 0);
   start_all_pending_ = start_all_pending_ && (pre_operational_all_pending_ || !send(NmtCommand::start, 0));
+  send_quick_stops();
   send_each(NmtCommand::start, start_joints_);
   send_each(NmtCommand::reset_node, reset_joints_);
+}
+
+/// Sends the quick stops that no module confirms: a joint must not move on while the master waits for the answer of
+/// another one, which may be cut off. Phase::ramp repeats each with a confirmation.
+void Master::send_quick_stops() {
+  for (const unsigned joint : stop_joints_) {
+    // The module takes no target from this value: it is no angle of a joint.
+    if (!queue_.push(encode(Command{setup_.nodes[joint], quick_stop_controlword, position_not_measured}))) {
+      return;
+    }
+    stop_joints_.erase(joint);
+  }
 }
 
 bool Master::is_phase_done() const {

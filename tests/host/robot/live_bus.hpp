@@ -32,6 +32,14 @@ class LiveBus final : public CanPort {
     random_.seed(seed);
   }
 
+  /// Frames in one direction vanish from now on, between the host and its adapter.
+  void cut_to_robot() { is_cut_to_robot_ = true; }
+  /// confirms: the adapter still confirms the frames of the host.
+  void cut_from_robot(bool confirms) {
+    is_cut_from_robot_ = true;
+    confirms_ = confirms;
+  }
+
   /// As many slcan adapters: a frame is confirmed while it waits for the bus. Beyond so many it is dropped.
   void confirm_at_once(std::size_t room) { room_ = room; }
   [[nodiscard]] std::uint64_t dropped_frames() const { return dropped_frames_; }
@@ -41,7 +49,7 @@ class LiveBus final : public CanPort {
     for (host::BusUser* user : std::vector(users_)) {
       user->requested(now(), frame);
     }
-    if (is_lost()) {
+    if (is_cut_to_robot_ || is_lost()) {
       events_.push_back({robot_.now(), frame, true});
       return true;
     }
@@ -98,12 +106,12 @@ class LiveBus final : public CanPort {
 
   sim::LiveRobotOptions with_callbacks(sim::LiveRobotOptions options) {
     options.on_frame = [this](const sim::Transmission& transmission, bool is_own) {
-      if (!is_own && !is_lost()) {
+      if (!is_own && !is_cut_from_robot_ && !is_lost()) {
         events_.push_back({transmission.end, transmission.frame, false});
       }
     };
     options.on_sent = [this](sim::BusTime time, const CanFrame& frame, std::uint32_t /*source*/) {
-      if (room_ == 0) {
+      if (room_ == 0 && confirms_) {
         events_.push_back({time, frame, true});
       }
     };
@@ -113,6 +121,9 @@ class LiveBus final : public CanPort {
   std::vector<host::BusUser*> users_;
   std::vector<Event> events_;
   double loss_ = 0;
+  bool is_cut_to_robot_ = false;
+  bool is_cut_from_robot_ = false;
+  bool confirms_ = true;
   std::mt19937_64 random_;
   std::uint64_t sent_frames_ = 0;
   std::size_t room_ = 0;

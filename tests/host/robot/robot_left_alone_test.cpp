@@ -10,101 +10,47 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "driving_host.hpp"
-#include "shipped.hpp"
+#include "left_alone_robot.hpp"
 #include "tests/support/from_environment.hpp"
 
 namespace proleg::test {
 namespace {
 
-constexpr Microseconds longest_us = 1'500'000;
-constexpr std::int32_t middle = 18'000;  // pulse at 0 degrees, in 1/12 us
-
-class LeftAlone : public testing::TestWithParam<std::string> {};
-
-/// One robot that moves until something happens to its host.
-class Trial {
- public:
-  explicit Trial(const sim::Scenario& scenario, std::uint32_t seed)
-      : random_(seed), bus_(scenario), host_(std::make_unique<DrivingHost>(bus_, scenario)) {}
-
-  void move_for_some_time() {
-    ASSERT_TRUE(host_->start());
-    bus_.run_for(std::uniform_int_distribution<Microseconds>(100'000, 3'000'000)(random_));
-    ASSERT_TRUE(is_moving());
-  }
-
-  void happens(const std::string& what) {
-    if (what == "HostIsKilled") {
-      host_.reset();
-    } else if (what == "HostIsStopped") {
-      // Its frames wait, and so do those of the modules; then it goes on as if nothing had been.
-      const auto time = std::uniform_int_distribution<Microseconds>(1'500'000, 3'000'000)(random_);
-      bus_.robot().advance_to(bus_.robot().now() + longest_us * 1'000);
-      expect_safe();
-      bus_.robot().advance_to(bus_.robot().now() + (time - longest_us) * 1'000);
-      bus_.run_for(1);
-    } else if (what == "CableIsPulled") {
-      bus_.lose(1, 0);
-    } else {
-      bus_.robot().bus().controller(bus_.robot().module(0).controller()).unplug();  // joint 0 produces SYNC
-    }
-  }
-
-  void expect_safe() {
-    std::vector<std::optional<std::int32_t>> pulses;
-    for (unsigned joint = 0; joint < bus_.robot().joint_count(); ++joint) {
-      pulses.push_back(bus_.robot().module(joint).pulse());
-      EXPECT_TRUE(!pulses.back() || *pulses.back() == middle) << "joint " << joint << " " << *pulses.back();
-    }
-  }
-
-  void run_for(Microseconds duration) { bus_.run_for(duration); }
-  LiveBus& bus() { return bus_; }
-
- private:
-  [[nodiscard]] bool is_moving() {
-    bool moves = true;
-    for (unsigned joint = 0; joint < bus_.robot().joint_count(); ++joint) {
-      moves = moves && bus_.robot().module(joint).pulse().has_value();
-    }
-    return moves;
-  }
-
-  std::mt19937_64 random_;
-  LiveBus bus_;
-  std::unique_ptr<DrivingHost> host_;
-};
+/// What happens, and the number of joints of the robot.
+class LeftAlone : public testing::TestWithParam<std::pair<std::string, unsigned>> {};
 
 TEST_P(LeftAlone, EveryJointIsSafeWithinOneAndAHalfSecondsAndStaysSo) {
-  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  const auto& [event, joints] = GetParam();
+  const sim::Scenario scenario = wave_of(joints);
   const std::uint32_t first = from_environment("PROLEG_INSTANTS_FIRST", 1);
-  const std::uint32_t instants = from_environment("PROLEG_INSTANTS", 3);
-  for (std::uint32_t seed = first; seed < first + instants; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Trial trial(scenario, seed);
-    trial.move_for_some_time();
-    if (testing::Test::HasFatalFailure()) {
-      return;
-    }
-    trial.happens(GetParam());
-    trial.run_for(longest_us);
-    trial.expect_safe();
-    for (unsigned i = 0; i < 10; ++i) {
-      trial.run_for(100'000);
-      trial.expect_safe();
-    }
+  const std::uint32_t instants = from_environment("PROLEG_INSTANTS", 2);
+  for (std::uint32_t seed = first; seed < first + instants && !testing::Test::HasFatalFailure(); ++seed) {
+    expect_safe_after(event, scenario, seed);
   }
-  std::cout << GetParam() << ": " << instants << " instants, seeds from " << first << "\n";
+  std::cout << event << ", " << joints << " joints: " << instants << " instants, seeds from " << first << "\n";
 }
 
-INSTANTIATE_TEST_SUITE_P(Events, LeftAlone,
-                         testing::Values("HostIsKilled", "HostIsStopped", "CableIsPulled", "SyncProducerIsUnplugged"),
-                         [](const auto& event) { return event.param; });
+std::vector<std::pair<std::string, unsigned>> events() {
+  std::vector<std::pair<std::string, unsigned>> all;
+  for (const char* const event : {"HostIsKilled", "HostIsStopped", "SyncProducerIsUnplugged"}) {
+    all.emplace_back(event, 5);
+  }
+  for (const char* const cut : cuts) {
+    for (const unsigned joints : {3U, 5U, 20U}) {
+      all.emplace_back(cut, joints);
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Events, LeftAlone, testing::ValuesIn(events()), [](const auto& test) {
+  return test.param.first + std::to_string(test.param.second) + "Joints";
+});
 
 /// Any frame, half of them with identifiers that modules use. Without LSS, which may give modules other node ids.
 CanFrame random_frame(std::mt19937_64& random) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "scripted_robot.hpp"
+#include "shared/canopen/power_state.hpp"
 
 namespace proleg::test {
 namespace {
@@ -520,6 +523,33 @@ TEST(MasterStop, TakesThePowerThenTheTicks) {
         << "heartbeats continue";
   }
   EXPECT_EQ(robot.emergencies(), 0U);
+}
+
+TEST(MasterStop, EveryJointGetsTheQuickStopAtOnceAlsoIfNoModuleAnswers) {
+  constexpr unsigned joints = 20;  // more than the queue of the master has room for
+  ScriptedRobot robot(joints);
+  robot.options.ramps_down = true;
+  robot.start();
+  ASSERT_TRUE(robot.run_until_running());
+  robot.run_for(100'000);
+  const std::size_t before = robot.transmissions.size();
+  for (unsigned joint = 0; joint < joints; ++joint) {
+    robot.module(joint).ignores_sdo = true;
+  }
+  robot.master().stop(robot.now());
+  robot.run_for(10'000);
+  std::set<unsigned> stopped;
+  for (std::size_t i = before; i < robot.transmissions.size(); ++i) {
+    if (const auto command = canopen::decode_command(robot.transmissions[i].frame);
+        command && identifier::base_of(robot.transmissions[i].frame.identifier) == identifier::command) {
+      EXPECT_EQ(command->controlword, canopen::quick_stop_controlword);
+      EXPECT_NE(check_range(canopen::object::target_position, static_cast<std::uint32_t>(command->target)),
+                canopen::AbortCode::none)
+          << "the module takes no target from the command";
+      stopped.insert(command->node);
+    }
+  }
+  EXPECT_EQ(stopped.size(), joints);
 }
 
 TEST(MasterStop, EndsWhenEverItIsAskedForAndWhoeverIsGone) {

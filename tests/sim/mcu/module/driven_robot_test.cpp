@@ -6,9 +6,10 @@
 #include <cstdlib>
 #include <vector>
 
-#include "driving_host.hpp"
 #include "host/robot/robot_drive.hpp"
+#include "left_alone_robot.hpp"
 #include "sim/loop/gait.hpp"
+#include "tests/support/from_environment.hpp"
 #include "virtual_robot.hpp"
 
 namespace proleg::test {
@@ -19,15 +20,16 @@ using Result = host::SetpointCheck::Result;
 
 constexpr unsigned joints = 5;
 
+sim::LiveRobotOptions virtual_modules() {
+  sim::LiveRobotOptions options;
+  options.make_module = [](const sim::ModuleParts& parts) -> std::unique_ptr<sim::JointModule> {
+    return std::make_unique<sim::VirtualModule>(parts, sim::flashed_image(), sim::VirtualModuleOptions{});
+  };
+  return options;
+}
+
 class DrivenImage : public testing::Test {
  protected:
-  static sim::LiveRobotOptions virtual_modules() {
-    sim::LiveRobotOptions options;
-    options.make_module = [](const sim::ModuleParts& parts) -> std::unique_ptr<sim::JointModule> {
-      return std::make_unique<sim::VirtualModule>(parts, sim::flashed_image(), sim::VirtualModuleOptions{});
-    };
-    return options;
-  }
   /// Until the robot moves. Each millisecond: by how much the pulses of the joints may have changed in the last ten.
   void start_and_watch(std::int32_t largest_step) {
     constexpr Microseconds most = 10'000'000;
@@ -71,6 +73,20 @@ TEST_F(DrivenImage, RampsInAndHasTheSameSetpointsToTheLastBit) {
   for (unsigned joint = 0; joint < joints; ++joint) {
     EXPECT_GE(host.drive.master().checksum(joint).ticks, 100U);
     EXPECT_EQ(check.compare(joint, host.drive.master().checksum(joint)), Result::equal) << "joint " << joint;
+  }
+}
+
+/// PROLEG_INSTANTS: how many instants for each direction and number of joints.
+TEST(DrivenImages, AreSafeWithinOneAndAHalfSecondsWhicheverDirectionIsCut) {
+  const std::uint32_t instants = from_environment("PROLEG_INSTANTS", 1);
+  for (const unsigned number : {3U, 5U, 20U}) {
+    const sim::Scenario robot = wave_of(number);
+    for (const char* const cut : cuts) {
+      SCOPED_TRACE(std::string(cut) + ", joints: " + std::to_string(number));
+      for (std::uint32_t seed = 1; seed <= instants && !HasFatalFailure(); ++seed) {
+        expect_safe_after(cut, robot, seed, virtual_modules());
+      }
+    }
   }
 }
 

@@ -18,6 +18,9 @@
 
 namespace proleg::host {
 
+/// The first bytes of such a file, of any version.
+inline constexpr std::string_view parameter_file_start = "# Proleg parameters";
+
 struct ParameterValue {
   canopen::Object object;
   std::vector<std::uint8_t> bytes;  ///< bytes of the value in SDO transfers

@@ -56,7 +56,7 @@ class Recorder::Storage {
   }
 
   ~Storage() {
-    if (closed_ || failed_) {
+    if (closed_ || !failure_.empty()) {
       return;
     }
     try {
@@ -159,18 +159,21 @@ class Recorder::Storage {
   }
 
   /// Runs an action on the file. At an error SQLite may roll back the open transaction. The recording then has a gap,
-  /// so all further actions fail.
+  /// so all further actions fail with the same message.
   template <typename Action>
   void guard(const Action& action) {
-    if (closed_ || failed_) {
-      throw FileError(path_, closed_ ? "the recording is already finished" : "recording stopped at an earlier error");
+    if (closed_) {
+      throw FileError(path_, "the recording is already finished");
     }
-    try {
-      action();
-    } catch (const SqliteError& error) {
-      failed_ = true;
-      throw FileError(path_, std::string("recording stopped: ") + error.what());
+    if (failure_.empty()) {
+      try {
+        action();
+        return;
+      } catch (const SqliteError& error) {
+        failure_ = error.what();
+      }
     }
+    throw FileError(path_, "recording stopped: " + failure_);
   }
 
  private:
@@ -256,13 +259,13 @@ class Recorder::Storage {
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
   Statement insert_event_{database_, "INSERT INTO module_event(time_us, joint, text) VALUES(?1, ?2, ?3)"};
   bool closed_ = false;
-  bool failed_ = false;
+  std::string failure_;  ///< the first error; empty without one
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
 };
 
 Recorder::Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
-                   const std::string& build_id)
-    : claim_(std::make_unique<RecordingClaim>(path)) {
+                   const std::string& build_id, EarlierFile earlier)
+    : claim_(std::make_unique<RecordingClaim>(path, earlier)) {
   try {
     storage_ = std::make_unique<Storage>(path, scenario, program, build_id);
   } catch (const SqliteError& error) {

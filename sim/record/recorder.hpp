@@ -10,14 +10,13 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/record/recorded_run.hpp"
+#include "sim/record/recording_file.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
-
-class RecordingClaim;
 
 /// The result of tick k, after it was computed and simulated until SYNC k + 1. Joints and links count from the head.
 struct TickSample {
@@ -53,11 +52,10 @@ struct TickSample {
 /// Throws FileError if it cannot write; after that it rejects all further calls.
 class Recorder {
  public:
-  /// Creates the file. An empty file or an earlier recording is replaced; any other existing file is an error, and so
-  /// is one into which another recorder writes. scenario: must outlive the recorder. program: what computes the gait,
+  /// Creates the file, as RecordingClaim does. scenario: must outlive the recorder. program: what computes the gait,
   /// e.g. "simulate" or "hil native". build_id: of the program.
   Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
-           const std::string& build_id);
+           const std::string& build_id, EarlierFile earlier = EarlierFile::is_replaced);
   /// Commits. A run without finish() remains marked as unfinished. Writes an error to standard error.
   ~Recorder();
   Recorder(const Recorder&) = delete;

@@ -34,15 +34,19 @@ class Recording::Tables {
   explicit Tables(const std::filesystem::path& path) : database(path, SQLITE_OPEN_READONLY) {
     // One read transaction for everything, which does not see what a running recorder adds meanwhile.
     database.execute("BEGIN");
-    if (pragma("PRAGMA application_id") != std::int64_t{recording_application_id}) {
+    if (number("PRAGMA application_id") != std::int64_t{recording_application_id}) {
       throw Damage("a database of another program");
     }
-    if (const std::int64_t format = pragma("PRAGMA user_version"); format != std::int64_t{recording_format}) {
+    if (const std::int64_t format = number("PRAGMA user_version"); format != std::int64_t{recording_format}) {
       throw Damage("recording format " + std::to_string(format) +
                    ", of another version of this program; this version reads format " +
                    std::to_string(recording_format));
     }
     require_whole_file(database, path);
+    // All commands refuse such a file, also those that do not need the sources.
+    if (number("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'source'") == 0) {
+      throw Damage("a recording without the table 'source'");
+    }
   }
 
   [[nodiscard]] std::string run_value(const std::string& key) {
@@ -54,7 +58,7 @@ class Recording::Tables {
   Database database;
 
  private:
-  std::int64_t pragma(const char* sql) {
+  std::int64_t number(const char* sql) {
     Statement query(database, sql);
     return query.step() ? query.integer(0) : 0;
   }

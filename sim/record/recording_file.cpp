@@ -43,6 +43,16 @@ void require_room_for_suffixes(const std::filesystem::path& path) {
   }
 }
 
+/// The next recording with the rest of the name would delete this one.
+void require_no_companion(const std::filesystem::path& path) {
+  for (const std::string& suffix : recording_companions()) {
+    if (path.filename().string().ends_with(suffix)) {
+      throw FileError(
+          path, "the name ends in " + suffix + ", as a file beside a recording does; give the recording another name");
+    }
+  }
+}
+
 [[noreturn]] void fail_to_create(const std::filesystem::path& path) {
   throw FileError(path, std::string("cannot be created: ") + std::strerror(errno));
 }
@@ -91,15 +101,21 @@ void remove_companions(const std::filesystem::path& path) {
   }
 }
 
-/// An empty file in place of a locked one, locked from before it gets the name. Programs that read the old file keep
-/// it.
-int replace(const std::filesystem::path& path) {
-  const std::filesystem::path name = temporary_name(folder_of(path));
+/// A new file with this name, locked. path: that of the recording, for messages.
+int create_and_lock(const std::filesystem::path& name, const std::filesystem::path& path) {
   const int descriptor = open(name.c_str(), O_RDONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     fail_to_create(path);
   }
   lock(descriptor, path);
+  return descriptor;
+}
+
+/// An empty file in place of a locked one, locked from before it gets the name. Programs that read the old file keep
+/// it.
+int replace(const std::filesystem::path& path) {
+  const std::filesystem::path name = temporary_name(folder_of(path));
+  const int descriptor = create_and_lock(name, path);
   if (rename(name.c_str(), path.c_str()) != 0) {
     const int reason = errno;
     close(descriptor);
@@ -140,9 +156,18 @@ bool is_recording(const std::filesystem::path& path) {
 
 std::vector<std::string> recording_companions() { return {"-wal", "-shm", "-journal"}; }
 
-RecordingClaim::RecordingClaim(const std::filesystem::path& path) {
+RecordingClaim::RecordingClaim(const std::filesystem::path& path, EarlierFile earlier) {
   require_file_or_nothing(path);
   require_room_for_suffixes(path);
+  require_no_companion(path);
+  if (earlier == EarlierFile::is_refused) {
+    if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
+      throw FileError(path, "exists already; give the recording another name");
+    }
+    descriptor_ = create_and_lock(path, path);
+    remove_companions(path);
+    return;
+  }
   const int found = open_and_lock(path);
   try {
     descriptor_ = empty_file(found, path);

@@ -363,6 +363,36 @@ TEST(Recorder, LeavesAFolderAlone) {
             std::string::npos);
 }
 
+TEST(Recorder, LeavesTheFilesBesideARecordingAlone) {
+  const TemporaryFolder folder;
+  const Scenario scenario = small_scenario();
+  for (const std::string suffix : {"-wal", "-shm", "-journal"}) {
+    EXPECT_NE(message_of<FileError>([&] {
+                Recorder(folder / ("run.proleg" + suffix), scenario, "test", "build");
+              }).find("the name ends in " + suffix),
+              std::string::npos);
+  }
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(Recorder, IfItMustNotReplaceAFileLeavesRecordingsAndLinksAlone) {
+  const TemporaryFolder folder;
+  const Scenario scenario = small_scenario();
+  record_small(folder / "run.proleg", scenario, 10);
+  std::filesystem::create_symlink(folder / "outside", folder / "link.proleg");
+  for (const char* const name : {"run.proleg", "link.proleg"}) {
+    EXPECT_NE(message_of<FileError>([&] {
+                Recorder(folder / name, scenario, "test", "build", EarlierFile::is_refused);
+              }).find("exists already"),
+              std::string::npos)
+        << name;
+  }
+  EXPECT_EQ(Recording(folder / "run.proleg").last_tick(), 9U);
+  EXPECT_FALSE(std::filesystem::exists(folder / "outside"));
+  Recorder(folder / "new.proleg", scenario, "test", "build", EarlierFile::is_refused).finish({});
+  EXPECT_TRUE(is_recording(folder / "new.proleg"));
+}
+
 TEST(Recorder, DoesNotReplaceARecordingThatIsBeingWritten) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
@@ -435,9 +465,9 @@ TEST(Recorder, ReportsADiskThatIsFull) {
         run_small(scenario, 20'000,
                   [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
         recorder.finish({});
-      } catch (const FileError&) {
+      } catch (const FileError& first) {
         // The recorder rejects calls after an error, so that a recording has no gap.
-        if (message_of<FileError>([&] { recorder.finish({}); }).find("earlier error") == std::string::npos) {
+        if (message_of<FileError>([&] { recorder.finish({}); }) != first.what()) {
           _exit(3);
         }
         throw;

@@ -96,6 +96,12 @@ TEST_F(BadRecording, AMissingTableIsRefused) {
   expect_refusal("no such table: pose");
 }
 
+TEST_F(BadRecording, WithoutItsSourcesItIsRefusedWhateverIsReadOfIt) {
+  damage("DROP TABLE source");
+  expect_refusal("a recording without the table 'source'");
+  EXPECT_THROW(Recording{path_}, InputError);
+}
+
 TEST_F(BadRecording, AMissingRowIsRefused) {
   damage("DELETE FROM internal_value WHERE tick = 12 AND joint = 1 AND value_index = 2");
   expect_refusal("a gap in the table internal_value at tick 12");

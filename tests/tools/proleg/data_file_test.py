@@ -5,6 +5,7 @@ Python's XML parser and SQLite are the oracles: a data file has the numbers of i
 usage: data_file_test.py SOURCE_DIR PROGRAM_DIR
 """
 
+import contextlib
 import math
 import os
 import re
@@ -212,6 +213,13 @@ class DataFiles(unittest.TestCase):
         self.refused("export", self.data, "--html", message="because of --html")
         self.refused("export", self.run_file, "--thesis", "--html", message="--html")
         self.refused("export", self.run_file, "--thesis", "--out", self.run_file, message="no data file")
+        damaged = self.folder / "damaged.proleg"
+        shutil.copyfile(self.run_file, damaged)
+        with contextlib.closing(sqlite3.connect(damaged)) as database:
+            database.execute("ALTER TABLE source RENAME COLUMN text TO words")
+        for form in ("--thesis", "--html"):
+            self.refused("export", damaged, form, message="no such column: text")
+        damaged.unlink()
         wrong = self.folder / "wrong.xml"
         wrong.write_text(self.data.read_text().replace('index="7"', 'index="seven"', 1))
         self.refused("export", wrong, message="wrong.xml:")

@@ -1,5 +1,9 @@
 // What the programs do with files that exist already, and with names.
 
+#include <sys/resource.h>
+
+#include <algorithm>
+
 #include "command_line.hpp"
 #include "sim/record/recording.hpp"
 
@@ -87,6 +91,9 @@ TEST_F(OutputFiles, AFileReplacesAFileOfItsKindAndNothingElse) {
     expect_nothing_written({"hil", uniform, "--can-log", other}, {other, "no CAN log"});
     expect_nothing_written({"hil", uniform, "--modules", "1=mcu", "--trace", "1=" + other}, {other, "no trace"});
     expect_nothing_written({"plot", recording, "--out", other}, {other, "no SVG picture"});
+    expect_nothing_written({"bus", uniform, "--pty", "--modules", "1=mcu", "--trace", "1=" + other},
+                           {other, "no trace"});
+    expect_nothing_written({"params", "save", other, "--bus", "sim:" + uniform}, {other, "no file of parameters"});
   }
   EXPECT_EQ(read_file(text), "precious\n");
   EXPECT_EQ(proleg(hil({})).status, 0) << "each replaces an earlier one";
@@ -94,6 +101,30 @@ TEST_F(OutputFiles, AFileReplacesAFileOfItsKindAndNothingElse) {
     EXPECT_EQ(proleg({"plot", recording}).status, 0);
     EXPECT_EQ(proleg({"export", recording, "--out", file("table").string()}).status, 0);
   }
+}
+
+TEST_F(OutputFiles, ABusWritesTheTraceOfAModule) {
+  const std::string trace = file("bus.tsv").string();
+  const Finished bus =
+      proleg({"bus", scenario("uniform"), "--pty", "--seconds", "0.1", "--modules", "1=mcu", "--trace", "1=" + trace});
+  EXPECT_EQ(bus.status, 0) << bus.err;
+  const std::string table = read_file(trace);
+  EXPECT_TRUE(table.starts_with("node\ttick\tto_state_frame\twhole_tick\n1\t0\t")) << table;
+  EXPECT_GE(std::ranges::count(table, '\n'), 10) << "the ticks of the world without a host";
+}
+
+TEST_F(OutputFiles, ALimitOfTheSizeOfFilesIsReportedAsAFullDiskIs) {
+  rlimit usual{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const rlimit small{200'000, usual.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Finished simulated =
+      proleg({"simulate", scenario("uniform"), "--seconds", "10", "--record", file("big.proleg").string()});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &usual), 0);
+  EXPECT_EQ(simulated.status, 1);
+  EXPECT_EQ(simulated.err.find("proleg simulate: " + file("big.proleg").string() + ": recording stopped: "), 0U)
+      << simulated.err;
+  EXPECT_EQ(std::ranges::count(simulated.err, '\n'), 1) << simulated.err;
 }
 
 TEST_F(OutputFiles, ARecordingThatIsReplacedIsNamed) {

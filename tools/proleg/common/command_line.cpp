@@ -167,6 +167,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     std::cerr << app_->get_name() << ": " << one_line(error.what()) << '\n';
   };
   occupy_closed_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file above the limit of its size is then an error like a full disk
   std::function<int()> action = body;
   try {
     app_->parse(argc, argv);

@@ -163,7 +163,13 @@ void Flashing::save_settings() {
   }
   if (!settings.empty()) {
     settings_file_ = options_.settings.value_or(free_name());
-    write_file(settings_file_, host::parameters_text(settings));
+    try {
+      write_file(settings_file_, host::parameters_text(settings));
+    } catch (const FileError& error) {
+      throw std::runtime_error(
+          std::string(error.what()) +
+          "; nothing was flashed; --settings FILE keeps the settings of the modules in another place");
+    }
   }
 }
 
@@ -407,7 +413,7 @@ int run(const FlashOptions& options) {
   const host::ImageFile image = host::read_image(options.image);
   if (options.settings) {
     const std::vector<PlannedOutput> outputs{
-        {"--settings", *options.settings, "file of parameters", starts_with("# Proleg parameters"), true}};
+        {"--settings", *options.settings, "file of parameters", starts_with(host::parameter_file_start), true}};
     check_outputs(outputs);
   }
   BusAccess bus(options);

@@ -314,12 +314,13 @@ int serve(const ServerOptions& options) {
   const BrokenModules broken(options.broken, run.scenario);
   HilModules modules(options, run.scenario);
   require_native(broken, modules, run.scenario);
+  std::vector<PlannedOutput> outputs = modules.planned_traces();
   if (options.can_log) {
-    const std::vector<PlannedOutput> outputs{
-        {"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))}};
-    check_outputs(outputs);
+    outputs.push_back({"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))});
   }
+  check_outputs(outputs);
   modules.flash("proleg bus");
+  modules.open_traces();
   catch_interrupts();
   Server server(options, run, modules, broken);
   const double seconds = options.scenario.seconds ? run.scenario.duration_s : 0.0;

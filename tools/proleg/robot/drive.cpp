@@ -254,6 +254,8 @@ int drive(const DriveOptions& options) {
     robot.follow();
   } catch (const std::exception& error) {
     failure = error.what();
+    // The stop takes many seconds if no module answers.
+    std::cerr << "proleg drive: the robot stops: " << *failure << '\n';
   }
   if (!robot.stop() && !failure) {
     failure = "not all modules have confirmed that their servos have no power: switch the robot off";
@@ -261,15 +263,19 @@ int drive(const DriveOptions& options) {
   const GaitCheck& check = robot.check();
   const DriveResult result = robot.result();
   const double seconds = static_cast<double>(std::uint64_t{result.ticks} * run.scenario.kernel.tick_period_us) / 1e6;
-  if (recorder) {
-    recorder->finish({{"simulated_s", exact_text(seconds)},
-                      {"differences", std::to_string(check.differences())},
-                      {"frames_missing", std::to_string(check.missing())},
-                      {"setpoint_hash", check.setpoint_hash().hex()},
-                      {"servo_hash", check.servo_hash().hex()}});
-  }
-  if (mirrored) {
-    mirrored->finish(seconds, check);
+  try {
+    if (recorder) {
+      recorder->finish({{"simulated_s", exact_text(seconds)},
+                        {"differences", std::to_string(check.differences())},
+                        {"frames_missing", std::to_string(check.missing())},
+                        {"setpoint_hash", check.setpoint_hash().hex()},
+                        {"servo_hash", check.servo_hash().hex()}});
+    }
+    if (mirrored) {
+      mirrored->finish(seconds, check);
+    }
+  } catch (const std::exception& error) {
+    failure = failure.value_or(error.what());
   }
   print_result(options, result, check, seconds, mirrored ? &*mirrored : nullptr);
   if (failure) {

@@ -229,6 +229,9 @@ int diff(const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
 int run(const ParamsOptions& options) {
   static_cast<void>(host::parse_nodes(options.nodes));
   if (options.action == "save") {
+    const std::vector<PlannedOutput> outputs{
+        {"FILE", options.file, "file of parameters", starts_with(host::parameter_file_start)}};
+    check_outputs(outputs);
     BusAccess bus(options);
     catch_interrupts();
     return save(options, bus);

@@ -203,9 +203,11 @@ Export table_of(const sim::Recording& recording, const std::filesystem::path& fi
 }
 
 Export data_file_of(const sim::Recording& recording, const std::filesystem::path& file) {
+  // Not within the braces: if a later part of nested braces throws, GCC 12 destroys the parts before it twice.
+  std::optional<sim::Scenario> scenario = sim::recorded_scenario(recording);
   return {file,
           {"--out", file, "data file", starts_with("<dataroot>")},
-          [&recording, scenario = sim::recorded_scenario(recording)](const Write& write) {
+          [&recording, scenario = std::move(scenario)](const Write& write) {
             sim::write_data_file(recording, scenario, write);
           }};
 }

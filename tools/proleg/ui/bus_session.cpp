@@ -294,7 +294,8 @@ void BusSession::start_robot(bool holds) {
   started_ = edits_.scenario_as_wanted();
   std::unique_ptr<sim::Recorder> recorder;
   if (!holds && !planned_recording_.empty()) {
-    recorder = std::make_unique<sim::Recorder>(planned_recording_, started_, "drive", options_.build_id);
+    recorder = std::make_unique<sim::Recorder>(planned_recording_, started_, "drive", options_.build_id,
+                                               sim::EarlierFile::is_refused);
   }
   const bool is_recording = recorder != nullptr;
   robot_.emplace(

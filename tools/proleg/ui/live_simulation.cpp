@@ -222,7 +222,7 @@ std::vector<std::string> LiveSimulation::repeating_moves() const {
 bool LiveSimulation::record(const std::filesystem::path& path, const std::string& program, const std::string& build_id,
                             const std::function<bool()>& goes_on) {
   end_recording();
-  auto recorder = std::make_unique<sim::Recorder>(path, scenario_, program, build_id);
+  auto recorder = std::make_unique<sim::Recorder>(path, scenario_, program, build_id, sim::EarlierFile::is_refused);
   auto again = std::make_unique<sim::Simulation>(scenario_, losses_);
   while (again->tick() < simulation_->tick()) {
     if (!goes_on()) {

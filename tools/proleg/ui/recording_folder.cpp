@@ -156,8 +156,8 @@ std::filesystem::path new_recording(const std::filesystem::path& folder, const s
     throw InputError("file", 0, in_quotes(shortened(name)), "a name without a folder that ends in .proleg");
   }
   std::filesystem::path path = folder / file;
-  if (std::filesystem::exists(path)) {
-    throw InputError(path.string(), 0, "a file that exists", "a new name");
+  if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
+    throw InputError(path.string(), 0, "a file or a link that exists", "a new name");
   }
   return path;
 }

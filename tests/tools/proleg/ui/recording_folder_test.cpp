@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void record(const fs::path& path, unsigned ticks) {
+  fs::remove(path);  // the page replaces no recording
   const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
   LiveSimulation live(scenario, {}, nullptr);
   ASSERT_TRUE(live.record(path, "simulate", "test", [] { return true; }));

@@ -249,6 +249,7 @@ TEST_F(SimulatedSessionTest, ARunOfOperationsIsTheRunOfItsCommandLine) {
 TEST_F(SimulatedSessionTest, RefusesInOneLineWhatItCannotDo) {
   open(true);
   std::ofstream(folder_ / "there.proleg") << "a file of the user";
+  std::filesystem::create_symlink(folder_ / "outside.proleg", folder_ / "link.proleg");
   const std::pair<const char*, json> operations[] = {
       {"fly", json::object()},
       {"step", {{"ticks", 0}}},
@@ -271,6 +272,7 @@ TEST_F(SimulatedSessionTest, RefusesInOneLineWhatItCannotDo) {
       {"record", {{"file", "run.txt"}}},
       {"record", {{"file", ""}}},
       {"record", {{"file", "there.proleg"}}},
+      {"record", {{"file", "link.proleg"}}},
   };
   for (const auto& [name, arguments] : operations) {
     SCOPED_TRACE(name + (' ' + arguments.dump()));

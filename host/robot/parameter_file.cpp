@@ -46,7 +46,7 @@ class Reader {
   void take(std::string_view line) {
     ++line_;
     if (line_ == 1) {
-      if (trimmed(line) != first_line) {
+      if (words(line) != words(first_line)) {
         refuse(in_quotes(line), "'" + std::string(first_line) + "'");
       }
       return;
@@ -132,10 +132,9 @@ std::string plain_value(const ParameterValue& value) {
 
 std::vector<ModuleParameters> read_parameters(const std::string& file, std::string_view text) {
   Reader reader(file);
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    reader.take(text.substr(0, end));
-    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  TextLines lines(text);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    reader.take(*line);
   }
   return reader.finish();
 }

@@ -136,6 +136,8 @@ json parse(std::string_view text) {
       }
       return true;
     });
+  } catch (const json::out_of_range&) {
+    reject("a number that is too large", "numbers of 64 bits (IEEE 754)");
   } catch (const json::exception&) {
     reject("text that is not JSON", "an object in JSON");
   }

@@ -290,14 +290,13 @@ std::optional<CanFrame> parse_frame(std::string_view word) {
 FaultSchedule parse_faults(const std::string& text, const std::string& path, const RobotModel& robot,
                            std::uint64_t run_us) {
   FaultSchedule schedule;
-  std::istringstream lines(text);
-  std::string whole;
-  for (int number = 1; std::getline(lines, whole); ++number) {
-    const std::string line = without_comment(whole);
+  TextLines lines(text);
+  while (const std::optional<std::string_view> whole = lines.next()) {
+    const std::string line = without_comment(std::string(*whole));
     if (trimmed(line).empty()) {
       continue;
     }
-    FaultLine reader(line, path, number, robot, run_us);
+    FaultLine reader(line, path, lines.number(), robot, run_us);
     for (const Fault& fault : reader.read()) {
       if (const Fault* other = find_overlap(schedule, fault)) {
         reader.refuse(in_quotes(describe(fault, robot)) + " while " + in_quotes(describe(*other, robot)) + " lasts",

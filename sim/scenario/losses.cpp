@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
-#include <sstream>
 #include <tuple>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -79,13 +79,17 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
   if (!file) {
     throw InputError(path, 0, "a file that cannot be read", expected);
   }
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) {
+    throw InputError(path, 0, "a file that cannot be read to its end", "a list of losses");
+  }
   std::vector<Loss> list;
-  std::string text;
-  for (int line = 1; std::getline(file, text); ++line) {
-    std::istringstream words(text.substr(0, text.find('#')));
+  TextLines lines(bytes);
+  while (const std::optional<std::string_view> text = lines.next()) {
+    const int line = lines.number();
     std::vector<std::string> fields;
-    for (std::string field; words >> field;) {
-      fields.push_back(field);
+    for (const std::string_view field : words(text->substr(0, text->find('#')))) {
+      fields.emplace_back(field);
     }
     if (fields.empty()) {
       continue;
@@ -93,7 +97,7 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
     const auto tick = parse_whole<std::uint32_t>(fields[0]);
     const bool has_channel = fields.size() == 4;
     if (!tick || fields.size() < 3 || fields.size() > 4 || (has_channel && fields[3] != "1" && fields[3] != "2")) {
-      throw InputError(path, line, in_quotes(text), "TICK SENDER RECEIVER [CHANNEL], channel 1 or 2");
+      throw InputError(path, line, in_quotes(*text), "TICK SENDER RECEIVER [CHANNEL], channel 1 or 2");
     }
     Loss loss{*tick, parse_joint(fields[1], robot, path, line),
               static_cast<std::uint8_t>(has_channel && fields[3] == "2" ? 1 : 0), 0};
@@ -112,9 +116,6 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
         list.push_back(loss);
       }
     }
-  }
-  if (file.bad()) {
-    throw InputError(path, 0, "a file that cannot be read to its end", "a list of losses");
   }
   return list;
 }

@@ -15,6 +15,28 @@ constexpr std::string_view blanks = " \t\r\n";
 
 unsigned byte_at(std::string_view text, std::size_t position) { return static_cast<unsigned char>(text[position]); }
 
+/// The code point of a valid UTF-8 character.
+std::uint32_t code_point_of(std::string_view character) {
+  std::uint32_t code_point = byte_at(character, 0);
+  if (character.size() > 1) {
+    code_point &= 0x7FU >> character.size();
+  }
+  for (std::size_t i = 1; i < character.size(); ++i) {
+    code_point = (code_point << 6U) | (byte_at(character, i) & 0x3FU);
+  }
+  return code_point;
+}
+
+/// Whether a character looks like a blank or like nothing, or changes the direction of the text (Unicode: general
+/// categories Zs and Cf, of the basic plane, without the blank of ASCII).
+bool is_invisible(std::uint32_t code_point) {
+  constexpr std::pair<std::uint32_t, std::uint32_t> ranges[] = {
+      {0x00A0, 0x00A0}, {0x00AD, 0x00AD}, {0x061C, 0x061C}, {0x1680, 0x1680}, {0x180E, 0x180E},
+      {0x2000, 0x200F}, {0x202A, 0x202F}, {0x205F, 0x206F}, {0x3000, 0x3000}, {0xFEFF, 0xFEFF}};
+  return std::ranges::any_of(
+      ranges, [code_point](const auto& range) { return code_point >= range.first && code_point <= range.second; });
+}
+
 /// Whether a terminal acts on the character instead of showing it. Such are the control characters of ASCII and
 /// Latin-1, the line separator and the paragraph separator.
 bool breaks_a_line(std::string_view character) {
@@ -118,7 +140,20 @@ std::string shortened(std::string_view text, std::size_t max_characters) {
   return std::string(text.substr(0, end)) + (end < text.size() ? "..." : "");
 }
 
-std::string in_quotes(std::string_view text) { return "'" + shortened(text) + "'"; }
+std::string in_quotes(std::string_view text) {
+  const std::string shown = shortened(text);
+  std::string result = "'";
+  for (std::string_view rest = shown; !rest.empty();) {
+    const std::string_view character = rest.substr(0, std::max<std::size_t>(utf8_character_size(rest), 1));
+    rest.remove_prefix(character.size());
+    if (character.size() > 1 && is_invisible(code_point_of(character))) {
+      result += "<U+" + hexadecimal(code_point_of(character), 4).substr(2) + ">";
+    } else {
+      result += character;
+    }
+  }
+  return result + "'";
+}
 
 std::string lower_case(std::string_view text) {
   std::string result(text);
@@ -138,6 +173,18 @@ std::string_view trimmed(std::string_view text) {
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view mark = "\xEF\xBB\xBF";
   return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
+std::optional<std::string_view> TextLines::next() {
+  if (rest_.empty()) {
+    return std::nullopt;
+  }
+  const std::size_t end = rest_.find('\n');
+  std::string_view line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  line.remove_suffix(line.ends_with('\r') ? 1 : 0);
+  ++number_;
+  return line;
 }
 
 std::vector<std::string_view> words(std::string_view text) {
@@ -177,7 +224,8 @@ std::optional<std::string> most_similar(std::string_view word, std::span<const s
 std::optional<double> parse_number(std::string_view word) {
   double value = 0.0;
   const char* const end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data(), end, value);
+  const bool has_plus = word.starts_with('+') && !word.starts_with("+-");  // from_chars() takes a minus only
+  const auto [rest, error] = std::from_chars(word.data() + (has_plus ? 1 : 0), end, value);
   if (error != std::errc{} || rest != end || !std::isfinite(value)) {
     return std::nullopt;
   }

@@ -28,7 +28,8 @@ namespace proleg {
 /// picture.
 [[nodiscard]] std::string shortened(std::string_view text, std::size_t max_characters = 60);
 
-/// The text, shortened to 60 characters, between single quotes.
+/// The text, shortened to 60 characters, between single quotes. Characters that nobody sees, such as a no-break space
+/// or a zero-width one, are shown by their numbers: <U+00A0>.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// The text with ASCII letters in lower case. XML tags and attributes are compared in this form.
@@ -42,6 +43,21 @@ namespace proleg {
 
 /// The words of a text that blanks separate.
 [[nodiscard]] std::vector<std::string_view> words(std::string_view text);
+
+/// The lines of a text that a person writes, one after the other, without the byte order mark of an editor and without
+/// line ends. Lines end with "\n" or "\r\n". The text must outlive the object.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text) : rest_(without_byte_order_mark(text)) {}
+  /// The next line; nothing behind the last one.
+  [[nodiscard]] std::optional<std::string_view> next();
+  /// Number of the line that next() has given, from 1.
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
 
 /// The items as a list: "a, b, c"; at most 30 items, then "...". "nothing" for an empty list.
 [[nodiscard]] std::string listed(std::span<const std::string> items);
@@ -60,7 +76,7 @@ template <typename Integer>
                                                                                   : std::optional<Integer>(value);
 }
 
-/// The finite decimal number that is the whole word; nothing for anything else.
+/// The finite decimal number that is the whole word, with or without a sign; nothing for anything else.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 
 /// A probability, 0 to 1 or 0% to 100%, times 2^32 (at most 2^32 - 1); nothing for anything else.

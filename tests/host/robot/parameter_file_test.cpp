@@ -30,6 +30,17 @@ TEST(ParameterFile, WritesWhatItReads) {
   EXPECT_EQ(read_parameters("AGAIN", parameters_text(modules)), modules);
 }
 
+TEST(ParameterFile, MayComeFromAnyEditor) {
+  const std::string text = std::string(start) + "3\t0x6080\t300\tMax motor speed\n";
+  const auto modules = read_parameters("FILE", text);
+  std::string edited = "\xEF\xBB\xBF" + text;
+  edited.replace(edited.find("parameters 1"), 12, "parameters\t1");
+  for (std::size_t end = edited.find('\n'); end != std::string::npos; end = edited.find('\n', end + 2)) {
+    edited.insert(end, "\r");
+  }
+  EXPECT_EQ(read_parameters("FILE", edited), modules);
+}
+
 TEST(ParameterFile, KeepsEveryValueOfEverySetting) {
   constexpr std::uint64_t seed = 7;
   std::mt19937_64 random(seed);

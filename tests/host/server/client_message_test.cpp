@@ -54,6 +54,8 @@ TEST(ClientMessage, MayHaveFieldsOfALaterVersion) {
 
 TEST(ClientMessage, NamesWhatIsWrong) {
   EXPECT_EQ(error_of("{"), "message: found text that is not JSON, expected an object in JSON");
+  EXPECT_EQ(error_of(R"({"type": "beat", "age_ms": 1e400})"),
+            "message: found a number that is too large, expected numbers of 64 bits (IEEE 754)");
   EXPECT_EQ(error_of("[1]"), "message: found an array, expected an object");
   EXPECT_EQ(error_of(R"({"id": 1})"), "message: found no field 'type', expected one");
   EXPECT_EQ(error_of(R"({"type": "halt"})"),

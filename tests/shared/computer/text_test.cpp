@@ -52,6 +52,33 @@ TEST(Text, OnlyAWholeByteOrderMarkAtTheStartIsLeftOut) {
   }
 }
 
+TEST(Text, InQuotesEveryCharacterIsSeen) {
+  EXPECT_EQ(in_quotes("\xEF\xBB\xBF# a\xC2\xA0"
+                      "b"),
+            "'<U+FEFF># a<U+00A0>b'");
+  EXPECT_EQ(in_quotes("\xE2\x80\x8B|\xE2\x80\xAE|\xE3\x80\x80"), "'<U+200B>|<U+202E>|<U+3000>'");
+  EXPECT_EQ(in_quotes("\xC3\xA4 \xE2\x82\xAC \xF0\x9F\x90\x9B"), "'\xC3\xA4 \xE2\x82\xAC \xF0\x9F\x90\x9B'");
+}
+
+TEST(Text, LinesOfEveryEditorAreEqual) {
+  const auto lines_of = [](std::string_view text) {
+    std::vector<std::string> all;
+    TextLines lines(text);
+    while (const auto line = lines.next()) {
+      all.push_back(std::to_string(lines.number()) + ":" + std::string(*line));
+    }
+    return all;
+  };
+  const std::vector<std::string> expected{"1:a b", "2:", "3:c"};
+  for (const char* text : {"a b\n\nc", "a b\n\nc\n", "a b\r\n\r\nc\r\n",
+                           "\xEF\xBB\xBF"
+                           "a b\r\n\nc"}) {
+    EXPECT_EQ(lines_of(text), expected);
+  }
+  EXPECT_TRUE(lines_of("").empty());
+  EXPECT_TRUE(lines_of("\xEF\xBB\xBF").empty());
+}
+
 TEST(Text, AWholeNumberIsAllOfTheTextAndFits) {
   EXPECT_EQ(parse_whole<std::uint8_t>("255"), 255);
   EXPECT_EQ(parse_whole<std::uint32_t>("fF", 16), 255U);
@@ -89,7 +116,9 @@ TEST(Text, HexadecimalNumbersHaveAtLeastTheDigitsAskedFor) {
 TEST(Text, NumbersAreWholeWordsAndFinite) {
   EXPECT_EQ(parse_number("-1.5e3"), -1500.0);
   EXPECT_EQ(parse_number(".5"), 0.5);
-  for (const char* bad : {"", " 1", "1 ", "+1", "1,5", "0x1", "inf", "-infinity", "nan", "1e999", "--1", "1e"}) {
+  EXPECT_EQ(parse_number("+0.25"), 0.25) << "as printf writes with %+f";
+  for (const char* bad :
+       {"", " 1", "1 ", "+", "++1", "+-1", "-+1", "1,5", "0x1", "inf", "-infinity", "nan", "1e999", "--1", "1e"}) {
     EXPECT_FALSE(parse_number(bad).has_value()) << bad;
   }
 }

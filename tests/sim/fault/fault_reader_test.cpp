@@ -28,6 +28,17 @@ std::string refusal_of(const std::string& text) {
   return message_of<InputError>([&] { static_cast<void>(parse(text)); });
 }
 
+TEST(FaultFile, MayComeFromAnyEditor) {
+  const FaultSchedule schedule = parse(
+      "\xEF\xBB\xBF"
+      "at 1s unplug J3 for 400ms\r\nat\t2s corrupt 12.5% for 1s\r\n");
+  ASSERT_EQ(schedule.size(), 2U);
+  EXPECT_EQ(refusal_of("at\xC2\xA0"
+                       "1s unplug J3 for 1s")
+                    .find("<U+00A0>") != std::string::npos,
+            true);
+}
+
 TEST(FaultFile, HasAFaultInEachLine) {
   const FaultSchedule schedule = parse(
       "# a comment\n"

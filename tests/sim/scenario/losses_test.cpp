@@ -58,6 +58,14 @@ TEST_F(LossFile, NamesTickSenderReceiverAndChannel) {
   EXPECT_FALSE(losses.lost({120, 0, 0, 2}));
 }
 
+TEST_F(LossFile, MayComeFromAnyEditor) {
+  EXPECT_EQ(read("\xEF\xBB\xBF"
+                 "5\tJ3 *\r\n")
+                .receivers_without(5, 2, 0),
+            JointMask(0b11011));
+  expect_refusal("5\xC2\xA0J3 *", "'5<U+00A0>J3 *'");
+}
+
 TEST_F(LossFile, AStarMeansAllOtherJoints) { EXPECT_EQ(read("5 J3 *").receivers_without(5, 2, 0), JointMask(0b11011)); }
 
 TEST_F(LossFile, WithoutALineIsNoLoss) { EXPECT_FALSE(read("# nothing\n").any()); }

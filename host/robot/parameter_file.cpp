@@ -43,8 +43,8 @@ class Reader {
  public:
   explicit Reader(const std::string& file) : file_(file) {}
 
-  void take(std::string_view line) {
-    ++line_;
+  void take(std::string_view line, int number) {
+    line_ = number;
     if (line_ == 1) {
       if (words(line) != words(first_line)) {
         refuse(in_quotes(line), "'" + std::string(first_line) + "'");
@@ -134,7 +134,7 @@ std::vector<ModuleParameters> read_parameters(const std::string& file, std::stri
   Reader reader(file);
   TextLines lines(text);
   while (const std::optional<std::string_view> line = lines.next()) {
-    reader.take(*line);
+    reader.take(*line, lines.number());
   }
   return reader.finish();
 }

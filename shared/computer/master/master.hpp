@@ -262,7 +262,6 @@ class Master final : private SdoWork {
 
   void advance(Microseconds now);
   void send_network_requests();
-  void send_quick_stops();
   [[nodiscard]] bool is_phase_done() const;
   void next_phase();
   void enter(Phase phase);

@@ -25,9 +25,9 @@ void Master::send_network_requests() {
   const auto send = [this](NmtCommand command, std::uint8_t node) {
     return queue_.push(encode(NmtRequest{command, node}));
   };
-  const auto send_each = [&](NmtCommand command, JointMask& joints) {
+  const auto send_each = [this](const auto& request_to, JointMask& joints) {
     for (const unsigned joint : joints) {
-      if (!send(command, setup_.nodes[joint])) {
+      if (!queue_.push(encode(request_to(setup_.nodes[joint])))) {
         return;
       }
       joints.erase(joint);
@@ -36,21 +36,15 @@ void Master::send_network_requests() {
   reset_all_pending_ = reset_all_pending_ && !send(NmtCommand::reset_node, 0);
   pre_operational_all_pending_ = pre_operational_all_pending_ && !send(NmtCommand::enter_pre_operational, 0);
   start_all_pending_ = start_all_pending_ && (pre_operational_all_pending_ || !send(NmtCommand::start, 0));
-  send_quick_stops();
-  send_each(NmtCommand::start, start_joints_);
-  send_each(NmtCommand::reset_node, reset_joints_);
-}
-
-/// Sends the quick stops that no module confirms: a joint must not move on while the master waits for the answer of
-/// another one, which may be cut off. Phase::ramp repeats each with a confirmation.
-void Master::send_quick_stops() {
-  for (const unsigned joint : stop_joints_) {
-    // The module takes no target from this value: it is no angle of a joint.
-    if (!queue_.push(encode(Command{setup_.nodes[joint], quick_stop_controlword, position_not_measured}))) {
-      return;
-    }
-    stop_joints_.erase(joint);
-  }
+  // A joint must not move on while the master waits for the answer of another one, which may be cut off. Phase::ramp
+  // repeats the quick stop with a confirmation. The module takes no target from the command: it is no angle of a joint.
+  send_each(
+      [](std::uint8_t node) {
+        return Command{node, quick_stop_controlword, position_not_measured};
+      },
+      stop_joints_);
+  send_each([](std::uint8_t node) { return NmtRequest{NmtCommand::start, node}; }, start_joints_);
+  send_each([](std::uint8_t node) { return NmtRequest{NmtCommand::reset_node, node}; }, reset_joints_);
 }
 
 bool Master::is_phase_done() const {

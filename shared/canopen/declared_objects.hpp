@@ -183,10 +183,10 @@ inline constexpr Object servo_period =
                              "between two pulses, in microseconds"));
 inline constexpr Object lower_limit =
     in_unit(angle, read_write(kernel.at(4), "Lower limit", DataType::integer32, full_angle.minimum, full_angle,
-                              "of the joint angle; 90 degrees = 2^30"));
+                              "of the joint angle; 2^30 is 90 degrees"));
 inline constexpr Object upper_limit =
     in_unit(angle, read_write(kernel.at(5), "Upper limit", DataType::integer32, full_angle.maximum, full_angle,
-                              "of the joint angle; 90 degrees = 2^30"));
+                              "of the joint angle; 2^30 is 90 degrees"));
 inline constexpr Object activate = read_write(kernel.at(6), "Activate", DataType::unsigned8, 0, {0, 1},
                                               "1: applies joint index, slots, seed and periods; 0: not configured");
 
@@ -208,7 +208,7 @@ inline constexpr ObjectArray slot_group_high{
 inline constexpr ObjectGroup measured{0x2009, ObjectCode::record, "Measured"};
 inline constexpr Object measured_angle =
     in_unit(short_angle, read_only(measured.at(1), "Actual angle", DataType::integer16,
-                                   "upper bits of 0x6064: 90 degrees = 2^14; -32768: not measured"));
+                                   "upper bits of 0x6064: 2^14 is 90 degrees; -32768: not measured"));
 inline constexpr Object temperature =
     in_unit("degC", read_only(measured.at(2), "Temperature", DataType::integer8, "of the chip, in degrees Celsius"));
 
@@ -353,24 +353,24 @@ inline constexpr Object mode_display =
     read_only({0x6061, 0}, "Modes of operation display", DataType::integer8, "the mode in force, as in 0x6060");
 inline constexpr Object position_demand =
     in_unit(angle, read_only({0x6062, 0}, "Position demand value", DataType::integer32,
-                             "set-point of the present tick; 90 degrees = 2^30"));
+                             "set-point of the present tick; 2^30 is 90 degrees"));
 inline constexpr Object actual_position =
     in_unit(angle, read_only({0x6064, 0}, "Position actual value", DataType::integer32,
-                             "90 degrees = 2^30; -2147483648: not measured"));
+                             "2^30 is 90 degrees; -2147483648: not measured"));
 inline constexpr Object rated_current =
     in_unit("mA", constant({0x6075, 0}, "Motor rated current", DataType::unsigned32, 1'000,
                            "1,000 mA, the unit of 0x6078; not the rated current of the servo"));
 inline constexpr Object actual_current = in_unit(
     "mA", read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA"));
 inline constexpr Object target_position = in_unit(angle, read_write({0x607A, 0}, "Target position", DataType::integer32,
-                                                                    0, full_angle, "joint angle; 90 degrees = 2^30"));
+                                                                    0, full_angle, "joint angle; 2^30 is 90 degrees"));
 inline constexpr ObjectGroup position_limits{0x607D, ObjectCode::array, "Software position limit"};
 inline constexpr Object lowest_position =
     in_unit(angle, read_write(position_limits.at(1), "Min position limit", DataType::integer32, full_angle.minimum,
-                              {full_angle.minimum, 0}, "joint angle that the mechanics allow; 90 degrees = 2^30"));
+                              {full_angle.minimum, 0}, "joint angle that the mechanics allow; 2^30 is 90 degrees"));
 inline constexpr Object highest_position =
     in_unit(angle, read_write(position_limits.at(2), "Max position limit", DataType::integer32, full_angle.maximum,
-                              {0, full_angle.maximum}, "joint angle that the mechanics allow; 90 degrees = 2^30"));
+                              {0, full_angle.maximum}, "joint angle that the mechanics allow; 2^30 is 90 degrees"));
 inline constexpr Object command_speed =
     in_unit("deg/s", read_write({0x6080, 0}, "Max motor speed", DataType::unsigned32, default_command_speed,
                                 {min_command_speed, max_command_speed},
@@ -419,7 +419,7 @@ inline constexpr Object monitoring_identifier =
     node_identifier(monitoring_transmission.at(1), "COB-ID used by TPDO", no_remote_frames | identifier::monitoring);
 inline constexpr Object monitoring_transmission_type =
     read_only(monitoring_transmission.at(2), "Transmission type", DataType::unsigned8,
-              "number of SYNCs between two: 10, or 100 if the robot fills the bus");
+              "number of SYNCs between two: 10, or 100 if the robot fills the bus", monitoring_periods[0]);
 inline constexpr std::array frame_transmission_mappings{
     ObjectGroup{0x1A00, ObjectCode::record, "TPDO mapping parameter, state frame"},
     ObjectGroup{0x1A01, ObjectCode::record, "TPDO mapping parameter, second state frame"},

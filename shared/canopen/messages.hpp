@@ -180,7 +180,11 @@ struct Command {
 /// Decodes a command. A longer frame is accepted: bytes behind the mapped ones are not used (CiA 301, 7.2.2.5.1).
 [[nodiscard]] std::optional<Command> decode_command(const CanFrame& frame);
 
-/// The measurements that a module sends at every 10th SYNC.
+/// Numbers of SYNCs between two monitoring frames of a module: the usual one, and that of a robot that fills the bus
+/// (robot_configuration.hpp).
+inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
+
+/// The measurements that a module sends at every 10th or 100th SYNC.
 struct Monitoring {
   static constexpr std::int16_t not_measured = -0x8000;
 

@@ -119,10 +119,10 @@ struct Object : Entry {
                                         std::string_view help = {}) {
   return {{address, type, Access::constant, false, value, min_value(type), max_value(type), {}}, name, help};
 }
-/// Declares an entry that only the device changes; its default value has no meaning.
+/// Declares an entry that only the device changes. `usual_value` is 0 if it has none.
 [[nodiscard]] constexpr Object read_only(Address address, std::string_view name, DataType type,
-                                         std::string_view help = {}) {
-  return {{address, type, Access::read_only, false, 0, min_value(type), max_value(type), {}}, name, help};
+                                         std::string_view help = {}, std::uint32_t usual_value = 0) {
+  return {{address, type, Access::read_only, false, usual_value, min_value(type), max_value(type), {}}, name, help};
 }
 /// Declares the identifier `base` + node id of a message of the predefined connection set.
 [[nodiscard]] constexpr Object node_identifier(Address address, std::string_view name, std::uint32_t base,

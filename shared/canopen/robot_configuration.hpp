@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "shared/canopen/messages.hpp"
 #include "shared/fixed/crc32.hpp"
 #include "shared/kernel/kernel.hpp"
 
@@ -43,9 +44,6 @@ struct RobotConfiguration {
 /// others. The rest is for EMCY, SDO and the host.
 inline constexpr std::uint32_t max_bus_load_permille = 850;
 
-/// Numbers of SYNCs between two monitoring frames of a module: 10, or 100 if 10 would exceed max_bus_load_permille.
-inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
-
 /// Share of a 1 Mbit/s bus, in thousandths and rounded up, that a robot's SYNC, state frames and monitoring take if
 /// every frame has the most stuff bits: 135 bits for 8 bytes of data, 115 for 6 and 65 for one, with interframe space
 /// (ISO 11898-1).
@@ -62,6 +60,7 @@ inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
   return (bits * 1000 + kernel.tick_period_us - 1) / kernel.tick_period_us;
 }
 
+/// The first of monitoring_periods, or the second if the first would exceed max_bus_load_permille.
 [[nodiscard]] inline std::uint32_t monitoring_period(const KernelConfiguration& kernel) {
   const auto [usual, long_period] = monitoring_periods;
   return worst_bus_load_permille(kernel, usual) <= max_bus_load_permille ? usual : long_period;

@@ -280,6 +280,8 @@ TEST_F(CommandLine, ObjectsListsTheObjectDictionary) {
   expect_refused({"objects", "--dbc", "--eds"}, {"--dbc", "--eds"});
   expect_refused({"objects", "--dbc", scenario("uniform"), "--nodes", "3"}, {"--nodes", "FILE"});
   expect_refused({"objects", scenario("uniform")}, {"FILE", "uniform", "only with --dbc"});
+  expect_refused({"objects", "--units"}, {"--units", "only with --eds"});
+  expect_refused({"objects", "--markdown", "--units"}, {"--units", "--markdown"});
   expect_refused({"objects", "--eds", "--nodes", "3"}, {"--nodes", "'3'", "only with --dbc"});
   expect_refused({"objects", "--dbc", "--nodes", "127"}, {"--nodes", "'127'", "1 to 126"});
   expect_refused({"objects", "--dbc", "--nodes", "0"}, {"--nodes", "'0'", "1 to 126"});

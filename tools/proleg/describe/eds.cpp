@@ -74,29 +74,14 @@ bool is_command(const Object& object) {
   return object.address == object::store_parameters.address || object.address == object::restore_parameters.address;
 }
 
-void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) {
-  out << "ParameterName=" << entry_name(object.address).view()
-      << "\nObjectType=0x7\nDataType=" << hexadecimal(static_cast<std::uint32_t>(object.type), 4)
-      << "\nAccessType=" << access_type(object, mapped) << '\n';
-  if (is_long(object.type)) {
-    if (!object.text.empty()) {
-      out << "DefaultValue=" << object.text << '\n';
-    }
-  } else if (object.adds_node_id) {
-    out << "DefaultValue=$NODEID+" << number(object.type, object.default_value) << '\n';
-  } else if (object.access == Access::constant || object.access == Access::read_write) {
-    out << "DefaultValue=" << number(object.type, object.default_value) << '\n';
-  }
-  const Range range = outer_range(object);
-  const bool has_limits = object.access == Access::read_write && !is_long(object.type);
-  if (has_limits && range.minimum != min_value(object.type)) {
-    out << "LowLimit=" << number(object.type, range.minimum) << '\n';
-  }
-  if (has_limits && range.maximum != max_value(object.type)) {
-    out << "HighLimit=" << number(object.type, range.maximum) << '\n';
-  }
-  out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
-  // The following keys are not in CiA 306, which lets readers skip unknown keys: python-canopen reads them.
+/// Whether the file has a default value. A value that only the module changes has one if there is a usual value.
+bool has_default(const Object& object) {
+  return object.access == Access::constant || object.access == Access::read_write ||
+         (object.access == Access::read_only && object.default_value != 0);
+}
+
+/// The keys of python-canopen, for which CiA 306 has none.
+void print_units(std::ostream& out, const Object& object) {
   const UnitScale& scale = object.scale;
   if (scale.numerator != scale.denominator) {
     out << "Factor=" << exact_text(static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator))
@@ -108,17 +93,44 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
   if (!object.help.empty()) {
     out << "Description=" << object.help << '\n';
   }
+}
+
+void print_entry(std::ostream& out, const Object& object, const Mapped& mapped, EdsKeys keys) {
+  out << "ParameterName=" << entry_name(object.address).view()
+      << "\nObjectType=0x7\nDataType=" << hexadecimal(static_cast<std::uint32_t>(object.type), 4)
+      << "\nAccessType=" << access_type(object, mapped) << '\n';
+  if (is_long(object.type)) {
+    if (!object.text.empty()) {
+      out << "DefaultValue=" << object.text << '\n';
+    }
+  } else if (object.adds_node_id) {
+    out << "DefaultValue=$NODEID+" << number(object.type, object.default_value) << '\n';
+  } else if (has_default(object)) {
+    out << "DefaultValue=" << number(object.type, object.default_value) << '\n';
+  }
+  const Range range = outer_range(object);
+  const bool has_limits = object.access == Access::read_write && !is_long(object.type);
+  if (has_limits && range.minimum != min_value(object.type)) {
+    out << "LowLimit=" << number(object.type, range.minimum) << '\n';
+  }
+  if (has_limits && range.maximum != max_value(object.type)) {
+    out << "HighLimit=" << number(object.type, range.maximum) << '\n';
+  }
+  out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
+  if (keys == EdsKeys::with_units) {
+    print_units(out, object);
+  }
   if (is_command(object)) {
     out << "ObjFlags=0x1\n";  // refuse write on download (CiA 306)
   }
 }
 
-void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped) {
+void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped, EdsKeys keys) {
   const IndexInfo info = *find_index(index);
   const std::string name = hexadecimal(index, 4).substr(2);
   out << "\n[" << name << "]\n";
   if (info.code == ObjectCode::variable) {
-    print_entry(out, *find_object({index, 0}), mapped);
+    print_entry(out, *find_object({index, 0}), mapped, keys);
     return;
   }
   out << "ParameterName=" << index_name(index).view()
@@ -127,24 +139,24 @@ void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped) {
   for (unsigned sub = 0; sub <= info.max_sub; ++sub) {
     // The sub-index is hexadecimal (CiA 306).
     out << "\n[" << name << "sub" << hexadecimal(sub).substr(2) << "]\n";
-    print_entry(out, *find_object({index, static_cast<std::uint8_t>(sub)}), mapped);
+    print_entry(out, *find_object({index, static_cast<std::uint8_t>(sub)}), mapped, keys);
   }
 }
 
 void print_list(std::ostream& out, std::string_view title, const std::vector<std::uint16_t>& indices,
-                const Mapped& mapped) {
+                const Mapped& mapped, EdsKeys keys) {
   out << "\n[" << title << "]\nSupportedObjects=" << indices.size() << '\n';
   for (std::size_t i = 0; i < indices.size(); ++i) {
     out << i + 1 << '=' << hexadecimal(indices[i], 4) << '\n';
   }
   for (const std::uint16_t index : indices) {
-    print_index(out, index, mapped);
+    print_index(out, index, mapped, keys);
   }
 }
 
 }  // namespace
 
-void print_eds(std::ostream& out) {
+void print_eds(std::ostream& out, EdsKeys keys) {
   std::vector<std::uint16_t> mandatory;
   std::vector<std::uint16_t> optional;
   std::vector<std::uint16_t> manufacturer;
@@ -183,12 +195,14 @@ void print_eds(std::ostream& out) {
     out << "Dummy000" << type << "=0\n";
   }
   out << "\n[Comments]\nLines=2\nLine1=Written from the declarations in shared/canopen and shared/gait.\n"
-         "Line2=Factor, Unit and Description are for python-canopen.\n";
+      << (keys == EdsKeys::with_units
+              ? "Line2=Factor, Unit and Description are for python-canopen.\n"
+              : "Line2=Units and help texts for python-canopen: proleg objects --eds --units\n");
 
   const Mapped mapped;
-  print_list(out, "MandatoryObjects", mandatory, mapped);
-  print_list(out, "OptionalObjects", optional, mapped);
-  print_list(out, "ManufacturerObjects", manufacturer, mapped);
+  print_list(out, "MandatoryObjects", mandatory, mapped, keys);
+  print_list(out, "OptionalObjects", optional, mapped, keys);
+  print_list(out, "ManufacturerObjects", manufacturer, mapped, keys);
 }
 
 }  // namespace proleg::tools

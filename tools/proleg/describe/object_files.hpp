@@ -8,10 +8,15 @@
 
 namespace proleg::tools {
 
+/// The keys of an entry in an Electronic Data Sheet.
+enum class EdsKeys {
+  of_the_standard,  ///< those of CiA 306-1 alone: strict readers refuse others
+  with_units,       ///< also Factor, Unit and Description (the help text), which python-canopen reads
+};
+
 /// Writes the object dictionary as an Electronic Data Sheet (CiA 306-1), which CANopen tools read. The date is fixed,
-/// so that equal dictionaries give equal files. Factor, unit and help text, for which the format has no keys, have the
-/// keys that python-canopen reads.
-void print_eds(std::ostream& out);
+/// so that equal dictionaries give equal files.
+void print_eds(std::ostream& out, EdsKeys keys);
 
 /// Writes the frames of the protocol as a DBC file, with names, places, units and values of their signals. They follow
 /// from the declarations of the messages, the process data objects and the algorithms.

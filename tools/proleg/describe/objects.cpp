@@ -216,9 +216,14 @@ int main(int argc, char** argv) {
       "Lists the object dictionary of a module: the objects that can be read and set over the bus. With --dbc: the "
       "frames on the bus.");
   bool eds = false;
+  bool units = false;
   bool markdown = false;
   command_line.add_flag("--eds", eds, "print an Electronic Data Sheet (CiA 306) for CANopen tools");
   command_line.add_flag("--markdown", markdown, "print Markdown tables").excludes("--eds");
+  command_line
+      .add_flag("--units", units,
+                "with --eds: also units and help texts, with the keys of python-canopen; strict readers refuse them")
+      .excludes("--markdown");
   bool dbc = false;
   std::string scenario;
   std::optional<std::string> nodes;
@@ -236,10 +241,14 @@ int main(int argc, char** argv) {
       throw InputError(scenario.empty() ? "--nodes" : "FILE", 0, in_quotes(scenario.empty() ? *nodes : scenario),
                        "it only with --dbc");
     }
+    if (units && !eds) {
+      throw InputError("--units", 0, "it without --eds", "it only with --eds");
+    }
     if (dbc) {
       print_dbc(std::cout, scenario, nodes);
     } else if (eds) {
-      proleg::tools::print_eds(std::cout);
+      using proleg::tools::EdsKeys;
+      proleg::tools::print_eds(std::cout, units ? EdsKeys::with_units : EdsKeys::of_the_standard);
     } else if (markdown) {
       print_markdown(std::cout);
     } else {

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Reads an Electronic Data Sheet and checks it against CiA 306-1, and its content against CiA 301.
 
-Usage: eds_test.py FILE
+Usage: eds_test.py FILE PROGRAM (proleg-objects)
 """
 
 import configparser
 import re
+import subprocess
 import sys
 import unittest
 
@@ -16,6 +17,11 @@ TYPES = {1: (1, False), 2: (8, True), 3: (16, True), 4: (32, True), 5: (8, False
 LONG_TYPES = {9, 10, 15}
 ACCESS = {"ro", "wo", "rw", "rwr", "rww", "const"}
 LISTS = ("MandatoryObjects", "OptionalObjects", "ManufacturerObjects")
+# The keys of an object in CiA 306-1. Strict readers (Lely's dcfchk and dcfgen) refuse a file with others.
+KEYS = {"ParameterName", "ObjectType", "SubNumber", "DataType", "LowLimit", "HighLimit", "AccessType", "DefaultValue",
+        "PDOMapping", "ObjFlags", "CompactSubObj"}
+# The keys that python-canopen reads beside them.
+UNIT_KEYS = {"Factor", "Unit", "Description"}
 
 
 def parse(text):
@@ -26,8 +32,9 @@ def parse(text):
 
 
 class Check:
-    def __init__(self, text):
+    def __init__(self, text, keys=frozenset(KEYS)):
         self.eds = parse(text)
+        self.keys = keys
         self.text = text
         self.errors = []
         self.file_info()
@@ -112,6 +119,10 @@ class Check:
         self.expect(set(self.eds.sections()) - known == expected, "sections and lists of objects differ: "
                     + ", ".join(sorted((set(self.eds.sections()) - known) ^ expected)[:5]))
 
+        for section in expected & set(self.eds.sections()):
+            self.expect(set(self.eds[section]) <= self.keys, f"[{section}] has keys that CiA 306 does not have: "
+                        + ", ".join(sorted(set(self.eds[section]) - self.keys)))
+
     def object(self, index):
         section = f"{index:04X}"
         if not self.eds.has_section(section):
@@ -191,6 +202,9 @@ class Check:
             self.expect(self.number("DeviceInfo", key) == len(pdos), f"{key} is not {len(pdos)}")
             for index in pdos:
                 self.expect((index, 1) in self.entries and (index, 2) in self.entries, f"{index:04X} is not complete")
+                for sub in (sub for of, sub in self.entries if of == index):
+                    self.expect("DefaultValue" in self.eds[self.entries[index, sub]],
+                                f"[{index:04X}sub{sub}] has no DefaultValue: a master cannot set up its side of the PDO")
             for index in maps:
                 bits = 0
                 for sub in range(1, self.number(f"{index:04X}sub0", "DefaultValue") + 1):
@@ -214,6 +228,7 @@ class Check:
 
 class EdsTest(unittest.TestCase):
     text = ""
+    text_with_units = ""
 
     def test_the_file_is_as_the_standard_wants_it(self):
         self.assertEqual(Check(self.text).errors, [])
@@ -233,8 +248,21 @@ class EdsTest(unittest.TestCase):
         self.assertEqual(check.number("4080sub1", "HighLimit"), 2 ** 30, "amplitude: 90 degrees")
         self.assertIn("amplitude", check.get("4080", "ParameterName"))
 
+    def test_a_line_has_one_equals_sign(self):
+        """Simple readers split a line at each of them."""
+        for text in (self.text, self.text_with_units):
+            self.assertEqual([line for line in text.splitlines() if line.count("=") > 1], [])
+
+    def test_units_are_the_only_difference_between_the_two_files(self):
+        def plain(text):
+            in_objects = text[text.index("[MandatoryObjects]"):]
+            return [line for line in in_objects.splitlines() if line.split("=")[0] not in UNIT_KEYS]
+
+        self.assertEqual(plain(self.text_with_units), plain(self.text))
+
     def test_values_have_the_factor_and_unit_that_python_canopen_reads(self):
-        check = Check(self.text)
+        check = Check(self.text_with_units, KEYS | UNIT_KEYS)
+        self.assertEqual(check.errors, [])
         units = set()
         for section in check.eds.sections():
             if check.eds.has_option(section, "Factor"):
@@ -255,7 +283,7 @@ class EdsTest(unittest.TestCase):
 
     def test_names_are_keys_for_python_canopen_and_say_what_an_entry_is(self):
         """A name finds an index in the dictionary, and an entry in its index; a list of entries shows theirs alone."""
-        check = Check(self.text)
+        check = Check(self.text_with_units, KEYS | UNIT_KEYS)
         names = {}
         for (index, sub), section in check.entries.items():
             variable = check.eds.has_section(f"{index:04X}") and section == f"{index:04X}"
@@ -297,6 +325,8 @@ class EdsTest(unittest.TestCase):
                 (r"(\[2000sub3\]\n(?:.*\n){4})PDOMapping=0", r"\1PDOMapping=1"),
                 (r"DefaultValue=0x60400010", "DefaultValue=0x60400008"),
                 (r"DefaultValue=0x60400010", "DefaultValue=0x60500010"),
+                (r"(\[1802sub2\]\n(?:.*\n)*?)DefaultValue=0x0A\n", r"\1"),
+                (r"(\[607A\]\n)", r"\1Unit=deg\n"),
         ):
             with self.subTest(pattern=pattern):
                 wrong, count = re.subn(pattern, replacement, self.text, count=1)
@@ -307,4 +337,6 @@ class EdsTest(unittest.TestCase):
 if __name__ == "__main__":
     with open(sys.argv.pop(1), encoding="ascii") as file:
         EdsTest.text = file.read()
+    EdsTest.text_with_units = subprocess.run([sys.argv.pop(1), "--eds", "--units"], stdout=subprocess.PIPE, check=True,
+                                             text=True).stdout
     unittest.main()

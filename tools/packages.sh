@@ -1,8 +1,9 @@
-# Names of the Debian packages, and a function that installs the missing ones. tools/demo, tools/check and tools/page read it.
+# Names of the Debian packages, and functions that install the missing ones. tools/demo, tools/check, tools/page and
+# CMake (tools/cmake/configuration.cmake) read it.
 
-# Programs for this computer.
-host_packages=(
-  g++ cmake ninja-build pkg-config ccache git ca-certificates
+# What CMake needs for the programs for this computer.
+build_packages=(
+  g++ cmake ninja-build pkg-config
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
@@ -10,8 +11,9 @@ host_packages=(
   libboost-dev  # Boost.Asio: serial lines, sockets
   libevdev-dev  # gamepads
   libssl-dev    # TLS of the page; SHA-256
-  sqlite3  # not for the build: shows the contents of recordings
 )
+# The programs, and what goes with them: quick builds, version and npm's downloads; sqlite3 shows the contents of recordings.
+host_packages=("${build_packages[@]}" ccache git ca-certificates sqlite3)
 
 # The image that is flashed into modules.
 firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3)
@@ -48,22 +50,49 @@ lab_packages=(
 page_packages=(nodejs npm)
 browser_packages=(chromium)  # its tests
 
-# install_packages NAME...: installs the packages that are missing, and prints their names.
-install_packages() {
-  local missing=() name
+# missing_packages NAME...: prints those that are not installed, each on a line.
+missing_packages() {
+  local name
   for name in "$@"; do
-    if ! dpkg-query -W -f '${Status}' "$name" 2>/dev/null | grep -q 'ok installed'; then
-      missing+=("$name")
-    fi
+    dpkg-query -W -f '${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || echo "$name"
   done
+}
+
+# show_progress SED_PROGRAM: reads what a long command prints, and shows on a terminal, in one line that changes, what
+# sed makes of it.
+show_progress() {
+  if [ ! -t 1 ]; then
+    cat >/dev/null
+    return
+  fi
+  local line
+  sed -un "$1" | while IFS= read -r line; do
+    printf '\r\033[K%.79s' "$line"
+  done
+  printf '\r\033[K'
+}
+
+# install_packages NAME...: installs the packages that are missing, and prints their names. A user who is not root needs sudo;
+# without it the function prints the command for root and fails.
+install_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
   if [ ${#missing[@]} -eq 0 ]; then
     return 0
   fi
-  echo "Installing Debian packages: ${missing[*]}"
+  echo "Installing ${#missing[@]} Debian packages: ${missing[*]}" | fold -s -w 80
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     as_root=(sudo)
+    if ! command -v sudo >/dev/null || ! sudo -v; then
+      printf 'Cannot become root with sudo. As root, run this command, then this script again:\n\n' >&2
+      printf '    apt-get update && apt-get install -y --no-install-recommends %s\n\n' "${missing[*]}" >&2
+      return 1
+    fi
   fi
   "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  # "dlstatus:N:PERCENT:TEXT" while packages come, then "pmstatus:NAME:PERCENT:TEXT". (sudo closes other descriptors.)
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends -o APT::Status-Fd=1 \
+    "${missing[@]}" 2> >(grep -v '^debconf: delaying' >&2) |
+    show_progress 's/^dlstatus:[^:]*:\([0-9]*\).*/  downloading: \1 %/p; s/^pmstatus:[^:]*:\([0-9]*\).*/  installing: \1 %/p'
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -64,12 +65,23 @@ void print_help(std::ostream& out) {
   out << "\n'proleg SUBCOMMAND --help' explains a subcommand; 'proleg --version' prints version and build.\n";
 }
 
-std::string names() {
-  std::string list;
+/// What an unknown word was probably meant to be, as a message ends.
+std::string hint(std::string_view word) {
+  std::vector<std::string> names;
   for (const Subcommand& subcommand : subcommands) {
-    list += (list.empty() ? "" : ", ") + std::string(subcommand.name);
+    names.emplace_back(subcommand.name);
   }
-  return list;
+  const std::optional<std::string> similar = proleg::most_similar(word, names);
+  return similar ? "; did you mean 'proleg " + *similar + "'?" : "";
+}
+
+/// How a user gets a program that is missing in the folder of this one.
+std::string remedy(const std::filesystem::path& folder, const std::string& program) {
+  const std::filesystem::path build = folder.parent_path();
+  if (!std::filesystem::exists(build / "CMakeCache.txt")) {
+    return "install all programs of Proleg into one folder";
+  }
+  return "build it: cmake --build " + build.string() + " --target " + program;
 }
 
 /// The exit status of a program that has printed all it has to.
@@ -85,7 +97,7 @@ int finish_output() {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "proleg: found no subcommand, expected one of " << names() << '\n';
+    print_help(std::cerr);
     return 2;
   }
   const std::string_view word = argv[1];
@@ -103,15 +115,17 @@ int main(int argc, char** argv) {
   }
   if (!known) {
     std::cerr << "proleg: found unknown subcommand " << proleg::one_line(proleg::in_quotes(word))
-              << ", expected one of " << names() << '\n';
+              << ", expected one that 'proleg --help' lists" << hint(word) << '\n';
     return 2;
   }
   std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string program = (self.parent_path() / ("proleg-" + std::string(word))).string();
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::string name = "proleg-" + std::string(word);
+  const std::string program = (folder / name).string();
   std::vector<char*> arguments(argv + 1, argv + argc);
   arguments.push_back(nullptr);
   execv(program.c_str(), arguments.data());
-  std::cerr << "proleg: cannot start " << program << ": " << std::strerror(errno) << '\n';
+  std::cerr << "proleg: cannot start " << program << ": "
+            << (errno == ENOENT ? "it is not there; " + remedy(folder, name) : std::strerror(errno)) << '\n';
   return 1;
 }

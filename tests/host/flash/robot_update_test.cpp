@@ -60,7 +60,7 @@ TEST(RobotUpdate, TwelveModulesWithMixedOldProgramsTakeLittleMoreTimeThanOne) {
     const double installation = seconds(update->duration(Step::installation));
     const double all = transfer + installation + seconds(update->duration(Step::restart));
     std::printf(
-        "%2zu modules, %zu bytes: transfer %.3f s (%.1f kB/s), installation %.3f s, restart and confirmation "
+        "%2zu modules, %zu bytes: transfer %.3f s (%.1f kB/s), installation %.3f s, restart, confirmation "
         "%.3f s, all %.3f s\n",
         count, new_image.size(), transfer, static_cast<double>(new_image.size()) / transfer / 1e3, installation,
         all - transfer - installation, all);

@@ -28,6 +28,31 @@ TEST_F(CommandLine, HelpListsTheSubcommands) {
   }
 }
 
+TEST_F(CommandLine, WithoutASubcommandTheHelpGoesToStandardError) {
+  const Finished finished = proleg({});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_EQ(finished.out, "");
+  EXPECT_EQ(finished.err, proleg({"--help"}).out);
+}
+
+TEST_F(CommandLine, AMissingProgramSaysHowItIsBuiltOrInstalled) {
+  const fs::path folder = file("bin");
+  fs::create_directory(folder);
+  fs::copy(PROLEG_PROGRAM, folder / "proleg");
+  const auto start_it = [&] { return finish(start({(folder / "proleg").string(), "optimise", "--help"})); };
+  Finished finished = start_it();
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("bin/proleg-optimise: it is not there; install all programs of Proleg"),
+            std::string::npos)
+      << finished.err;
+  std::ofstream(file("CMakeCache.txt")).flush();
+  finished = start_it();
+  EXPECT_NE(
+      finished.err.find("build it: cmake --build " + file("").parent_path().string() + " --target proleg-optimise\n"),
+      std::string::npos)
+      << finished.err;
+}
+
 TEST_F(CommandLine, VersionNamesTheBuild) {
   const Finished finished = proleg({"--version"});
   EXPECT_EQ(finished.status, 0);
@@ -35,14 +60,11 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused({},
-                 {"expected one of algorithms, new, verify, simulate, ui, sweep, hil, faults, replay, receipt, export, "
-                  "plot, optimise, "
-                  "confirm, experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
-                  "recover, image, objects"});
-  expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, verify, simulate"});
-  expect_refused({"../../bin/sh"}, {"expected one of"});
-  expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});
+  expect_refused({"simulat"}, {"'simulat'", "; did you mean 'proleg simulate'?\n"});
+  expect_refused({"optimize"}, {"did you mean 'proleg optimise'?"});
+  expect_refused({"zzz"}, {"'zzz'", "expected one that 'proleg --help' lists\n"});
+  expect_refused({"../../bin/sh"}, {"expected one that"});
+  expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one that"});
   expect_refused({"simulate"}, {"found no FILE"});
   expect_refused({"simulate", scenario("uniform"), "--fast"}, {"unknown '--fast'", "'proleg simulate --help' lists\n"});
   expect_refused({"simulate", scenario("uniform"), "--second", "3"},

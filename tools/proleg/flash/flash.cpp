@@ -273,7 +273,7 @@ void Flashing::print_result() const {
     std::printf("%-22s %-18s %-10s %s\n", name_of(module.found).c_str(), version.c_str(), hash.c_str(), state.c_str());
   }
   if (durations_.transfer_s > 0) {
-    std::printf("transfer %.2f s (%.1f kB/s), installation %.2f s, restart and confirmation %.2f s\n",
+    std::printf("transfer %.2f s (%.1f kB/s), installation %.2f s, restart, confirmation %.2f s\n",
                 durations_.transfer_s, static_cast<double>(image_.bytes.size()) / durations_.transfer_s / 1e3,
                 durations_.installation_s, durations_.restart_s);
   }

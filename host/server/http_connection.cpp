@@ -56,9 +56,9 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
  private:
   void read();
   void handle_request(const error_code& error);
-  /// Sends a response. `body` must live as long as the server.
+  /// Sends a response. `body` must live as long as the server or this.
   void respond(unsigned status, std::string_view content_type, std::string_view body, bool is_kept_alive);
-  /// Sends an error, whose body is the text of its status.
+  /// Sends an error, whose body is the text of its status or misdirected_text().
   void respond_error(unsigned status, bool is_kept_alive);
   /// Reads and ignores bytes while the other end reads the response: closing a connection with unread bytes would
   /// discard the response.
@@ -73,6 +73,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   std::string socket_origin_;  ///< origin of the WebSocket for the present request, after its Host was accepted
   bool is_head_ = false;
   std::string header_;
+  std::string body_;  ///< of an error, if it is not the text of its status
 };
 
 void HttpConnection::open() {
@@ -152,7 +153,11 @@ void HttpConnection::handle_request(const error_code& error) {
 }
 
 void HttpConnection::respond_error(unsigned status, bool is_kept_alive) {
-  respond(status, "text/plain; charset=utf-8", status_words(status), is_kept_alive);
+  constexpr unsigned misdirected = 421;
+  if (status == misdirected) {
+    body_ = misdirected_text(server_->address());
+  }
+  respond(status, "text/plain; charset=utf-8", status == misdirected ? body_ : status_words(status), is_kept_alive);
 }
 
 void HttpConnection::respond(unsigned status, std::string_view content_type, std::string_view body,

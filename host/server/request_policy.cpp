@@ -144,6 +144,21 @@ std::string_view status_words(unsigned status) {
   return found == statuses.end() ? std::string_view{} : found->second;
 }
 
+std::string misdirected_text(const ServerAddress& address) {
+  std::string names;
+  for (const std::string_view name : local_names) {
+    names += (names.empty() ? "" : ", ") + origin_of(address, host_of(address, name));
+  }
+  for (const std::string& name : address.names) {
+    names += ", " + origin_of(address, host_of(address, name));
+  }
+  const std::string port = std::to_string(address.port);
+  return "This page has only these addresses: " + names +
+         ".\n\nThrough a tunnel, use the same port on both sides: ssh -L " + port + ":127.0.0.1:" + port +
+         " HOST. Each start chooses another port; 'proleg ui --port " + port +
+         "' keeps it.\nWithout a tunnel, from another computer: 'proleg ui --lan' with a certificate (docs/page.md).\n";
+}
+
 std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
                             std::string_view socket_origin, bool is_kept_alive) {
   std::string text = "HTTP/1.1 " + std::to_string(status) + " ";

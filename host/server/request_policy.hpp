@@ -70,9 +70,13 @@ struct RequestDecision {
                                              const AccessToken& token);
 
 /// The start of a response, with the empty line. The page may connect to `socket_origin`, which is empty if the server
-/// did not accept the request's Host. The body of an error is only the text of its status.
+/// did not accept the request's Host. The body of an error is the text of its status, but for 421.
 [[nodiscard]] std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
                                           std::string_view socket_origin, bool is_kept_alive);
+
+/// The body for a Host that does not belong to the server (421): the names and the port that do, and what to do about a
+/// tunnel whose ends have different ports.
+[[nodiscard]] std::string misdirected_text(const ServerAddress& address);
 
 /// The text of a status, such as "Not Found"; empty for a status that the server does not send.
 [[nodiscard]] std::string_view status_words(unsigned status);

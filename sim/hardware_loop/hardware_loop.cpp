@@ -278,7 +278,7 @@ class HardwareLoop::Implementation {
       follow_reference();
     }
     report_.setpoint_hash.append(values_.setpoints());
-    plant_ticks_.end(now);
+    plant_ticks_.end(now, values_.setpoints());
     report_.world_hash.append(plant_.world());
   }
 

@@ -72,7 +72,7 @@ std::uint64_t PlantTicks::acting_time(const Reading& reading) const {
   return acting_time_us(reading.time_us, servo_schedule_.servo_period_us(), servo_schedule_.tick_period_us());
 }
 
-void PlantTicks::end(BusTime now) {
+void PlantTicks::end(BusTime now, std::span<const std::int32_t> setpoints) {
   pending_.clear();
   completion_ = now;
   for (; next_action_ < actions_.size(); ++next_action_) {
@@ -84,7 +84,7 @@ void PlantTicks::end(BusTime now) {
       act(action, now);
     }
   }
-  plant_.finish_tick();
+  plant_.finish_tick(setpoints);
   ended_ = true;
 }
 

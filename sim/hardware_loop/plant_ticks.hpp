@@ -86,8 +86,9 @@ class PlantTicks {
 
   /// At the next SYNC, before the modules receive it. Makes the remaining steps. Readings of intervals that start late
   /// in the tick stay pending: by its own crystal a module may begin such an interval just after the SYNC, and its
-  /// program takes time. The world makes no step of the next tick before complete().
-  void end(BusTime now);
+  /// program takes time. The world makes no step of the next tick before complete(). setpoints: as in
+  /// Plant::finish_tick().
+  void end(BusTime now, std::span<const std::int32_t> setpoints = {});
   [[nodiscard]] bool has_ended() const { return ended_; }
   /// Whether complete() is due: all modules have given their last pulses.
   [[nodiscard]] bool is_complete(BusTime now) const { return ended_ && completion_ <= now; }

@@ -225,8 +225,12 @@ void Plant::finish_step() {
   ++steps_;
 }
 
-void Plant::finish_tick() {
+void Plant::finish_tick(std::span<const std::int32_t> setpoints) {
   read_world();
+  setpoints_.clear();
+  for (const std::int32_t setpoint : setpoints) {
+    setpoints_.push_back(setpoint * (std::numbers::pi / 2.0 / quarter_turn));
+  }
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     motor_torques_[joint] = std::exchange(servos_[joint].torque_sum, 0.0) / steps_per_tick_;
     servo_currents_[joint] = std::exchange(servos_[joint].current_sum, 0.0) / steps_per_tick_;
@@ -243,10 +247,10 @@ void Plant::finish_tick() {
     for (const Pose& pose : link_poses_) {
       unmoved_link_poses_.push_back(*unmoved_ * pose);
     }
-    meter_.add_tick(
-        {*unmoved_ * center, unmoved_link_poses_, joint_angles_, joint_targets_, link_contacts_, motor_torques_});
+    meter_.add_tick({*unmoved_ * center, unmoved_link_poses_, joint_angles_, joint_targets_, setpoints_, link_contacts_,
+                     motor_torques_});
   } else {
-    meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, link_contacts_, motor_torques_});
+    meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, setpoints_, link_contacts_, motor_torques_});
   }
   sensors_.finish_tick(*world_, link_poses_, servo_currents_);
   module_readings_.finish_tick(*world_, link_poses_);

@@ -60,8 +60,9 @@ class Plant {
   void finish_step();
   /// Must be called after the last step of a tick: updates the values below and the measures. A pulse that a servo
   /// takes after the last step counts for the next tick. Throws PhysicsError if the robot moves faster than 100 m/s or
-  /// fell off its environment.
-  void finish_tick();
+  /// fell off its environment. setpoints: of the gait in this tick, by joint, 90 degrees = 2^30; for the measures of
+  /// the servos, which are undefined without.
+  void finish_tick(std::span<const std::int32_t> setpoints = {});
 
   // The state at the end of the last finished tick.
 
@@ -182,6 +183,7 @@ class Plant {
   std::vector<double> contact_force_sums_;  ///< N, over the steps of this tick
   std::vector<double> contact_forces_;
   std::vector<double> joint_targets_;  ///< rad, of the servos in the last step
+  std::vector<double> setpoints_;      ///< rad, of the gait in this tick
   // What the joints are to do in a step, and what they did.
   std::vector<double> speeds_;               ///< rad/s
   std::vector<double> angles_;               ///< rad

@@ -58,7 +58,7 @@ class PulsePlayer {
   }
 
   // The parts of advance(), for worlds that make their steps together (Plant::begin_step). pulses: must stay until
-  // end_tick().
+  // end_tick(). setpoints: as in Plant::finish_tick().
   void begin_tick(std::uint32_t tick, std::span<const ServoPulse> pulses) {
     start_us_ = std::uint64_t{tick} * schedule_.tick_period_us();
     pulses_ = pulses;
@@ -68,9 +68,9 @@ class PulsePlayer {
     take(start_us_ + plant_.step_start_us(step));
     plant_.begin_step();
   }
-  void end_tick() {
+  void end_tick(std::span<const std::int32_t> setpoints = {}) {
     // Pulses on which the servos act after the last step count for the next tick.
-    plant_.finish_tick();
+    plant_.finish_tick(setpoints);
     take(start_us_ + schedule_.tick_period_us());
   }
 

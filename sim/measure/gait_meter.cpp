@@ -112,6 +112,7 @@ void GaitMeter::add_tick(const Tick& tick) {
   }
   targets_.insert(targets_.end(), tick.joint_targets.begin(), tick.joint_targets.end());
   contacts_.insert(contacts_.end(), tick.link_contacts.begin(), tick.link_contacts.end());
+  places_.emplace_back(center_.head<2>());
   ++ticks_;
   has_settled_ = static_cast<double>(ticks_) * tick_s_ >= settling_s;
 }
@@ -123,9 +124,9 @@ void GaitMeter::add_turn(const Eigen::Vector2d& span) {
 }
 
 void GaitMeter::add_tracking(const Tick& tick) {
-  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+  for (std::size_t joint = 0; joint < tick.setpoints.size(); ++joint) {
     if (!joints_[joint].limp && has_settled_) {
-      tracking_[joint].add_tick(tick.joint_targets[joint] - tick.joint_angles[joint]);
+      tracking_[joint].add_tick(tick.setpoints[joint] - tick.joint_angles[joint]);
     }
   }
 }
@@ -157,10 +158,51 @@ void GaitMeter::add_stability(const Tick& tick, const Eigen::Vector2d& span) {
 void GaitMeter::drop_oldest_ticks() {
   const auto joint_values = static_cast<std::ptrdiff_t>(history_ticks * joints_.size());
   targets_.erase(targets_.begin(), targets_.begin() + joint_values);
+  places_.erase(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(history_ticks));
   contacts_.erase(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(history_ticks * sensors_.size()));
 }
 
 std::optional<Stride> GaitMeter::stride() const { return find_stride({targets_, joints_.size()}, tick_s_); }
+
+std::optional<std::pair<double, double>> GaitMeter::recent_strides(std::size_t ticks) const {
+  constexpr std::size_t least_strides = 2;
+  constexpr double least_s = 1.0;
+  const SignalTable targets{std::span(targets_).last(ticks * joints_.size()), joints_.size()};
+  const std::optional<Stride> stride = find_stride(targets, tick_s_);
+  if (!stride || stride->bounds.size() <= least_strides) {
+    return std::nullopt;
+  }
+  const std::vector<double>& bounds = stride->bounds;
+  std::size_t start = bounds.size() - 1 - least_strides;
+  while (start > 0 && (bounds.back() - bounds[start]) * tick_s_ < least_s) {
+    --start;
+  }
+  const double last_stride = bounds.back() - bounds[bounds.size() - 2];
+  if (static_cast<double>(ticks) - bounds.back() > 1.25 * last_stride) {
+    return std::nullopt;  // the next one is overdue: they are those of another gait, before a change
+  }
+  const auto first = static_cast<double>(places_.size() - ticks);
+  return std::pair{first + bounds[start], first + bounds.back()};
+}
+
+std::optional<double> GaitMeter::recent_speed() const {
+  const auto ticks_in = [&](double seconds) { return static_cast<std::size_t>(std::lround(seconds / tick_s_)); };
+  const std::size_t without_strides = ticks_in(2.0);
+  if (places_.size() <= without_strides) {
+    return std::nullopt;
+  }
+  std::size_t last = places_.size() - 1;
+  std::size_t first = last - without_strides;
+  // The shortest history comes first: after a change it is the first one that has only the new gait.
+  for (const double seconds : {2.5, 5.0, 10.0, 20.0}) {
+    if (const auto strides = recent_strides(std::min(ticks_in(seconds), places_.size()))) {
+      first = static_cast<std::size_t>(std::lround(strides->first));
+      last = std::min(static_cast<std::size_t>(std::lround(strides->second)), last);
+      break;
+    }
+  }
+  return (places_[last] - places_[first]).norm() / (static_cast<double>(last - first) * tick_s_);
+}
 
 double GaitMeter::speed_along(double heading_deg) const {
   const double heading = heading_deg * (std::numbers::pi / 180.0);

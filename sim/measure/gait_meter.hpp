@@ -57,8 +57,8 @@ class BodyEnergy {
   double elastic_sum_ = 0.0;
 };
 
-/// Measures how well a servo follows its pulses, and for what share of the time its limits prevent this. Times without
-/// pulses do not count.
+/// Measures how well a joint follows the set-points of the gait, and for what share of the time the limits of its servo
+/// prevent this. Times without pulses do not count.
 class ServoTracking {
  public:
   /// max_speed (rad/s) and max_torque (Nm) must be above 0.
@@ -76,7 +76,7 @@ class ServoTracking {
     speed_limited_ += std::abs(commanded_speed) >= max_speed_ ? 1U : 0U;
     torque_limited_ += std::abs(motor_torque) >= torque_limit_ ? 1U : 0U;
   }
-  /// Must be called for each tick with pulses. error: difference between the angle and that of the pulse, rad.
+  /// Must be called for each tick with pulses. error: difference between set-point and angle of the joint, rad.
   void add_tick(double error) {
     ++ticks_;
     squares_ += error * error;
@@ -90,6 +90,16 @@ class ServoTracking {
   /// Errors in rad. The root mean square is NaN before the first tick.
   [[nodiscard]] double rms_error() const { return std::sqrt(squares_ / static_cast<double>(ticks_)); }
   [[nodiscard]] double max_error() const { return ticks_ > 0 ? max_ : std::numeric_limits<double>::quiet_NaN(); }
+  /// The ticks and steps since an earlier state of the same servo. max_error() then is that of all ticks.
+  [[nodiscard]] ServoTracking since(const ServoTracking& earlier) const {
+    ServoTracking recent = *this;
+    recent.steps_ -= earlier.steps_;
+    recent.speed_limited_ -= earlier.speed_limited_;
+    recent.torque_limited_ -= earlier.torque_limited_;
+    recent.ticks_ -= earlier.ticks_;
+    recent.squares_ -= earlier.squares_;
+    return recent;
+  }
   /// Shares of the time at a limit, 0 to 1. NaN before the first step.
   [[nodiscard]] double at_speed_limit() const { return share(speed_limited_); }
   [[nodiscard]] double at_torque_limit() const { return share(torque_limited_); }
@@ -167,6 +177,9 @@ class GaitMeter {
     std::span<const Pose> link_poses;  ///< in the world
     std::span<const double> joint_angles;
     std::span<const double> joint_targets;  ///< targets of the servos in the last step, rad
+    /// Set-points of the gait, rad: the angles that the joints are to have at the end of the tick. Empty if they are
+    /// not known; then tracking has no errors.
+    std::span<const double> setpoints;
     /// Touch sensors of each link, bit 0 rear, bit 1 front: not debounced, without noise.
     std::span<const std::uint8_t> link_contacts;
     std::span<const double> motor_torques{};  ///< Nm, mean over the tick; empty if they are not known
@@ -177,6 +190,9 @@ class GaitMeter {
   /// The measures of the run so far. heading_deg: direction of `speed` in the horizontal plane, relative to the
   /// direction of the head at the start; 90 is to its left.
   [[nodiscard]] MeasureValues values(double heading_deg = 0.0) const;
+  /// Horizontal speed of the centre of mass in any direction, m/s: over the last two strides, or over as many as take a
+  /// second; without strides over the last two seconds. Nothing before that.
+  [[nodiscard]] std::optional<double> recent_speed() const;
   /// Share of the ticks in which at least one sensor of a link was pressed, for each link from the head: over a whole
   /// number of strides, or over all ticks without a stride. NaN before the first tick.
   [[nodiscard]] std::vector<double> link_duty_factors() const;
@@ -211,6 +227,9 @@ class GaitMeter {
   void add_tracking(const Tick& tick);
   void drop_oldest_ticks();
   [[nodiscard]] double speed_along(double heading_deg) const;
+  /// Bounds of strides, in ticks of the kept history: two whole strides, or as many as take a second, that ended just
+  /// now. `ticks`: length of the history in which they are searched.
+  [[nodiscard]] std::optional<std::pair<double, double>> recent_strides(std::size_t ticks) const;
   void add_servo_measures(MeasureValues& values) const;
   void add_wave_measures(MeasureValues& values, const Stride& stride) const;
   [[nodiscard]] std::vector<double> duty_factors(const std::optional<Stride>& stride) const;
@@ -249,8 +268,9 @@ class GaitMeter {
   double turn_ = 0.0;     ///< turn of the span since the start, rad
   double margin_sum_ = 0.0;
   std::uint64_t supported_ticks_ = 0;
-  std::vector<double> targets_;         ///< targets of the last ticks, by tick, then by joint
-  std::vector<std::uint8_t> contacts_;  ///< contacts in the last ticks, by tick, then by link
+  std::vector<double> targets_;          ///< targets of the last ticks, by tick, then by joint
+  std::vector<std::uint8_t> contacts_;   ///< contacts in the last ticks, by tick, then by link
+  std::vector<Eigen::Vector2d> places_;  ///< of the centre of mass in the last ticks, seen from above
 };
 
 }  // namespace proleg::sim

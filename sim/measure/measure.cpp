@@ -34,7 +34,7 @@ constexpr std::array<MeasureDeclaration, measure_count> declarations{{
     {Measure::stride_length, "stride_length", "m", true, false, "distance in a stride"},
     {Measure::stride_frequency, "stride_frequency", "Hz", true, false, "strides in a second"},
     {Measure::tracking_error, "tracking_error", "deg", false, false,
-     "root mean square difference between the angles that the joints have and those that the servos are to reach"},
+     "root mean square difference between the set-points of the gait and the angles of the joints"},
     {Measure::max_tracking_error, "max_tracking_error", "deg", false, false, "the largest such difference"},
     {Measure::at_speed_limit, "at_speed_limit", "", false, false,
      "share of the time in which a servo is at its speed limit"},

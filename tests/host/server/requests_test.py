@@ -55,6 +55,10 @@ def test_a_foreign_host_is_refused(server):
         for path in ("/", "/socket", "/missing"):
             assert status(server.port, path=path, host=host) == 421, host
         assert status(server.port, "POST", "/stop", [f"Authorization: Bearer {server.token}"], host=host) == 421, host
+    # The other end of a tunnel has another port: the body says what to do.
+    body = exchange(server.port, b"GET / HTTP/1.1\r\nHost: localhost:9000\r\nConnection: close\r\n\r\n")
+    assert f"ssh -L {server.port}:127.0.0.1:{server.port} HOST".encode() in body, body
+    assert f"http://localhost:{server.port}".encode() in body and b"9000" not in body, body
     assert status(server.port, fields=["Host: evil.example"]) == 421, "two hosts"
     assert b" 421 " in exchange(server.port, b"GET / HTTP/1.1\r\nConnection: close\r\n\r\n"), "no host"
 

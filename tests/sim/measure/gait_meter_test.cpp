@@ -47,7 +47,7 @@ class Motion {
       for (std::size_t joint = 0; joint < angles.size(); ++joint) {
         angles[joint] = angle(joint, t);
       }
-      meter.add_tick({path(t), poses, angles, angles, contacts});
+      meter.add_tick({path(t), poses, angles, angles, angles, contacts});
     }
     return meter;
   }
@@ -253,13 +253,51 @@ TEST(GaitMeter, TheYawRateCountsWholeTurnsOfTheBody) {
       for (const Link& link : robot.links) {
         poses.push_back(Pose{{0, 0, 0}, turn} * link.pose);
       }
-      meter.add_tick({Eigen::Vector3d::Zero(), poses, angles, angles, contacts});
+      meter.add_tick({Eigen::Vector3d::Zero(), poses, angles, angles, angles, contacts});
     }
     EXPECT_NEAR(meter.values()[Measure::yaw_rate], rate_deg, 1e-6);
   }
 }
 
-/// One joint, whose servo follows a target badly for some seconds.
+/// A robot of two joints that swings at `frequency` and goes along a circle at `speed`, from one gait to the next.
+class ChangingGait {
+ public:
+  ChangingGait()
+      : robot_(straight_robot(3)), meter_(robot_, EnvironmentModel{}, Eigen::Vector3d::Zero(), step_s, tick_s) {}
+
+  std::optional<double> speed_after(double seconds, double frequency, double amplitude_deg,
+                                    const Eigen::Vector2d& speed) {
+    const std::vector<Pose> poses(3);
+    const std::vector<std::uint8_t> contacts(3);
+    for (long tick = 0; tick < std::lround(seconds / tick_s); ++tick) {
+      phase_ += 2.0 * std::numbers::pi * frequency * tick_s;
+      place_ += speed * tick_s;
+      // Within a stride the body goes forth and back by a millimetre.
+      const Eigen::Vector2d swing(0.001 * std::sin(phase_), 0.0);
+      const std::vector<double> angles{amplitude_deg * degree * std::sin(phase_), 0.0};
+      const Eigen::Vector2d center = place_ + swing;
+      meter_.add_tick({{center.x(), center.y(), 0.0}, poses, angles, angles, angles, contacts});
+    }
+    return meter_.recent_speed();
+  }
+
+ private:
+  RobotModel robot_;
+  GaitMeter meter_;
+  double phase_ = 0.0;
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();
+};
+
+TEST(GaitMeter, TheRecentSpeedIsThatOfTheLastTwoStridesInAnyDirection) {
+  ChangingGait gait;
+  EXPECT_FALSE(gait.speed_after(1.9, 1.0, 40, {0.05, 0.0}));
+  EXPECT_NEAR(*gait.speed_after(5.0, 1.0, 40, {0.05, 0.0}), 0.05, 1e-4);
+  EXPECT_NEAR(*gait.speed_after(2.6, 20.0, 9, {0.035, 0.0}), 0.035, 1e-4) << "a faster gait, 2.5 s after the change";
+  EXPECT_NEAR(*gait.speed_after(9.0, 0.3, 40, {0.0, -0.17}), 0.17, 1e-3) << "a slow one that goes to its side";
+  EXPECT_NEAR(*gait.speed_after(5.0, 1.0, 0.0, {-0.02, 0.0}), 0.02, 1e-4) << "joints that stand still: two seconds";
+}
+
+/// One joint, which follows its set-points badly for some seconds.
 GaitMeter tracking(double error_deg, double commanded_speed, double torque, double seconds, bool limp = false) {
   const RobotModel robot = straight_robot(2);  // 2 Nm, 4.5 rad/s
   GaitMeter meter(robot, EnvironmentModel{}, Eigen::Vector3d::Zero(), step_s, tick_s);
@@ -271,13 +309,13 @@ GaitMeter tracking(double error_deg, double commanded_speed, double torque, doub
     }
     const double sign = tick % 2 == 0 ? 1.0 : -1.0;
     const double angle = 0.3;
-    const double target = 0.3 + sign * error_deg * degree;
-    meter.add_tick({Eigen::Vector3d::Zero(), poses, {&angle, 1}, {&target, 1}, contacts});
+    const double setpoint = 0.3 + sign * error_deg * degree;
+    meter.add_tick({Eigen::Vector3d::Zero(), poses, {&angle, 1}, {&angle, 1}, {&setpoint, 1}, contacts});
   }
   return meter;
 }
 
-TEST(GaitMeter, TrackingErrorsAreThoseOfTheServosAfterTheFirstSecond) {
+TEST(GaitMeter, TrackingErrorsAreThoseFromTheSetPointsAfterTheFirstSecond) {
   const MeasureValues values = tracking(3.0, 1.0, 0.5, 4.0).values();
   EXPECT_NEAR(values[Measure::tracking_error], 3.0, 1e-9) << "root mean square";
   EXPECT_NEAR(values[Measure::max_tracking_error], 3.0, 1e-9);
@@ -325,7 +363,7 @@ MeasureValues turning(Motion motion, double torque, double speed, double command
   const std::vector<Pose> poses(motion.robot.links.size());
   const std::vector<double> angles(motion.robot.joints.size());
   const std::vector<std::uint8_t> contacts(motion.robot.links.size());
-  meter.add_tick({{0.5, 0, 0}, poses, angles, angles, contacts});
+  meter.add_tick({{0.5, 0, 0}, poses, angles, angles, angles, contacts});
   MeasureValues values = meter.values();
   EXPECT_GE(values[Measure::electrical_energy], before);
   return values;

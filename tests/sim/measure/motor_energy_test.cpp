@@ -79,7 +79,7 @@ class MeteredWorld {
     const std::vector<double> angles(joints_);
     const std::vector<std::uint8_t> contacts(joints_ + 1);
     GaitMeter meter = meter_;
-    meter.add_tick({world.center_of_mass(), poses, angles, angles, contacts});
+    meter.add_tick({world.center_of_mass(), poses, angles, angles, angles, contacts});
     return meter.values()[Measure::mechanical_energy];
   }
   [[nodiscard]] double work() const { return work_; }

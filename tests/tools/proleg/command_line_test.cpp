@@ -159,8 +159,12 @@ TEST_F(CommandLine, SimulatePrintsTheMeasuresOfTheRun) {
   }
   EXPECT_NEAR(measures["duty_factor"].number(), sum / 6, 1e-9);
 
-  const Finished table = proleg({"simulate", scenario("uniform"), "--seconds", "4"});
+  const Finished table = proleg({"simulate", scenario("uniform"), "--seconds", "4", "--measures"});
   EXPECT_NE(table.out.find("\n  stride_frequency              1 Hz\n"), std::string::npos) << table.out;
+  const std::string lines = proleg({"simulate", scenario("uniform"), "--seconds", "4"}).out;
+  const std::size_t first = lines.find("all: --measures)\n");
+  ASSERT_NE(first, std::string::npos) << lines;
+  EXPECT_EQ(std::count(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.end(), '\n'), 7) << lines;
 }
 
 TEST_F(CommandLine, SimulateWarnsOfServosThatCannotFollowTheGait) {

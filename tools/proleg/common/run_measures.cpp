@@ -1,5 +1,6 @@
 #include "tools/proleg/common/run_measures.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +8,6 @@
 #include <sstream>
 
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/common/command_line.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -18,18 +18,17 @@ constexpr double much = sim::ServoTracking::much_time;
 constexpr double large_error_deg = sim::ServoTracking::large_error * degrees;
 
 /// Text "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above 20 %.
-std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,
+std::string worst_joint(std::span<const sim::ServoTracking> servos, const sim::RobotModel& robot, const char* limit,
                         double (sim::ServoTracking::*share)() const) {
   std::size_t worst = 0;
   std::size_t joints = 0;
-  for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
-    const double its_share = (measures.servos[joint].*share)();
-    if (!(its_share > much) ||
-        !(measures.servos[joint].rms_error() * degrees > large_error_deg)) {  // true for NaN, too
+  for (std::size_t joint = 0; joint < servos.size(); ++joint) {
+    const double its_share = (servos[joint].*share)();
+    if (!(its_share > much) || !(servos[joint].rms_error() * degrees > large_error_deg)) {  // true for NaN, too
       continue;
     }
     ++joints;
-    if (joints == 1 || its_share > (measures.servos[worst].*share)()) {
+    if (joints == 1 || its_share > (servos[worst].*share)()) {
       worst = joint;
     }
   }
@@ -38,7 +37,7 @@ std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robo
   }
   std::ostringstream text;
   text << robot.joints[worst].name << " is at its " << limit << " limit for "
-       << std::lround(100.0 * (measures.servos[worst].*share)()) << " % of the time";
+       << std::lround(100.0 * (servos[worst].*share)()) << " % of the time";
   if (joints > 1) {
     text << " (" << joints << " joints above " << std::lround(100.0 * much) << " %)";
   }
@@ -64,17 +63,24 @@ Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot) {
   return servos;
 }
 
-void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot) {
-  const std::string speed = worst_joint(measures, robot, "speed", &sim::ServoTracking::at_speed_limit);
-  const std::string torque = worst_joint(measures, robot, "torque", &sim::ServoTracking::at_torque_limit);
+std::string servo_problem(std::span<const sim::ServoTracking> servos, const sim::RobotModel& robot) {
+  const std::string speed = worst_joint(servos, robot, "speed", &sim::ServoTracking::at_speed_limit);
+  const std::string torque = worst_joint(servos, robot, "torque", &sim::ServoTracking::at_torque_limit);
   if (speed.empty() && torque.empty()) {
+    return {};
+  }
+  return "the servos cannot follow this gait: " + speed + (speed.empty() || torque.empty() ? "" : ", ") + torque;
+}
+
+void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot) {
+  const std::string problem = servo_problem(measures.servos, robot);
+  if (problem.empty()) {
     return;
   }
   std::array<char, 80> errors{};
   std::snprintf(errors.data(), errors.size(), "; angles differ from it by up to %.1f deg",
                 measures.values[sim::Measure::max_tracking_error]);
-  print_warning(program, "the servos cannot follow this gait: " + speed +
-                             (speed.empty() || torque.empty() ? "" : ", ") + torque + errors.data());
+  print_warning(program, problem + errors.data());
 }
 
 Json measures_object(const sim::MeasureValues& values) {
@@ -85,14 +91,25 @@ Json measures_object(const sim::MeasureValues& values) {
   return object;
 }
 
-void print_measures(const sim::MeasureValues& values) {
-  std::printf("measures (docs/gait-measures.md)\n");
+void add_measures_option(CommandLine& command_line, bool& all) {
+  command_line.add_flag("--measures", all, "print all measures of the run; --json always has all");
+}
+
+void print_measures(const sim::MeasureValues& values, bool all) {
+  constexpr std::array most_important{sim::Measure::speed,   sim::Measure::sideways_speed,
+                                      sim::Measure::heading, sim::Measure::specific_resistance,
+                                      sim::Measure::slip,    sim::Measure::max_tracking_error};
+  constexpr double noise = 1e-5;  // in any unit: what a straight gait goes sideways in rounding errors
+  std::printf("measures (docs/gait-measures.md%s)\n", all ? "" : "; all: --measures");
   for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    if (const double value = values[declaration.measure]; std::isfinite(value)) {
-      const std::string unit(declaration.unit);
-      std::printf("  %-28s  %.4g%s\n", std::string(declaration.name).c_str(), value,
-                  unit.empty() ? "" : (' ' + unit).c_str());
+    const double value = values[declaration.measure];
+    if (!std::isfinite(value) ||
+        !(all || std::ranges::find(most_important, declaration.measure) != most_important.end())) {
+      continue;
     }
+    const std::string unit(declaration.unit);
+    std::printf("  %-28s  %.4g%s\n", std::string(declaration.name).c_str(), std::abs(value) < noise ? 0.0 : value,
+                unit.empty() ? "" : (' ' + unit).c_str());
   }
 }
 

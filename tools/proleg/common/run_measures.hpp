@@ -2,6 +2,7 @@
 
 // The output of the measures of a run (docs/gait-measures.md).
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "sim/measure/measure.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/sensor/attached_sensors.hpp"
+#include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 
 namespace proleg::tools {
@@ -35,12 +37,17 @@ struct RunMeasures {
 /// Prints the values of the sensors on standard output, one quantity in each line.
 void print_sensors(const std::vector<sim::SensorSummary>& sensors);
 
-/// Prints a warning if servos are at a limit for more than a fifth of the time and miss their angles
-/// by more than 5 degrees (root mean square). program: begin of the line.
+/// What keeps servos from following the gait, if any is at a limit for more than a fifth of the time and misses its
+/// set-points by more than 5 degrees (root mean square); else an empty text. servos: by joint, from the head.
+[[nodiscard]] std::string servo_problem(std::span<const sim::ServoTracking> servos, const sim::RobotModel& robot);
+/// Prints a warning with servo_problem() and the largest difference. program: begin of the line.
 void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
 
-/// Prints the measures that the run defines on standard output, one in each line.
-void print_measures(const sim::MeasureValues& values);
+/// Adds the option --measures: print all measures instead of the most important ones.
+void add_measures_option(CommandLine& command_line, bool& all);
+
+/// Prints measures that the run defines on standard output, one in each line: all, or the six that say most.
+void print_measures(const sim::MeasureValues& values, bool all);
 
 /// Adds least, greatest and mean value of the sensors' quantities to the results of a recording.
 void append_sensors(const std::vector<sim::SensorSummary>& sensors,

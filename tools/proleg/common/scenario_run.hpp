@@ -29,6 +29,7 @@ struct ScenarioOptions {
   sim::OverrideWords overrides;
   std::vector<std::string> settings;
   std::vector<std::string> moves;
+  bool all_measures = false;
   bool verbose = false;
   bool json = false;
 };

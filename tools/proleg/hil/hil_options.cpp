@@ -6,6 +6,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/fault/fault.hpp"
 #include "sim/scenario/names.hpp"
+#include "tools/proleg/common/run_measures.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -104,6 +105,7 @@ sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& argument) {
 
 void add_hil_options(CommandLine& command_line, HilOptions& options) {
   add_scenario_options(command_line, options);
+  add_measures_option(command_line, options.all_measures);
   add_module_options(command_line, options);
   command_line.add_option(
       "--reset", options.resets,

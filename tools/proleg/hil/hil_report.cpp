@@ -199,7 +199,7 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
   if (options.can_log) {
     std::printf("CAN log           %s\n", options.can_log->c_str());
   }
-  print_measures(result.measures.values);
+  print_measures(result.measures.values, options.all_measures);
   print_sensors(result.sensors);
 }
 

@@ -112,7 +112,7 @@ void print_table(const ScenarioOptions& options, const Result& result, const std
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }
-  print_measures(result.measures.values);
+  print_measures(result.measures.values, options.all_measures);
   print_sensors(sensors);
 }
 
@@ -164,6 +164,7 @@ int main(int argc, char** argv) {
   CommandLine command_line("proleg simulate", "Runs a scenario in the physics simulation and prints the results.");
   ScenarioOptions options;
   add_scenario_options(command_line, options);
+  add_measures_option(command_line, options.all_measures);
   add_move_option(command_line, options);
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return simulate(options); });

@@ -177,6 +177,7 @@ void LiveSimulation::advance() {
     }
   }
   lost_frames_ += simulation_->chain().lost().size();
+  keep_servos();
   if (change == nullptr) {
     return;
   }
@@ -191,6 +192,30 @@ void LiveSimulation::advance() {
     }
   }
   ++revision_;
+}
+
+void LiveSimulation::keep_servos() {
+  constexpr std::uint32_t interval_us = 500'000;
+  constexpr std::size_t kept = 8;  // of four seconds
+  const std::uint32_t interval = std::max(interval_us / scenario_.kernel.tick_period_us, 1U);
+  if (simulation_->tick() % interval != 0) {
+    return;
+  }
+  const std::span<const sim::ServoTracking> servos = simulation_->plant().meter().tracking();
+  earlier_servos_.emplace_back(servos.begin(), servos.end());
+  if (earlier_servos_.size() > kept) {
+    earlier_servos_.pop_front();
+  }
+}
+
+std::vector<sim::ServoTracking> LiveSimulation::recent_servos() const {
+  const std::span<const sim::ServoTracking> servos = simulation_->plant().meter().tracking();
+  std::vector<sim::ServoTracking> recent(servos.begin(), servos.end());
+  if (!earlier_servos_.empty()) {
+    std::ranges::transform(recent, earlier_servos_.front(), recent.begin(),
+                           [](const auto& now, const auto& earlier) { return now.since(earlier); });
+  }
+  return recent;
 }
 
 std::vector<std::string> LiveSimulation::repeating_words() const {
@@ -251,6 +276,7 @@ void LiveSimulation::end_recording() {
 /// The simulation before is destroyed first: the iterative solver has one random generator in the process, which each
 /// new world begins anew.
 void LiveSimulation::begin() {
+  earlier_servos_.clear();
   simulation_.reset();
   simulation_ = std::make_unique<sim::Simulation>(scenario_, losses_);
 }

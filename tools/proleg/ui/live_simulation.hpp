@@ -4,6 +4,7 @@
 // command_line() is the command that does.
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -84,6 +85,8 @@ class LiveSimulation {
   }
 
   [[nodiscard]] const sim::Simulation& simulation() const { return *simulation_; }
+  /// How the joints followed the gait in the last four seconds, from the head.
+  [[nodiscard]] std::vector<sim::ServoTracking> recent_servos() const;
   /// The sample of the last tick (Simulation::sample()).
   [[nodiscard]] sim::TickSample sample() { return simulation_->sample(); }
   [[nodiscard]] const sim::Scenario& scenario() const { return scenario_; }
@@ -108,6 +111,8 @@ class LiveSimulation {
 
   /// The last tick of the simulation, and its change.
   static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const Change* change);
+  /// Keeps what recent_servos() subtracts later.
+  void keep_servos();
   /// Forgets what was done to the run before.
   void clear_run();
   void begin();
@@ -128,6 +133,8 @@ class LiveSimulation {
   std::unique_ptr<sim::Recorder> recorder_;
   std::optional<std::string> recording_failure_;
   std::uint64_t lost_frames_ = 0;  ///< in the present run
+  /// What recent_servos() subtracts: states of all servos in intervals of half a second, the oldest first.
+  std::deque<std::vector<sim::ServoTracking>> earlier_servos_;
   ParameterEdits edits_;
   std::vector<std::int32_t> other_set_;  ///< in the order of places()
   bool is_set_b_ = false;

@@ -1,6 +1,8 @@
 #include "tools/proleg/ui/simulated_session.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +14,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/document/telemetry_row.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
@@ -27,6 +30,13 @@ constexpr double slowest_factor = 0.1;
 constexpr double fastest_factor = 100.0;
 constexpr std::uint32_t most_steps = 1'000;
 constexpr std::uint32_t default_tick_period_us = 10'000;  // until there is a simulation
+
+/// Text "12.30 s" for a person.
+std::string seconds_text(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f s", seconds);
+  return text.data();
+}
 
 json measures_json(const LiveSimulation& live) {
   json values = json::object();
@@ -379,6 +389,10 @@ void SimulatedSession::begin_recording(const std::string& file) {
   }
   pace_.begin(Clock::now());
   recording_ = path.string();
+  if (const double past_s = live_->simulation().time_s(); past_s > 0.0) {
+    output_.notice(host::NoticeLevel::info,
+                   "the recording begins with the " + seconds_text(past_s) + " that the run has had before");
+  }
 }
 
 void SimulatedSession::end_recording() {
@@ -387,7 +401,7 @@ void SimulatedSession::end_recording() {
   }
   const std::string path = std::exchange(recording_, {});
   live_->end_recording();
-  output_.notice(host::NoticeLevel::info, "recorded " + exact_text(live_->simulation().time_s()) + " s in " + path);
+  output_.notice(host::NoticeLevel::info, "recorded " + seconds_text(live_->simulation().time_s()) + " in " + path);
 }
 
 void SimulatedSession::stop_steps() {
@@ -408,6 +422,7 @@ void SimulatedSession::publish_session(Clock::time_point now) {
   const sim::Simulation& simulation = live_->simulation();
   const double measured = pace_.measure(now);
   const std::optional<std::uint32_t> last_move = live_->last_move();
+  const std::optional<double> recent_speed = simulation.plant().meter().recent_speed();
   json repeats;
   if (is_repeating_) {
     repeats = {{"file", repeated_->name()}, {"tick", repeated_->last_tick()}};
@@ -429,6 +444,8 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"redo", text_or_null(live_->history().name_to_redo())},
                       {"set", std::string(1, live_->set_name())},
                       {"failure", text_or_null(failure_)},
+                      {"recent_speed", recent_speed ? json(*recent_speed) : json()},
+                      {"servo_problem", text_or_null(servo_problem(live_->recent_servos(), live_->scenario().robot))},
                       {"measures", measures_json(*live_)}};
   output_.publish("session", document);
   is_session_new_ = false;

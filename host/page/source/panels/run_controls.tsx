@@ -1,5 +1,6 @@
 // Controls to run, pause, step and restart, and for the speed; the present tick and time.
 import { useSignal } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
 import type { Stores } from '../view/robot_view.js';
 import { recordOrEnd } from '../view/page_actions.js';
 import { pauseIcon, recordIcon, restartIcon, runIcon, stepIcon } from './icons.js';
@@ -55,14 +56,30 @@ function Factor({ app }: { app: Stores<'operations' | 'state'> }) {
   );
 }
 
+function Figure({ name, help, children }: { name: string; help: string; children: ComponentChildren }) {
+  return (
+    <div title={help}>
+      <dt>{name}</dt>
+      <dd>{children}</dd>
+    </div>
+  );
+}
+
 function Measures({ app }: { app: Stores<'state'> }) {
-  const speed = app.state.simulation.value?.measures?.['speed'];
-  return typeof speed !== 'number' ? null : (
+  const session = app.state.simulation.value;
+  const [speed, distance] = [session?.recent_speed, session?.measures?.['distance']];
+  return (
     <dl class="figures">
-      <div title="Of the centre of mass, over the run">
-        <dt>gait</dt>
-        <dd>{(speed * 1000).toFixed(1)} mm/s</dd>
-      </div>
+      {typeof speed === 'number' && (
+        <Figure name="robot speed" help="Of the centre of mass over the last two strides, in any direction">
+          {(speed * 1000).toFixed(1)} mm/s
+        </Figure>
+      )}
+      {typeof distance === 'number' && (
+        <Figure name="distance" help="Of the centre of mass from where the run began, in a straight line; without moves by hand">
+          {distance.toFixed(3)} m
+        </Figure>
+      )}
     </dl>
   );
 }
@@ -73,6 +90,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
   const runState = state.simulation.value?.state ?? 'paused';
   const isRunning = runState === 'running';
   const recording = state.session.value?.recording ?? null;
+  const servoProblem = state.simulation.value?.servo_problem;
   const ticks = useSignal(1);
   return (
     <section class="run-controls" aria-label="Run">
@@ -128,6 +146,11 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
       <Factor app={app} />
       <TickCounter app={app} />
       <Measures app={app} />
+      {servoProblem && (
+        <p class="servo-problem" role="status" data-testid="servo-problem">
+          {servoProblem}
+        </p>
+      )}
       {state.isConnected.value && !isHolder && <span class="hint">You look on. Take control to change anything.</span>}
       {isHolder && runState === 'stopped' && <span class="hint">Stopped. Run goes on from here.</span>}
     </section>

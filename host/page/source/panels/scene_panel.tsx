@@ -16,6 +16,13 @@ import { poseAt, shownPose } from './scene_pose.js';
 
 const readoutPeriod = 100; // milliseconds
 
+// What a person can do about a 3D view that does not start.
+function remedy(reason: string): string {
+  return /webgl|offscreen/i.test(reason)
+    ? "The browser has no WebGL: switch hardware acceleration on in the browser's settings, or try another browser. All other panels work without it."
+    : '';
+}
+
 export function ScenePanel({ app }: { app: RobotView }) {
   const holder = useRef<HTMLDivElement>(null);
   const readout = useRef<HTMLSpanElement>(null);
@@ -182,7 +189,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
           less detail
         </span>
       )}
-      {failure.value !== null && <p class="scene-failure">No 3D view: {failure.value}</p>}
+      {failure.value !== null && <p class="scene-failure">No 3D view: {failure.value} {remedy(failure.value)}</p>}
     </section>
   );
 }

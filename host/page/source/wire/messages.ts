@@ -184,6 +184,8 @@ export interface SimulationSession extends CommonSession {
   moved?: boolean; // whether the robot was moved by hand since the last tick
   last_move?: number | null; // tick of the last move by hand
   repeats?: { file: string; tick: number } | null; // the recording that is computed again, up to this tick
+  recent_speed?: number | null; // m/s, over the last two strides
+  servo_problem?: string | null; // why the servos did not follow the gait in the last four seconds
   measures?: Record<string, number>;
 }
 

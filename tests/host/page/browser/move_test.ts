@@ -160,8 +160,8 @@ describe('moving the robot', () => {
     const repeated = resultOf(command);
     assert.equal(repeated['servo_hash'], replayed['recorded_servo_hash']);
     // The hash is of what the joints are told; the measures are of what the robot does.
-    const speed = (result: Record<string, unknown>) => `${((result['measures'] as { speed: number }).speed * 1000).toFixed(1)} mm/s`;
-    await ui.viewer.page.locator('dl', { hasText: 'gait' }).getByText(speed(repeated)).waitFor();
-    assert.notEqual(speed(resultOf(command.replace(/ --move \S+/g, ''))), speed(repeated));
+    const distance = (result: Record<string, unknown>) => `${(result['measures'] as { distance: number }).distance.toFixed(3)} m`;
+    await ui.viewer.page.locator('dl', { hasText: 'distance' }).getByText(distance(repeated)).waitFor();
+    assert.notEqual(distance(resultOf(command.replace(/ --move \S+/g, ''))), distance(repeated));
   });
 });

@@ -82,5 +82,9 @@ class ServoBus {
 
 /// The number in 1 to 4 little-endian bytes.
 [[nodiscard]] std::uint32_t number_of(std::span<const std::uint8_t> bytes);
+/// The same of a number with a sign, in 4 bytes.
+[[nodiscard]] inline std::int32_t signed_number_of(std::span<const std::uint8_t> bytes) {
+  return static_cast<std::int32_t>(number_of(bytes));
+}
 
 }  // namespace proleg::host

@@ -1,0 +1,107 @@
+// What a chain does when it connects: finds the servos and prepares them. Nothing has power then.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "host/dynamixel/servo_chain.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr unsigned return_delay_unit_us = 2;
+constexpr std::uint32_t search_time_us = 300'000;
+
+std::string listed(std::span<const std::uint8_t> ids) {
+  std::string text;
+  for (const std::uint8_t id : ids) {
+    text += (text.empty() ? "" : ", ") + std::to_string(id);
+  }
+  return text.empty() ? "no servo answers" : "servos that answer: " + text;
+}
+
+}  // namespace
+
+void ServoChain::connect(std::uint64_t deadline_us) {
+  bus_.set_deadline(deadline_us);
+  is_connected_ = false;
+  has_power_ = false;
+  return_delay_us_ = 0;
+  find_all();
+  for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
+    prepare(joint);
+  }
+  reads_per_tick_ =
+      std::max<std::size_t>(1, readable_servos(ids_.size(), settings_.rate, settings_.tick_us, return_delay_us_));
+  read_all_angles();
+  std::ranges::for_each(watched_, [](Watched& watched) { watched.missed = 0; });
+  next_joints_.fill(0);
+  ticks_ = 0;
+  is_connected_ = true;
+}
+
+void ServoChain::find_all() {
+  for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
+    unsigned model = 0;
+    try {
+      model = bus_.ping(ids_[joint]);
+    } catch (const ServoError& error) {
+      throw ServoError(name_of(joint) + " " + error.what_it_does() + " on " + settings_.device + " at " +
+                       std::to_string(settings_.rate) + " baud (" + listed(bus_.find_servos(search_time_us)) +
+                       "); check cable, power, id and Baud Rate(8)");
+    }
+    if (!has_this_table(model)) {
+      throw ServoError(name_of(joint) + " has the model number " + std::to_string(model) +
+                       ", expected one of the X series or MX(2.0)");
+    }
+  }
+}
+
+void ServoChain::prepare(std::size_t joint) {
+  const std::uint8_t id = ids_[joint];
+  // At a lower status return level a servo does not answer the following requests.
+  bus_.write_unconfirmed(id, status_return_level, 2);
+  bus_.write(id, torque_enable, 0);
+  require_healthy(joint);
+  bus_.write(id, bus_watchdog, 0);
+  prepare_modes(joint);
+  check_position_limits(joint);
+  bus_.write(id, profile_acceleration, 0);
+  const double velocity = std::floor(settings_.servos[joint].max_speed_deg_s / profile_velocity_unit_deg_s);
+  bus_.write(id, profile_velocity, static_cast<std::uint32_t>(std::clamp(velocity, 1.0, 32'767.0)));
+  watched_[joint].min_voltage = bus_.read_number(id, min_voltage_limit);
+  return_delay_us_ = std::max(return_delay_us_, bus_.read_number(id, return_delay_time) * return_delay_unit_us);
+}
+
+void ServoChain::prepare_modes(std::size_t joint) {
+  // These items are in the EEPROM, which wears out: they are written only if they are wrong.
+  const std::uint8_t id = ids_[joint];
+  const std::array<std::pair<TableItem, std::uint8_t>, 2> wanted{
+      {{operating_mode, position_control_mode}, {drive_mode, 0}}};
+  for (const auto& [item, value] : wanted) {
+    const std::uint32_t found = bus_.read_number(id, item);
+    if (found != value) {
+      bus_.write(id, item, value);
+      show_(name_of(joint) + ": " + (item.address == drive_mode.address ? "Drive Mode(10)" : "Operating Mode(11)") +
+            " was " + std::to_string(found) + ", is " + std::to_string(value) + " now");
+    }
+  }
+}
+
+void ServoChain::check_position_limits(std::size_t joint) {
+  const ServoSettings& servo = settings_.servos[joint];
+  const auto first = signed_number_of(bus_.read(servo.id, min_position_limit));
+  const auto last = signed_number_of(bus_.read(servo.id, max_position_limit));
+  const auto [lowest, highest] =
+      std::minmax({servo.position_of(servo.lower_limit_deg), servo.position_of(servo.upper_limit_deg)});
+  if (lowest < first || highest > last) {
+    // The servo would not move to such a goal, and a packet to all servos is not answered.
+    throw ServoError(name_of(joint) + " allows positions " + std::to_string(first) + " to " + std::to_string(last) +
+                     ", expected " + std::to_string(lowest) + " to " + std::to_string(highest) +
+                     " for the limits of the joint: change Min and Max Position Limit(52, 48), or set lower_limit and "
+                     "upper_limit");
+  }
+}
+
+}  // namespace proleg::host

@@ -12,11 +12,26 @@ namespace {
 /// An adapter without its low latency setting keeps bytes for 16 ms; servos answer within 0.5 ms.
 constexpr std::uint32_t answer_timeout_us = 40'000;
 constexpr unsigned attempts = 3;
+/// A second servo with the same id answers within the greatest Return Delay Time(9), 508 us, but the adapter may keep
+/// its answer for 16 ms.
+constexpr std::uint32_t second_answer_us = 17'000;
 
 void append_half(std::vector<std::uint8_t>& bytes, unsigned value) {
   bytes.push_back(static_cast<std::uint8_t>(value));
   bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
 }
+
+std::vector<std::uint8_t> parameters_of(TableItem item) {
+  std::vector<std::uint8_t> parameters;
+  append_half(parameters, item.address);
+  append_half(parameters, item.size);
+  return parameters;
+}
+
+/// Model number (u16), version of the firmware.
+constexpr std::size_t ping_answer_size = 3;
+
+unsigned model_of(const StatusPacket& answer) { return number_of(std::span(answer.parameters).first(2)); }
 
 void append_number(std::vector<std::uint8_t>& bytes, std::uint32_t value, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
@@ -61,7 +76,7 @@ std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
   }
 }
 
-/// Waits for a late answer to an earlier attempt, which must not count as the answer to the next request.
+/// Waits for late answers, which must not count as the answer to the next request.
 void ServoBus::drain() {
   const std::uint64_t end_us = now_us() + answer_timeout_us;
   while (receive(end_us)) {
@@ -108,16 +123,46 @@ StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::sp
   throw ServoError(id, "does not answer" + strange);
 }
 
-unsigned ServoBus::ping(std::uint8_t id) {
-  const StatusPacket answer = request(id, Instruction::ping, {}, 3);
-  return number_of(std::span(answer.parameters).first(2));
+bool ServoBus::receives_from(std::uint8_t id, std::uint64_t deadline_us) {
+  while (const auto packet = receive(deadline_us)) {
+    if (packet->id == id) {
+      return true;
+    }
+  }
+  return false;
+}
+
+StatusPacket ServoBus::request_of_one(std::uint8_t id, Instruction instruction,
+                                      std::span<const std::uint8_t> parameters, std::size_t answer_size) {
+  const std::uint32_t answer_us = line_time_us(status_overhead + answer_size, rate_);
+  // The answer to an earlier request may have been late. That to the repetition, behind a silent line, was not.
+  for (unsigned attempt = 0; attempt < 2; ++attempt) {
+    const std::uint64_t start_us = now_us();
+    StatusPacket answer = request(id, instruction, parameters, answer_size);
+    const std::uint64_t wait_us = std::clamp<std::uint64_t>(2 * (now_us() - start_us), second_answer_us + answer_us,
+                                                            answer_timeout_us + answer_us);
+    if (!receives_from(id, now_us() + wait_us)) {
+      return answer;
+    }
+    drain();
+  }
+  throw ServoError("two servos have the id " + std::to_string(id) +
+                   ": one request got two answers; connect one of them alone, and change its ID(7)");
+}
+
+unsigned ServoBus::ping(std::uint8_t id) { return model_of(request(id, Instruction::ping, {}, ping_answer_size)); }
+
+unsigned ServoBus::ping_one(std::uint8_t id) {
+  return model_of(request_of_one(id, Instruction::ping, {}, ping_answer_size));
 }
 
 std::vector<std::uint8_t> ServoBus::read(std::uint8_t id, TableItem item) {
-  std::vector<std::uint8_t> parameters;
-  append_half(parameters, item.address);
-  append_half(parameters, item.size);
-  return request(id, Instruction::read, parameters, item.size).parameters;
+  return request(id, Instruction::read, parameters_of(item), item.size).parameters;
+}
+
+std::uint32_t ServoBus::read_number_of_one(std::uint8_t id, TableItem item) {
+  drain();
+  return number_of(request_of_one(id, Instruction::read, parameters_of(item), item.size).parameters);
 }
 
 std::uint32_t ServoBus::read_number(std::uint8_t id, TableItem item) { return number_of(read(id, item)); }
@@ -140,18 +185,11 @@ void ServoBus::write_unconfirmed(std::uint8_t id, TableItem item, std::uint32_t 
   append_number(parameters, value, item.size);
   send(id, Instruction::write, parameters);
   const std::size_t bytes = packet_overhead + parameters.size() + status_overhead;
-  const std::uint64_t deadline_us = now_us() + line_time_us(bytes, rate_) + answer_timeout_us;
-  while (const auto packet = receive(deadline_us)) {
-    if (packet->id == id) {
-      return;
-    }
-  }
+  static_cast<void>(receives_from(id, now_us() + line_time_us(bytes, rate_) + answer_timeout_us));
 }
 
 void ServoBus::sync_write(TableItem item, std::span<const std::uint8_t> ids, std::span<const std::uint32_t> values) {
-  std::vector<std::uint8_t> parameters;
-  append_half(parameters, item.address);
-  append_half(parameters, item.size);
+  std::vector<std::uint8_t> parameters = parameters_of(item);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     parameters.push_back(ids[i]);
     append_number(parameters, values[i], item.size);
@@ -161,9 +199,7 @@ void ServoBus::sync_write(TableItem item, std::span<const std::uint8_t> ids, std
 
 std::vector<std::optional<StatusPacket>> ServoBus::sync_read(TableItem item, std::span<const std::uint8_t> ids,
                                                              std::uint64_t deadline_us) {
-  std::vector<std::uint8_t> parameters;
-  append_half(parameters, item.address);
-  append_half(parameters, item.size);
+  std::vector<std::uint8_t> parameters = parameters_of(item);
   parameters.insert(parameters.end(), ids.begin(), ids.end());
   send(broadcast_id, Instruction::sync_read, parameters);
 

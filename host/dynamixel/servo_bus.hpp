@@ -40,10 +40,15 @@ class ServoBus {
   // Requests to one servo. They are repeated twice if there is no intact answer. They throw ServoError.
   /// Sends a ping. Returns the model number.
   unsigned ping(std::uint8_t id);
+  /// The same, and waits for a second answer, which another servo with this id gives.
+  unsigned ping_one(std::uint8_t id);
   /// Reads the bytes of an item.
   std::vector<std::uint8_t> read(std::uint8_t id, TableItem item);
   /// Reads an item of 1, 2 or 4 bytes.
   std::uint32_t read_number(std::uint8_t id, TableItem item);
+  /// The same when no late answer can be received any more, and waits for a second answer: for a value because of which
+  /// something is written.
+  std::uint32_t read_number_of_one(std::uint8_t id, TableItem item);
   /// Writes an item, and requires that the servo accepts it.
   void write(std::uint8_t id, TableItem item, std::uint32_t value);
   /// Writes an item once and ignores whether it is answered.
@@ -72,6 +77,10 @@ class ServoBus {
   /// Sends a request, with repetitions. parameters: the number of parameters that the answer must have.
   StatusPacket request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
                        std::size_t answer_size);
+  /// The same, and throws if two servos answer.
+  StatusPacket request_of_one(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
+                              std::size_t answer_size);
+  bool receives_from(std::uint8_t id, std::uint64_t deadline_us);
 
   Line& line_;
   unsigned rate_;

@@ -79,6 +79,7 @@ void ServoChain::read_all_angles() {
 void ServoChain::store(std::size_t joint, std::span<const std::uint8_t> block) {
   Reading& reading = readings_[joint];
   const auto position = signed_number_of(block.subspan(position_in_block, present_position.size));
+  require_one_turn(joint, position);
   reading.angle_deg = settings_.servos[joint].angle_of(position);
   reading.current = static_cast<std::int16_t>(number_of(block.subspan(current_in_block, 2)));
   if (block.size() == present_block.size) {
@@ -88,6 +89,20 @@ void ServoChain::store(std::size_t joint, std::span<const std::uint8_t> block) {
   if (has_power_) {
     check_movement(joint, position);
   }
+}
+
+void ServoChain::require_one_turn(std::size_t joint, std::int32_t position) {
+  // A load may turn a servo a little beyond the ends of its turn.
+  constexpr std::int32_t tolerance = steps_per_turn / 8;
+  if (position >= -tolerance && position < steps_per_turn + tolerance) {
+    return;
+  }
+  const auto homing = signed_number_of(bus_.read(ids_[joint], homing_offset));
+  throw ServoError(name_of(joint) + " is at position " + std::to_string(position) + ", expected 0 to " +
+                   std::to_string(steps_per_turn - 1) + "; its Homing Offset(20) is " + std::to_string(homing) +
+                   (homing == 0 ? ", so the joint was turned by more than one revolution: turn it back, or switch the "
+                                  "servo off and on"
+                                : ": set it to 0, or turn the joint back"));
 }
 
 void ServoChain::check_voltage(std::size_t joint, std::uint32_t voltage) {

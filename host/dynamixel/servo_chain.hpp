@@ -22,7 +22,8 @@ class ServoChain {
   ServoChain(Line& line, ChainSettings settings, Show show);
 
   // All functions end by the deadline, a time of the line's clock. They throw ServoError and LineError.
-  /// Finds all servos, switches their power off, prepares them and reads their angles.
+  /// Finds all servos, switches their power off, prepares them and reads their angles. Nothing is written before each
+  /// id has been answered once.
   void connect(std::uint64_t deadline_us);
   /// Switches the power on: the goal of each servo is its position, or the nearest limit of its joint. From now on the
   /// servos stop by themselves if nothing is sent for the time of the watchdog.
@@ -52,6 +53,7 @@ class ServoChain {
  private:
   std::string name_of(std::size_t joint) const;
   void find_all();
+  void take_power(std::size_t joint);
   void prepare(std::size_t joint);
   void prepare_modes(std::size_t joint);
   void check_position_limits(std::size_t joint);
@@ -68,6 +70,7 @@ class ServoChain {
   TickRead next_tick_read();
   void read_some(std::uint64_t deadline_us);
   void store(std::size_t joint, std::span<const std::uint8_t> block);
+  void require_one_turn(std::size_t joint, std::int32_t position);
   void check_voltage(std::size_t joint, std::uint32_t voltage);
   void check_movement(std::size_t joint, std::int32_t position);
   void check_torque(std::size_t joint, std::span<const std::uint8_t> block);

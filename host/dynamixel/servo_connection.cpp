@@ -30,10 +30,13 @@ void ServoChain::connect(std::uint64_t deadline_us) {
   return_delay_us_ = 0;
   find_all();
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
-    prepare(joint);
+    take_power(joint);
   }
   reads_per_tick_ =
       std::max<std::size_t>(1, readable_servos(ids_.size(), settings_.rate, settings_.tick_us, return_delay_us_));
+  for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
+    prepare(joint);
+  }
   read_all_angles();
   std::ranges::for_each(watched_, [](Watched& watched) { watched.missed = 0; });
   next_joints_.fill(0);
@@ -45,8 +48,11 @@ void ServoChain::find_all() {
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
     unsigned model = 0;
     try {
-      model = bus_.ping(ids_[joint]);
+      model = bus_.ping_one(ids_[joint]);
     } catch (const ServoError& error) {
+      if (error.what_it_does().empty()) {
+        throw;
+      }
       throw ServoError(name_of(joint) + " " + error.what_it_does() + " on " + settings_.device + " at " +
                        std::to_string(settings_.rate) + " baud (" + listed(bus_.find_servos(search_time_us)) +
                        "); check cable, power, id and Baud Rate(8)");
@@ -58,20 +64,26 @@ void ServoChain::find_all() {
   }
 }
 
-void ServoChain::prepare(std::size_t joint) {
+void ServoChain::take_power(std::size_t joint) {
   const std::uint8_t id = ids_[joint];
   // At a lower status return level a servo does not answer the following requests.
   bus_.write_unconfirmed(id, status_return_level, 2);
   bus_.write(id, torque_enable, 0);
   require_healthy(joint);
   bus_.write(id, bus_watchdog, 0);
+  // Two servos that answer at the same time give the same bits to a ping, but damage each other's angle.
+  static_cast<void>(bus_.read(id, present_block));
+  return_delay_us_ = std::max(return_delay_us_, bus_.read_number(id, return_delay_time) * return_delay_unit_us);
+}
+
+void ServoChain::prepare(std::size_t joint) {
+  const std::uint8_t id = ids_[joint];
   prepare_modes(joint);
   check_position_limits(joint);
   bus_.write(id, profile_acceleration, 0);
   const double velocity = std::floor(settings_.servos[joint].max_speed_deg_s / profile_velocity_unit_deg_s);
   bus_.write(id, profile_velocity, static_cast<std::uint32_t>(std::clamp(velocity, 1.0, 32'767.0)));
   watched_[joint].min_voltage = bus_.read_number(id, min_voltage_limit);
-  return_delay_us_ = std::max(return_delay_us_, bus_.read_number(id, return_delay_time) * return_delay_unit_us);
 }
 
 void ServoChain::prepare_modes(std::size_t joint) {
@@ -80,7 +92,10 @@ void ServoChain::prepare_modes(std::size_t joint) {
   const std::array<std::pair<TableItem, std::uint8_t>, 2> wanted{
       {{operating_mode, position_control_mode}, {drive_mode, 0}}};
   for (const auto& [item, value] : wanted) {
-    const std::uint32_t found = bus_.read_number(id, item);
+    std::uint32_t found = bus_.read_number(id, item);
+    if (found != value) {
+      found = bus_.read_number_of_one(id, item);
+    }
     if (found != value) {
       bus_.write(id, item, value);
       show_(name_of(joint) + ": " + (item.address == drive_mode.address ? "Drive Mode(10)" : "Operating Mode(11)") +

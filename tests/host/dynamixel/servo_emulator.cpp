@@ -202,7 +202,8 @@ std::vector<ServoEmulator::Answer> ServoEmulator::receive(std::span<const std::u
 
 bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<const std::uint8_t> data,
                            std::vector<Answer>& answers) {
-  if (servo.is_missing || take(servo.silent)) {
+  ++servo.requests;
+  if (servo.is_missing || take(servo.silent) || (servo.only_answer != 0 && servo.requests != servo.only_answer)) {
     return false;
   }
   const bool is_crc_error = take(servo.crc_errors);

@@ -29,6 +29,8 @@ class EmulatedServo {
   // Faults of its answers. The counters say how many of the next answers are affected.
   bool is_missing = false;
   unsigned silent = 0;
+  unsigned only_answer = 0;  ///< the only request that it answers, counted from 1; 0: it answers all
+  unsigned requests = 0;     ///< so far
   unsigned corrupt = 0;
   unsigned truncated = 0;
   unsigned with_wrong_id = 0;

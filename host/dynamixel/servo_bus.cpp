@@ -9,8 +9,6 @@
 namespace proleg::host {
 namespace {
 
-/// An adapter without its low latency setting keeps bytes for 16 ms; servos answer within 0.5 ms.
-constexpr std::uint32_t answer_timeout_us = 40'000;
 constexpr unsigned attempts = 3;
 /// A second servo with the same id answers within the greatest Return Delay Time(9), 508 us, but the adapter may keep
 /// its answer for 16 ms.
@@ -55,20 +53,23 @@ void ServoBus::discard_input() {
 }
 
 void ServoBus::send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters) {
-  discard_input();  // forget late answers to an earlier request
+  count_late();
+  discard_input();
   line_.write(instruction_packet(id, instruction, parameters));
 }
 
 std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
   std::array<std::uint8_t, 512> bytes{};
-  for (;;) {
+  const std::uint64_t end_us = std::min(deadline_us, deadline_us_);
+  for (bool is_first = true;; is_first = false) {
     if (auto packet = parser_.next()) {
       if ((packet->error & StatusPacket::alert) != 0) {
         alert_ = packet->id;
       }
       return packet;
     }
-    const std::size_t count = line_.read(bytes, std::min(deadline_us, deadline_us_));
+    // A line that always has bytes, but no answers, must not keep the host.
+    const std::size_t count = is_first || now_us() < end_us ? line_.read(bytes, end_us) : 0;
     if (count == 0) {
       return std::nullopt;
     }
@@ -76,19 +77,36 @@ std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
   }
 }
 
-/// Waits for late answers, which must not count as the answer to the next request.
 void ServoBus::drain() {
-  const std::uint64_t end_us = now_us() + answer_timeout_us;
-  while (receive(end_us)) {
+  while (const auto packet = receive(now_us() + answer_timeout_us)) {
+    ++late_[packet->id];
+    if (now_us() >= deadline_us_) {
+      return;
+    }
+  }
+}
+
+/// Counts the answers to an earlier request that have been received since.
+void ServoBus::count_late() {
+  constexpr unsigned max_answers = 256;
+  for (unsigned i = 0; i < max_answers; ++i) {
+    const auto packet = receive(now_us());
+    if (!packet) {
+      return;
+    }
+    ++late_[packet->id];
   }
 }
 
 StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
-                               std::size_t answer_size) {
+                               std::size_t answer_size, unsigned* sent) {
   const std::uint32_t damaged_before = parser_.damaged();
   std::string strange;
   for (unsigned attempt = 0; attempt < attempts && now_us() < deadline_us_; ++attempt) {
     send(id, instruction, parameters);
+    if (sent != nullptr) {
+      *sent = attempt + 1;
+    }
     const std::size_t bytes = packet_overhead + parameters.size() + status_overhead + answer_size;
     const std::uint64_t deadline_us = now_us() + line_time_us(bytes, rate_) + answer_timeout_us;
     while (auto packet = receive(deadline_us)) {
@@ -120,7 +138,7 @@ StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::sp
   if (parser_.damaged() != damaged_before) {
     strange = "; answers were damaged: two servos with one id, a bad cable, or a line without ground";
   }
-  throw ServoError(id, "does not answer" + strange);
+  throw ServoError(id, no_answer + strange);
 }
 
 bool ServoBus::receives_from(std::uint8_t id, std::uint64_t deadline_us) {
@@ -135,19 +153,27 @@ bool ServoBus::receives_from(std::uint8_t id, std::uint64_t deadline_us) {
 StatusPacket ServoBus::request_of_one(std::uint8_t id, Instruction instruction,
                                       std::span<const std::uint8_t> parameters, std::size_t answer_size) {
   const std::uint32_t answer_us = line_time_us(status_overhead + answer_size, rate_);
-  // The answer to an earlier request may have been late. That to the repetition, behind a silent line, was not.
-  for (unsigned attempt = 0; attempt < 2; ++attempt) {
+  constexpr unsigned max_rounds = 4;
+  unsigned pairs = 0;
+  for (unsigned round = 0; round < max_rounds; ++round) {
+    unsigned sent = 0;
     const std::uint64_t start_us = now_us();
-    StatusPacket answer = request(id, instruction, parameters, answer_size);
+    StatusPacket answer = request(id, instruction, parameters, answer_size, &sent);
     const std::uint64_t wait_us = std::clamp<std::uint64_t>(2 * (now_us() - start_us), second_answer_us + answer_us,
                                                             answer_timeout_us + answer_us);
-    if (!receives_from(id, now_us() + wait_us)) {
+    const bool has_second = receives_from(id, now_us() + wait_us);
+    if (sent == 1 && !has_second) {
       return answer;
+    }
+    // The second answer may be a late one, to the request before or to a repetition. It is not if it comes again.
+    pairs += sent == 1 ? 1U : 0U;
+    if (pairs == 2) {
+      throw ServoError("two servos have the id " + std::to_string(id) +
+                       ": one request got two answers; connect one of them alone, and change its ID(7)");
     }
     drain();
   }
-  throw ServoError("two servos have the id " + std::to_string(id) +
-                   ": one request got two answers; connect one of them alone, and change its ID(7)");
+  throw ServoError(id, no_answer);
 }
 
 unsigned ServoBus::ping(std::uint8_t id) { return model_of(request(id, Instruction::ping, {}, ping_answer_size)); }
@@ -216,6 +242,8 @@ std::vector<std::optional<StatusPacket>> ServoBus::sync_read(TableItem item, std
     if (is_answer) {
       answers[at] = *std::move(packet);
       --missing;
+    } else if ((packet->error & StatusPacket::error_number) == 0) {
+      ++late_[packet->id];
     }
   }
   return answers;

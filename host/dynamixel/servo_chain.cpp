@@ -11,6 +11,8 @@ namespace {
 
 /// Number of missed answers in a row after which a servo counts as lost: two damaged answers in a row can be noise.
 constexpr unsigned max_missed = 3;
+/// The same if its late answers show that it has power and a cable: the adapter or the host was delayed.
+constexpr unsigned max_late = 10;
 /// Period in ticks at which something else than angles is read.
 constexpr std::uint32_t state_ticks = 4;
 
@@ -172,7 +174,7 @@ void ServoChain::send_goals(std::span<const double> joint_deg, std::uint64_t dea
     positions[joint] = static_cast<std::uint32_t>(watched_[joint].goal);
   }
   bus_.sync_write(goal_position, ids_, positions);
-  read_some(std::min(deadline_us, start_us + settings_.tick_us * std::uint64_t{9} / 10));
+  read_some(std::min(deadline_us, start_us + tick_time_for_reads_us(settings_.tick_us)));
   if (const auto id = bus_.take_alert()) {
     const std::size_t joint = joint_of(*id);
     if (joint < ids_.size()) {
@@ -180,12 +182,36 @@ void ServoChain::send_goals(std::span<const double> joint_deg, std::uint64_t dea
     }
   }
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
-    const unsigned missed = watched_[joint].missed;
-    if (missed >= max_missed) {
-      throw ServoError(name_of(joint) + " has not answered " + std::to_string(missed) +
-                       " times in a row; check its cable and its power");
-    }
+    require_answers(joint);
   }
+}
+
+void ServoChain::count_answer(std::size_t joint) {
+  watched_[joint].missed = 0;
+  watched_[joint].late = bus_.late_answers(ids_[joint]);
+  watched_[joint].damaged = bus_.damaged_answers();
+}
+
+void ServoChain::require_answers(std::size_t joint) const {
+  const Watched& watched = watched_[joint];
+  if (watched.missed < max_missed) {
+    return;
+  }
+  const std::string times = std::to_string(watched.missed) + " times in a row";
+  const std::uint32_t late = bus_.late_answers(ids_[joint]) - watched.late;
+  const std::uint32_t damaged = bus_.damaged_answers() - watched.damaged;
+  if (late != 0 && watched.missed < max_late) {
+    return;
+  }
+  if (late != 0) {
+    throw ServoError(name_of(joint) + " has not answered in its tick " + times + ", but " + std::to_string(late) +
+                     " late answers were received; " + latency_advice(settings_.device));
+  }
+  if (damaged != 0) {
+    throw ServoError(name_of(joint) + " has not answered " + times + ", and " + std::to_string(damaged) +
+                     " damaged answers were received; check its cable and the ground of the line");
+  }
+  throw ServoError(name_of(joint) + " has not answered " + times + "; check its cable and its power");
 }
 
 ServoChain::TickRead ServoChain::next_tick_read() {
@@ -198,7 +224,9 @@ ServoChain::TickRead ServoChain::next_tick_read() {
   static constexpr std::array<std::size_t, 8> states{1, 2, 1, 0, 1, 2, 1, 3};
   const std::uint32_t tick = ticks_++;
   if (!has_power_ || tick % state_ticks != 0) {
-    return {angle_block, &ServoChain::store, 0};
+    // The sizes differ from tick to tick, so a late answer is not taken for one to the next request.
+    const auto size = static_cast<std::uint16_t>(angle_block.size + tick % state_ticks);
+    return {{angle_block.address, size}, &ServoChain::store, 0};
   }
   const std::size_t state = states[tick / state_ticks % states.size()];
   return {reads[state].item, reads[state].take, 1 + state};
@@ -223,7 +251,7 @@ void ServoChain::read_some(std::uint64_t deadline_us) {
   }
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (answers[i]) {
-      watched_[joints[i]].missed = 0;
+      count_answer(joints[i]);
       (this->*read.take)(joints[i], answers[i]->parameters);
     }
   }

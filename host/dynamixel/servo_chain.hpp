@@ -23,7 +23,7 @@ class ServoChain {
 
   // All functions end by the deadline, a time of the line's clock. They throw ServoError and LineError.
   /// Finds all servos, switches their power off, prepares them and reads their angles. Nothing is written before each
-  /// id has been answered once.
+  /// id has been answered once. Measures how long answers take, and throws if that is too long for a tick.
   void connect(std::uint64_t deadline_us);
   /// Switches the power on: the goal of each servo is its position, or the nearest limit of its joint. From now on the
   /// servos stop by themselves if nothing is sent for the time of the watchdog.
@@ -54,6 +54,8 @@ class ServoChain {
   std::string name_of(std::size_t joint) const;
   void find_all();
   void take_power(std::size_t joint);
+  void choose_reads_per_tick();
+  std::uint64_t measure_read(std::size_t count);
   void prepare(std::size_t joint);
   void prepare_modes(std::size_t joint);
   void check_position_limits(std::size_t joint);
@@ -69,6 +71,8 @@ class ServoChain {
   };
   TickRead next_tick_read();
   void read_some(std::uint64_t deadline_us);
+  void count_answer(std::size_t joint);
+  void require_answers(std::size_t joint) const;
   void store(std::size_t joint, std::span<const std::uint8_t> block);
   void require_one_turn(std::size_t joint, std::int32_t position);
   void check_voltage(std::size_t joint, std::uint32_t voltage);
@@ -86,7 +90,9 @@ class ServoChain {
   std::vector<Reading> readings_;
   /// What is known of a joint's servo from one tick to the next.
   struct Watched {
-    unsigned missed = 0;            ///< answers in a row that did not come
+    unsigned missed = 0;            ///< answers in a row that did not come in time
+    std::uint32_t late = 0;         ///< late answers of the servo before the last one that came in time
+    std::uint32_t damaged = 0;      ///< damaged answers of all servos before it
     std::uint32_t min_voltage = 0;  ///< 0.1 V; 0: not checked
     std::int32_t goal = 0;          ///< steps
     Standstill standstill;

@@ -13,6 +13,11 @@ namespace {
 constexpr unsigned return_delay_unit_us = 2;
 constexpr std::uint32_t search_time_us = 300'000;
 
+std::string in_ms(std::uint64_t time_us) {
+  const std::uint64_t tenths = (time_us + 50) / 100;
+  return std::to_string(tenths / 10) + (tenths % 10 == 0 ? "" : "." + std::to_string(tenths % 10));
+}
+
 std::string listed(std::span<const std::uint8_t> ids) {
   std::string text;
   for (const std::uint8_t id : ids) {
@@ -32,13 +37,14 @@ void ServoChain::connect(std::uint64_t deadline_us) {
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
     take_power(joint);
   }
-  reads_per_tick_ =
-      std::max<std::size_t>(1, readable_servos(ids_.size(), settings_.rate, settings_.tick_us, return_delay_us_));
+  choose_reads_per_tick();
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
     prepare(joint);
   }
   read_all_angles();
-  std::ranges::for_each(watched_, [](Watched& watched) { watched.missed = 0; });
+  for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
+    count_answer(joint);
+  }
   next_joints_.fill(0);
   ticks_ = 0;
   is_connected_ = true;
@@ -53,8 +59,13 @@ void ServoChain::find_all() {
       if (error.what_it_does().empty()) {
         throw;
       }
+      const std::vector<std::uint8_t> found = bus_.find_servos(search_time_us);
+      if (error.what_it_does() == ServoBus::no_answer && std::ranges::find(found, ids_[joint]) != found.end()) {
+        throw ServoError(name_of(joint) + " " + error.what_it_does() + " within " + in_ms(answer_timeout_us) +
+                         " ms, but has answered later; check its cable, or " + latency_advice(settings_.device));
+      }
       throw ServoError(name_of(joint) + " " + error.what_it_does() + " on " + settings_.device + " at " +
-                       std::to_string(settings_.rate) + " baud (" + listed(bus_.find_servos(search_time_us)) +
+                       std::to_string(settings_.rate) + " baud (" + listed(found) +
                        "); check cable, power, id and Baud Rate(8)");
     }
     if (!has_this_table(model)) {
@@ -74,6 +85,46 @@ void ServoChain::take_power(std::size_t joint) {
   // Two servos that answer at the same time give the same bits to a ping, but damage each other's angle.
   static_cast<void>(bus_.read(id, present_block));
   return_delay_us_ = std::max(return_delay_us_, bus_.read_number(id, return_delay_time) * return_delay_unit_us);
+}
+
+/// Chooses how many servos are read in a tick: as many as the line allows, if their answers come in time.
+void ServoChain::choose_reads_per_tick() {
+  const std::uint64_t room_us =
+      tick_time_for_reads_us(settings_.tick_us) - line_time_us(goal_packet_size(ids_.size()), settings_.rate);
+  std::size_t count =
+      std::max<std::size_t>(1, readable_servos(ids_.size(), settings_.rate, settings_.tick_us, return_delay_us_));
+  for (;;) {
+    const std::uint64_t line_us = read_line_time_us(count, settings_.rate);
+    const std::uint64_t time_us = measure_read(count);
+    // What the bytes do not take varies: servos, adapter and operating system.
+    const std::uint64_t needed_us = time_us + (time_us - std::min(time_us, line_us)) / 4;
+    if (needed_us <= room_us) {
+      break;
+    }
+    if (count == 1) {
+      throw ServoError("answers take " + in_ms(time_us) + " ms, a tick of " + in_ms(settings_.tick_us) +
+                       " ms has time for " + in_ms(line_us + (room_us - std::min(room_us, line_us)) * 4 / 5) +
+                       " ms: " + latency_advice(settings_.device));
+    }
+    count = std::clamp<std::size_t>(count * room_us / needed_us, 1, count - 1);
+  }
+  reads_per_tick_ = count;
+}
+
+/// The time in us in which this number of servos is usually read, if the host is not delayed by other programs.
+std::uint64_t ServoChain::measure_read(std::size_t count) {
+  std::array<std::uint64_t, 9> times{};
+  for (std::uint64_t& time : times) {
+    const std::uint64_t start_us = bus_.now_us();
+    const std::uint64_t end_us = start_us + read_line_time_us(count, settings_.rate) + answer_timeout_us;
+    const auto answers = bus_.sync_read(present_block, std::span(ids_).first(count), end_us);
+    time = bus_.now_us() - start_us;
+    if (std::ranges::any_of(answers, [](const auto& answer) { return !answer; })) {
+      bus_.drain();
+    }
+  }
+  std::ranges::sort(times);
+  return times[times.size() / 4];
 }
 
 void ServoChain::prepare(std::size_t joint) {

@@ -227,18 +227,20 @@ std::size_t goal_packet_size(std::size_t servos) {
   return packet_overhead + address_and_size + servos * (1 + goal_position.size);
 }
 
-std::uint32_t read_line_time_us(std::size_t servos, unsigned rate) {
-  constexpr std::size_t id_and_answer = 1 + status_overhead + present_block.size;
-  return line_time_us(packet_overhead + address_and_size + servos * id_and_answer, rate);
+std::uint32_t expected_read_time_us(std::size_t servos, unsigned rate, std::uint32_t return_delay_us) {
+  const auto count = static_cast<std::uint32_t>(servos);
+  return turnaround_us + line_time_us(packet_overhead + address_and_size, rate) +
+         count * (return_delay_us + line_time_us(1 + status_overhead + present_block.size, rate));
 }
 
 std::size_t readable_servos(std::size_t servos, unsigned rate, std::uint32_t tick_us, std::uint32_t return_delay_us) {
-  const std::int64_t time_us = static_cast<std::int64_t>(tick_time_for_reads_us(tick_us)) -
-                               line_time_us(goal_packet_size(servos), rate) - turnaround_us -
-                               read_line_time_us(0, rate);
-  const std::int64_t answer_us =
-      std::int64_t{return_delay_us} + line_time_us(1 + status_overhead + present_block.size, rate);
-  return time_us < answer_us ? 0 : std::min(servos, static_cast<std::size_t>(time_us / answer_us));
+  const std::uint64_t goals_us = line_time_us(goal_packet_size(servos), rate);
+  std::size_t count = servos;
+  while (count > 0 &&
+         goals_us + expected_read_time_us(count, rate, return_delay_us) > tick_time_for_reads_us(tick_us)) {
+    --count;
+  }
+  return count;
 }
 
 ChainSettings read_chain_settings(const proleg_setup& setup) {

@@ -61,11 +61,11 @@ struct ChainSettings {
   return std::uint64_t{tick_us} * 9 / 10;
 }
 
-/// Time in us that the bytes take by which this number of servos are read: request and answers.
-[[nodiscard]] std::uint32_t read_line_time_us(std::size_t servos, unsigned rate);
+/// Time in us that a read of this number of servos takes behind an adapter with low latency. return_delay_us: the
+/// greatest return delay of the servos.
+[[nodiscard]] std::uint32_t expected_read_time_us(std::size_t servos, unsigned rate, std::uint32_t return_delay_us);
 
 /// Number of servos that can be read in each tick after their goal positions were sent; at most `servos`.
-/// return_delay_us: the greatest return delay of the servos.
 [[nodiscard]] std::size_t readable_servos(std::size_t servos, unsigned rate, std::uint32_t tick_us,
                                           std::uint32_t return_delay_us);
 

@@ -79,10 +79,20 @@ std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
 
 void ServoBus::drain() {
   while (const auto packet = receive(now_us() + answer_timeout_us)) {
-    ++late_[packet->id];
+    count_useless(*packet);
     if (now_us() >= deadline_us_) {
       return;
     }
+  }
+}
+
+void ServoBus::count_useless(const StatusPacket& packet) {
+  UselessAnswers& useless = useless_[packet.id];
+  if ((packet.error & StatusPacket::error_number) == 0) {
+    ++useless.late;
+  } else {
+    ++useless.rejecting;
+    useless.error = packet.error;
   }
 }
 
@@ -94,7 +104,7 @@ void ServoBus::count_late() {
     if (!packet) {
       return;
     }
-    ++late_[packet->id];
+    count_useless(*packet);
   }
 }
 
@@ -242,8 +252,8 @@ std::vector<std::optional<StatusPacket>> ServoBus::sync_read(TableItem item, std
     if (is_answer) {
       answers[at] = *std::move(packet);
       --missing;
-    } else if ((packet->error & StatusPacket::error_number) == 0) {
-      ++late_[packet->id];
+    } else {
+      count_useless(*packet);
     }
   }
   return answers;

@@ -78,9 +78,14 @@ class ServoBus {
   /// Forgets bytes that were received and not read.
   void discard_input();
 
-  // Numbers of answers so far that were of no use.
-  /// Answers of a servo that came when the next request had been sent.
-  [[nodiscard]] std::uint32_t late_answers(std::uint8_t id) const { return late_[id]; }
+  /// Answers of a servo so far that were of no use.
+  struct UselessAnswers {
+    std::uint32_t late = 0;       ///< they came when the next request had been sent
+    std::uint32_t rejecting = 0;  ///< they had an error number
+    std::uint8_t error = 0;       ///< the last one's
+  };
+  [[nodiscard]] const UselessAnswers& useless_answers(std::uint8_t id) const { return useless_[id]; }
+  /// Number of damaged answers of all servos so far.
   [[nodiscard]] std::uint32_t damaged_answers() const { return parser_.damaged(); }
 
   /// Whether a servo reported a hardware error (alert bit) since the last call, and which.
@@ -89,6 +94,7 @@ class ServoBus {
  private:
   void send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters);
   std::optional<StatusPacket> receive(std::uint64_t deadline_us);
+  void count_useless(const StatusPacket& packet);
   void count_late();
   /// Sends a request, with repetitions. answer_size: the number of parameters that the answer must have. sent: receives
   /// how often it was sent.
@@ -103,7 +109,7 @@ class ServoBus {
   unsigned rate_;
   std::uint64_t deadline_us_ = UINT64_MAX;
   StatusParser parser_;
-  std::array<std::uint32_t, 256> late_{};  ///< by id
+  std::array<UselessAnswers, 256> useless_{};  ///< by id
   std::optional<std::uint8_t> alert_;
 };
 

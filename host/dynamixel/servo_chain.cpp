@@ -188,7 +188,7 @@ void ServoChain::send_goals(std::span<const double> joint_deg, std::uint64_t dea
 
 void ServoChain::count_answer(std::size_t joint) {
   watched_[joint].missed = 0;
-  watched_[joint].late = bus_.late_answers(ids_[joint]);
+  watched_[joint].useless = bus_.useless_answers(ids_[joint]);
   watched_[joint].damaged = bus_.damaged_answers();
 }
 
@@ -198,7 +198,8 @@ void ServoChain::require_answers(std::size_t joint) const {
     return;
   }
   const std::string times = std::to_string(watched.missed) + " times in a row";
-  const std::uint32_t late = bus_.late_answers(ids_[joint]) - watched.late;
+  const ServoBus::UselessAnswers& useless = bus_.useless_answers(ids_[joint]);
+  const std::uint32_t late = useless.late - watched.useless.late;
   const std::uint32_t damaged = bus_.damaged_answers() - watched.damaged;
   if (late != 0 && watched.missed < max_late) {
     return;
@@ -206,6 +207,10 @@ void ServoChain::require_answers(std::size_t joint) const {
   if (late != 0) {
     throw ServoError(name_of(joint) + " has not answered in its tick " + times + ", but " + std::to_string(late) +
                      " late answers were received; " + latency_advice(settings_.device));
+  }
+  if (useless.rejecting != watched.useless.rejecting) {
+    throw ServoError(name_of(joint) + " rejects reads with " + describe_error_number(useless.error) + ", " + times +
+                     "; check its cable and the ground of the line");
   }
   if (damaged != 0) {
     throw ServoError(name_of(joint) + " has not answered " + times + ", and " + std::to_string(damaged) +

@@ -90,11 +90,11 @@ class ServoChain {
   std::vector<Reading> readings_;
   /// What is known of a joint's servo from one tick to the next.
   struct Watched {
-    unsigned missed = 0;            ///< answers in a row that did not come in time
-    std::uint32_t late = 0;         ///< late answers of the servo before the last one that came in time
-    std::uint32_t damaged = 0;      ///< damaged answers of all servos before it
-    std::uint32_t min_voltage = 0;  ///< 0.1 V; 0: not checked
-    std::int32_t goal = 0;          ///< steps
+    unsigned missed = 0;               ///< answers in a row that did not come in time
+    ServoBus::UselessAnswers useless;  ///< before the last answer that came in time
+    std::uint32_t damaged = 0;         ///< damaged answers of all servos before it
+    std::uint32_t min_voltage = 0;     ///< 0.1 V; 0: not checked
+    std::int32_t goal = 0;             ///< steps
     Standstill standstill;
   };
   std::vector<Watched> watched_;

@@ -89,21 +89,21 @@ void ServoChain::take_power(std::size_t joint) {
 
 /// Chooses how many servos are read in a tick: as many as the line allows, if their answers come in time.
 void ServoChain::choose_reads_per_tick() {
-  const std::uint64_t room_us =
-      tick_time_for_reads_us(settings_.tick_us) - line_time_us(goal_packet_size(ids_.size()), settings_.rate);
+  const std::uint64_t goals_us = line_time_us(goal_packet_size(ids_.size()), settings_.rate);
+  const std::uint64_t room_us = tick_time_for_reads_us(settings_.tick_us) - goals_us;
   std::size_t count =
       std::max<std::size_t>(1, readable_servos(ids_.size(), settings_.rate, settings_.tick_us, return_delay_us_));
   for (;;) {
-    const std::uint64_t line_us = read_line_time_us(count, settings_.rate);
+    const std::uint64_t expected_us = expected_read_time_us(count, settings_.rate, return_delay_us_);
     const std::uint64_t time_us = measure_read(count);
-    // What the bytes do not take varies: servos, adapter and operating system.
-    const std::uint64_t needed_us = time_us + (time_us - std::min(time_us, line_us)) / 4;
+    // An unexpected delay varies: a quarter of it stays free.
+    const std::uint64_t needed_us = time_us + (std::max(time_us, expected_us) - expected_us) / 4;
     if (needed_us <= room_us) {
       break;
     }
     if (count == 1) {
       throw ServoError("answers take " + in_ms(time_us) + " ms, a tick of " + in_ms(settings_.tick_us) +
-                       " ms has time for " + in_ms(line_us + (room_us - std::min(room_us, line_us)) * 4 / 5) +
+                       " ms has time for " + in_ms((4 * room_us + expected_us) / 5) +
                        " ms: " + latency_advice(settings_.device));
     }
     count = std::clamp<std::size_t>(count * room_us / needed_us, 1, count - 1);
@@ -116,7 +116,8 @@ std::uint64_t ServoChain::measure_read(std::size_t count) {
   std::array<std::uint64_t, 9> times{};
   for (std::uint64_t& time : times) {
     const std::uint64_t start_us = bus_.now_us();
-    const std::uint64_t end_us = start_us + read_line_time_us(count, settings_.rate) + answer_timeout_us;
+    const std::uint64_t end_us =
+        start_us + expected_read_time_us(count, settings_.rate, return_delay_us_) + answer_timeout_us;
     const auto answers = bus_.sync_read(present_block, std::span(ids_).first(count), end_us);
     time = bus_.now_us() - start_us;
     if (std::ranges::any_of(answers, [](const auto& answer) { return !answer; })) {

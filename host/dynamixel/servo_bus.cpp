@@ -53,22 +53,26 @@ void ServoBus::discard_input() {
 }
 
 void ServoBus::send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters) {
-  count_late();
-  discard_input();
+  take_late();
   line_.write(instruction_packet(id, instruction, parameters));
+}
+
+std::optional<StatusPacket> ServoBus::next_packet() {
+  auto packet = parser_.next();
+  if (packet && (packet->error & StatusPacket::alert) != 0) {
+    alert_ = packet->id;
+  }
+  return packet;
 }
 
 std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
   std::array<std::uint8_t, 512> bytes{};
   const std::uint64_t end_us = std::min(deadline_us, deadline_us_);
   for (bool is_first = true;; is_first = false) {
-    if (auto packet = parser_.next()) {
-      if ((packet->error & StatusPacket::alert) != 0) {
-        alert_ = packet->id;
-      }
+    if (auto packet = next_packet()) {
       return packet;
     }
-    // A line that always has bytes, but no answers, must not keep the host.
+    // After the deadline, what a delayed host has received by then still counts; a line that is never silent must end.
     const std::size_t count = is_first || now_us() < end_us ? line_.read(bytes, end_us) : 0;
     if (count == 0) {
       return std::nullopt;
@@ -96,16 +100,22 @@ void ServoBus::count_useless(const StatusPacket& packet) {
   }
 }
 
-/// Counts the answers to an earlier request that have been received since.
-void ServoBus::count_late() {
-  constexpr unsigned max_answers = 256;
-  for (unsigned i = 0; i < max_answers; ++i) {
-    const auto packet = receive(now_us());
-    if (!packet) {
+/// Takes what has been received since the last request: late answers. The rest of one may still come.
+void ServoBus::take_late() {
+  constexpr unsigned max_reads = 8;
+  std::array<std::uint8_t, 512> bytes{};
+  for (unsigned i = 0; i < max_reads; ++i) {
+    while (const auto packet = next_packet()) {
+      count_useless(*packet);
+    }
+    const std::size_t count = line_.read(bytes, now_us());
+    if (count == 0) {
+      parser_.forget_longer_than(present_block.size);
       return;
     }
-    count_useless(*packet);
+    parser_.add(std::span(bytes).first(count));
   }
+  discard_input();
 }
 
 StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
@@ -113,6 +123,7 @@ StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::sp
   const std::uint32_t damaged_before = parser_.damaged();
   std::string strange;
   for (unsigned attempt = 0; attempt < attempts && now_us() < deadline_us_; ++attempt) {
+    discard_input();
     send(id, instruction, parameters);
     if (sent != nullptr) {
       *sent = attempt + 1;

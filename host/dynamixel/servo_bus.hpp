@@ -93,9 +93,10 @@ class ServoBus {
 
  private:
   void send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters);
+  std::optional<StatusPacket> next_packet();
   std::optional<StatusPacket> receive(std::uint64_t deadline_us);
   void count_useless(const StatusPacket& packet);
-  void count_late();
+  void take_late();
   /// Sends a request, with repetitions. answer_size: the number of parameters that the answer must have. sent: receives
   /// how often it was sent.
   StatusPacket request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,

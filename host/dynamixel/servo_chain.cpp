@@ -61,8 +61,16 @@ std::size_t ServoChain::joint_of(std::uint8_t id) const {
   return static_cast<std::size_t>(std::ranges::find(ids_, id) - ids_.begin());
 }
 
+std::vector<std::uint8_t> ServoChain::read(std::size_t joint, TableItem item) {
+  try {
+    return bus_.read(ids_[joint], item);
+  } catch (const ServoError& error) {
+    throw ServoError(name_of(joint) + " " + error.what_it_does());
+  }
+}
+
 void ServoChain::require_healthy(std::size_t joint) {
-  require_healthy(joint, bus_.read(ids_[joint], torque_block)[hardware_error_in_block]);
+  require_healthy(joint, read(joint, torque_block)[hardware_error_in_block]);
 }
 
 void ServoChain::require_healthy(std::size_t joint, std::uint8_t hardware_error) const {
@@ -74,7 +82,7 @@ void ServoChain::require_healthy(std::size_t joint, std::uint8_t hardware_error)
 
 void ServoChain::read_all_angles() {
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
-    store(joint, bus_.read(ids_[joint], present_block));
+    store(joint, read(joint, present_block));
   }
 }
 
@@ -99,7 +107,7 @@ void ServoChain::require_one_turn(std::size_t joint, std::int32_t position) {
   if (position >= -tolerance && position < steps_per_turn + tolerance) {
     return;
   }
-  const auto homing = signed_number_of(bus_.read(ids_[joint], homing_offset));
+  const auto homing = signed_number_of(read(joint, homing_offset));
   throw ServoError(name_of(joint) + " is at position " + std::to_string(position) + ", expected 0 to " +
                    std::to_string(steps_per_turn - 1) + "; its Homing Offset(20) is " + std::to_string(homing) +
                    (homing == 0 ? ", so the joint was turned by more than one revolution: turn it back, or switch the "
@@ -265,7 +273,7 @@ void ServoChain::read_some(std::uint64_t deadline_us) {
 void ServoChain::check_torque(std::size_t joint, std::span<const std::uint8_t> block) {
   require_healthy(joint, block[hardware_error_in_block]);
   if (block[torque_in_block] == 0) {
-    const std::uint32_t watchdog = bus_.read_number(ids_[joint], bus_watchdog);
+    const unsigned watchdog = read(joint, bus_watchdog)[0];
     throw ServoError(name_of(joint) + " has lost its torque: " +
                      (watchdog == 0 ? "it has restarted, its Bus Watchdog(98) is 0; check its supply and its cable"
                                     : "another program has set Torque Enable(64) to 0; end that program"));
@@ -280,7 +288,7 @@ void ServoChain::check_watchdog(std::size_t joint, std::span<const std::uint8_t>
                      " ms; reduce the load of the computer, or set a longer 'watchdog'");
   }
   if (found != settings_.watchdog) {
-    check_torque(joint, bus_.read(ids_[joint], torque_block));
+    check_torque(joint, read(joint, torque_block));
     throw ServoError(name_of(joint) + " has the Bus Watchdog(98) " + std::to_string(found) + ", expected " +
                      std::to_string(settings_.watchdog) +
                      ": it has restarted, or another program has changed it; check its supply, end that program");

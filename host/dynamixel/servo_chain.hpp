@@ -52,6 +52,8 @@ class ServoChain {
 
  private:
   std::string name_of(std::size_t joint) const;
+  /// Reads an item; the joint is named if that fails.
+  std::vector<std::uint8_t> read(std::size_t joint, TableItem item);
   void find_all();
   void take_power(std::size_t joint);
   void choose_reads_per_tick();

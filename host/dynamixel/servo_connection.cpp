@@ -96,8 +96,9 @@ void ServoChain::choose_reads_per_tick() {
   for (;;) {
     const std::uint64_t expected_us = expected_read_time_us(count, settings_.rate, return_delay_us_);
     const std::uint64_t time_us = measure_read(count);
-    // An unexpected delay varies: a quarter of it stays free.
-    const std::uint64_t needed_us = time_us + (std::max(time_us, expected_us) - expected_us) / 4;
+    // An unexpected delay varies. There is time for twice of it, or for a quarter more if only one servo is read.
+    const std::uint64_t unexpected_us = std::max(time_us, expected_us) - expected_us;
+    const std::uint64_t needed_us = time_us + (count == 1 ? unexpected_us / 4 : unexpected_us);
     if (needed_us <= room_us) {
       break;
     }

@@ -224,6 +224,11 @@ bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<c
   }
   const bool is_late = take(servo.until_late) && servo.until_late == 0;
   answers.push_back({servo.delay_us + (is_late ? servo.late_us : 0U), packet});
+  if (servo.split_us != 0) {
+    Bytes& first = answers.back().bytes;
+    answers.push_back({servo.split_us, Bytes(first.begin() + 3, first.end())});
+    answers[answers.size() - 2].bytes.resize(3);
+  }
   return true;
 }
 

@@ -39,6 +39,7 @@ class EmulatedServo {
   unsigned until_late = 0;  ///< counts answers: at 1, the answer is late
   std::uint32_t late_us = 50'000;
   std::uint32_t delay_us = 500;
+  std::uint32_t split_us = 0;       ///< delay behind the first three bytes of each answer
   bool is_blocked = false;          ///< it does not move to its goals
   std::int32_t steps_per_goal = 0;  ///< that it moves towards a goal when it gets one; 0: it moves there
 

@@ -17,10 +17,9 @@ struct TableItem {
 inline constexpr TableItem return_delay_time{9, 1};  ///< 2 us; 0 to 254
 inline constexpr TableItem drive_mode{10, 1};        ///< 0: normal direction, profile in velocities
 inline constexpr TableItem operating_mode{11, 1};
-inline constexpr TableItem homing_offset{20, 4};       ///< steps, signed; added to the position
-inline constexpr TableItem min_voltage_limit{34, 2};   ///< 0.1 V
-inline constexpr TableItem max_position_limit{48, 4};  ///< steps
-inline constexpr TableItem min_position_limit{52, 4};  ///< steps
+inline constexpr TableItem homing_offset{20, 4};      ///< steps, signed; added to the position
+inline constexpr TableItem min_voltage_limit{34, 2};  ///< 0.1 V
+inline constexpr TableItem position_limits{48, 8};    ///< Max and Min Position Limit(48, 52), steps, read at once
 
 // The items below are in the RAM.
 inline constexpr TableItem torque_enable{64, 1};

@@ -83,7 +83,7 @@ void ServoChain::take_power(std::size_t joint) {
   require_healthy(joint);
   bus_.write(id, bus_watchdog, 0);
   // Two servos that answer at the same time give the same bits to a ping, but damage each other's angle.
-  static_cast<void>(bus_.read(id, present_block));
+  static_cast<void>(read(joint, present_block));
   return_delay_us_ = std::max(return_delay_us_, bus_.read_number(id, return_delay_time) * return_delay_unit_us);
 }
 
@@ -159,8 +159,9 @@ void ServoChain::prepare_modes(std::size_t joint) {
 
 void ServoChain::check_position_limits(std::size_t joint) {
   const ServoSettings& servo = settings_.servos[joint];
-  const auto first = signed_number_of(bus_.read(servo.id, min_position_limit));
-  const auto last = signed_number_of(bus_.read(servo.id, max_position_limit));
+  const std::vector<std::uint8_t> limits = read(joint, position_limits);
+  const auto last = signed_number_of(std::span(limits).first(4));
+  const auto first = signed_number_of(std::span(limits).last(4));
   const auto [lowest, highest] =
       std::minmax({servo.position_of(servo.lower_limit_deg), servo.position_of(servo.upper_limit_deg)});
   if (lowest < first || highest > last) {

@@ -18,6 +18,8 @@ namespace {
 constexpr std::uint32_t usual_return_delay_us = 500;
 /// Time that an adapter with low latency adds to a request: from its last byte to the driver, and back.
 constexpr std::uint32_t turnaround_us = 1000;
+/// Bytes in front of the ids or values of a packet to several servos.
+constexpr std::size_t address_and_size = 4;
 constexpr double step_deg = 360.0 / steps_per_turn;
 
 template <typename Number>
@@ -222,18 +224,23 @@ std::uint32_t line_time_us(std::size_t bytes, unsigned rate) {
 }
 
 std::size_t goal_packet_size(std::size_t servos) {
-  constexpr std::size_t address_and_size = 4;
   return packet_overhead + address_and_size + servos * (1 + goal_position.size);
 }
 
+std::uint32_t expected_read_time_us(std::size_t servos, unsigned rate, std::uint32_t return_delay_us) {
+  const auto count = static_cast<std::uint32_t>(servos);
+  return turnaround_us + line_time_us(packet_overhead + address_and_size, rate) +
+         count * (return_delay_us + line_time_us(1 + status_overhead + present_block.size, rate));
+}
+
 std::size_t readable_servos(std::size_t servos, unsigned rate, std::uint32_t tick_us, std::uint32_t return_delay_us) {
-  constexpr std::size_t address_and_size = 4;
-  // A tenth of the tick stays free for the host's own delays.
-  const std::int64_t time_us = std::int64_t{tick_us} * 9 / 10 - line_time_us(goal_packet_size(servos), rate) -
-                               turnaround_us - line_time_us(packet_overhead + address_and_size, rate);
-  const std::int64_t answer_us =
-      std::int64_t{return_delay_us} + line_time_us(1 + status_overhead + present_block.size, rate);
-  return time_us < answer_us ? 0 : std::min(servos, static_cast<std::size_t>(time_us / answer_us));
+  const std::uint64_t goals_us = line_time_us(goal_packet_size(servos), rate);
+  std::size_t count = servos;
+  while (count > 0 &&
+         goals_us + expected_read_time_us(count, rate, return_delay_us) > tick_time_for_reads_us(tick_us)) {
+    --count;
+  }
+  return count;
 }
 
 ChainSettings read_chain_settings(const proleg_setup& setup) {

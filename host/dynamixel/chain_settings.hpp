@@ -55,8 +55,17 @@ struct ChainSettings {
 /// Bytes of the packet with goal positions of all servos.
 [[nodiscard]] std::size_t goal_packet_size(std::size_t servos);
 
+/// Time in us from the start of a tick to the end of its reads. A tenth of the tick stays free for the host's own
+/// delays.
+[[nodiscard]] constexpr std::uint64_t tick_time_for_reads_us(std::uint32_t tick_us) {
+  return std::uint64_t{tick_us} * 9 / 10;
+}
+
+/// Time in us that a read of this number of servos takes behind an adapter with low latency. return_delay_us: the
+/// greatest return delay of the servos.
+[[nodiscard]] std::uint32_t expected_read_time_us(std::size_t servos, unsigned rate, std::uint32_t return_delay_us);
+
 /// Number of servos that can be read in each tick after their goal positions were sent; at most `servos`.
-/// return_delay_us: the greatest return delay of the servos.
 [[nodiscard]] std::size_t readable_servos(std::size_t servos, unsigned rate, std::uint32_t tick_us,
                                           std::uint32_t return_delay_us);
 

@@ -17,23 +17,34 @@ struct TableItem {
 inline constexpr TableItem return_delay_time{9, 1};  ///< 2 us; 0 to 254
 inline constexpr TableItem drive_mode{10, 1};        ///< 0: normal direction, profile in velocities
 inline constexpr TableItem operating_mode{11, 1};
-inline constexpr TableItem max_position_limit{48, 4};  ///< steps
-inline constexpr TableItem min_position_limit{52, 4};  ///< steps
+inline constexpr TableItem homing_offset{20, 4};      ///< steps, signed; added to the position
+inline constexpr TableItem min_voltage_limit{34, 2};  ///< 0.1 V
+inline constexpr TableItem position_limits{48, 8};    ///< Max and Min Position Limit(48, 52), steps, read at once
 
 // The items below are in the RAM.
 inline constexpr TableItem torque_enable{64, 1};
-inline constexpr TableItem status_return_level{68, 1};  ///< 2: all instructions are answered
-inline constexpr TableItem hardware_error_status{70, 1};
+inline constexpr TableItem status_return_level{68, 1};    ///< 2: all instructions are answered
 inline constexpr TableItem bus_watchdog{98, 1};           ///< 20 ms; 0: off and clears its error; 255: it has stopped
 inline constexpr TableItem profile_acceleration{108, 4};  ///< 0: none
 inline constexpr TableItem profile_velocity{112, 4};      ///< 0.229 rev/min; 0: no bound
 inline constexpr TableItem goal_position{116, 4};         ///< steps, within the position limits
 inline constexpr TableItem present_position{132, 4};      ///< steps, signed
 
+/// The items from Torque Enable(64) to Hardware Error Status(70), which are read at once.
+inline constexpr TableItem torque_block{64, 7};
+inline constexpr unsigned torque_in_block = 0;
+inline constexpr unsigned hardware_error_in_block = 6;  ///< 0: none
+
+/// Drive Mode(10) and Operating Mode(11), which are read at once.
+inline constexpr TableItem mode_block{10, 2};
+
 /// The items from Present Current(126) to Present Temperature(146), which are read at once.
 inline constexpr TableItem present_block{126, 21};
+/// Its first items, up to Present Position(132).
+inline constexpr TableItem angle_block{126, 10};
 inline constexpr unsigned current_in_block = 0;       ///< i16; mA, or 2.69 mA, or 0.1 % of the load: see the e-manual
 inline constexpr unsigned position_in_block = 6;      ///< i32, steps
+inline constexpr unsigned voltage_in_block = 18;      ///< u16, 0.1 V
 inline constexpr unsigned temperature_in_block = 20;  ///< u8, degrees Celsius
 
 inline constexpr std::uint8_t position_control_mode = 3;

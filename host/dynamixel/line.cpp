@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 
 namespace proleg::host {
 namespace {
@@ -43,6 +44,14 @@ std::string advice_for(int error) {
 }  // namespace
 
 std::span<const unsigned> serial_rates() { return rates; }
+
+std::string latency_advice(const std::string& device) {
+  std::error_code error;
+  const std::string port = std::filesystem::weakly_canonical(device, error).filename();
+  return "set the latency timer of the adapter to 1 ms (install host/udev/70-proleg.rules, or echo 1 > "
+         "/sys/bus/usb-serial/devices/" +
+         (port.starts_with("ttyUSB") ? port : "ttyUSB0") + "/latency_timer), or use a longer tick";
+}
 
 SerialLine::SerialLine(const std::string& device, unsigned rate) : device_(device) {
   descriptor_ = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);

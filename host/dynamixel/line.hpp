@@ -34,6 +34,9 @@ class Line {
 /// The rates of servos (e-manual, Baud Rate(8)): 9600, 57600, 115200, 1, 2, 3 and 4 Mbit/s.
 [[nodiscard]] std::span<const unsigned> serial_rates();
 
+/// What a user can do if answers come late from this device.
+[[nodiscard]] std::string latency_advice(const std::string& device);
+
 /// A serial port of the operating system: 8 data bits, no parity, 1 stop bit, no flow control, for this process alone.
 class SerialLine final : public Line {
  public:

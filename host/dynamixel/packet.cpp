@@ -107,6 +107,13 @@ void StatusParser::add(std::span<const std::uint8_t> bytes) {
   buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
 }
 
+void StatusParser::forget_longer_than(std::size_t parameters) {
+  const bool has_length = buffer_.size() > length_at + 1;
+  if (has_length && half(buffer_[length_at], buffer_[length_at + 1]) + instruction_at > parameters + status_overhead) {
+    reset();
+  }
+}
+
 /// Removes bytes before the next header. Returns whether the buffer begins with a whole header.
 bool StatusParser::find_header() {
   const auto found = std::search(buffer_.begin(), buffer_.end(), header.begin(), header.end());

@@ -70,6 +70,8 @@ class StatusParser {
   [[nodiscard]] std::optional<StatusPacket> next();
   /// Forgets an incomplete packet.
   void reset() { buffer_.clear(); }
+  /// Forgets an incomplete packet that would have more than this number of parameters: its length may be damaged.
+  void forget_longer_than(std::size_t parameters);
 
   /// Number of packets so far with a wrong CRC, an impossible length or wrong byte stuffing.
   [[nodiscard]] std::uint32_t damaged() const { return damaged_; }

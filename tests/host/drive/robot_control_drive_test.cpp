@@ -103,6 +103,21 @@ TEST_F(ServoRun, AHardwareErrorInTheRunIsNamedAndTheOthersRampDown) {
   expect_ramped_down(3);
 }
 
+TEST_F(ServoRun, AServoThatRestartsInTheRunIsNamedAndTheOthersRampDown) {
+  RobotControlDrive options;
+  options.ticks = 500;
+  options.observer = [this](const host::GaitDriver::Tick& tick) {
+    if (tick.number == 100) {
+      servos.servo(3).restart();
+    }
+  };
+  const DriveResult result = drive(shipped_gait("uniform"), options);
+  ASSERT_TRUE(result.failure);
+  EXPECT_NE(result.failure->find("servo 3 (joint J3) has lost its torque: it has restarted"), std::string::npos);
+  EXPECT_LE(result.gait_ticks, 110U);
+  expect_ramped_down(3);
+}
+
 TEST_F(ServoRun, DamagedAnswersDoNotEndTheRun) {
   RobotControlDrive options;
   options.ticks = 500;

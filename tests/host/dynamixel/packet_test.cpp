@@ -124,5 +124,17 @@ TEST(DynamixelStatus, BehindADamagedOrTruncatedOneIsFound) {
   EXPECT_EQ(parse(endless).size(), 1U);
 }
 
+TEST(DynamixelStatus, ThatIsIncompleteIsForgottenIfItIsTooLong) {
+  const std::span<const std::uint8_t> bytes(read_status);  // four parameters
+  for (const std::size_t parameters : {3U, 4U}) {
+    StatusParser parser;
+    parser.add(bytes.first(9));
+    EXPECT_FALSE(parser.next());
+    parser.forget_longer_than(parameters);
+    parser.add(bytes.subspan(9));
+    EXPECT_EQ(parser.next().has_value(), parameters == 4U);
+  }
+}
+
 }  // namespace
 }  // namespace proleg::host

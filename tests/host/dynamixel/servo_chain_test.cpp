@@ -115,6 +115,25 @@ TEST(ServoChain, RefusesWhatItCannotDrive) {
             "Min and Max Position Limit(52, 48), or set lower_limit and upper_limit");
 }
 
+TEST(ServoChain, APositionBeyondOneTurnIsNamedWithItsCauseBeforeThereIsPower) {
+  const auto error_with = [](std::uint32_t position, std::uint32_t homing_offset) {
+    ChainRig rig(1);
+    rig.servos.servo(1).set_number(132, 4, position);
+    rig.servos.servo(1).set_number(20, 4, homing_offset);
+    const std::string error = ChainRig::error_of([&] { rig.connect(); });
+    EXPECT_FALSE(any_has_power(rig));
+    return error;
+  };
+  EXPECT_EQ(error_with(static_cast<std::uint32_t>(-3000), 0),
+            "servo 1 (joint J1) is at position -3000, expected 0 to 4095; its Homing Offset(20) is 0, so the joint was "
+            "turned by more than one revolution: turn it back, or switch the servo off and on");
+  EXPECT_EQ(error_with(5000, static_cast<std::uint32_t>(-12)),
+            "servo 1 (joint J1) is at position 5000, expected 0 to 4095; its Homing Offset(20) is -12: set it to 0, or "
+            "turn the joint back");
+  EXPECT_NE(error_with(0x80000000U, 0), "");
+  EXPECT_EQ(error_with(4100, 0), "");
+}
+
 TEST(ServoChain, RepeatsARequestTwiceAfterAFaultyAnswer) {
   for (unsigned EmulatedServo::*const fault :
        {&EmulatedServo::silent, &EmulatedServo::corrupt, &EmulatedServo::truncated, &EmulatedServo::with_wrong_id,
@@ -145,6 +164,38 @@ TEST(ServoChain, AnAnswerThatComesAfterItsRepetitionIsNotThatToTheNextRequest) {
       ASSERT_EQ(servo.eeprom_writes, 0U) << late_us << ' ' << answer;
       ASSERT_EQ(servo.position(), 2600) << late_us << ' ' << answer;
     }
+  }
+}
+
+TEST(ServoChain, TwoServosWithOneIdAreFoundAndNothingIsWritten) {
+  for (const std::uint8_t id : {std::uint8_t{1}, std::uint8_t{3}, std::uint8_t{5}}) {
+    for (const std::uint32_t delay_us : {0U, 508U, 16'000U}) {  // in front of the second answer
+      ChainRig rig(5);
+      EmulatedServo second(id);
+      second.delay_us = delay_us;
+      second.table[10] = 1;
+      rig.servos.servos.insert(rig.servos.servos.begin() + id, second);
+      const auto before = rig.servos.servos;
+      EXPECT_EQ(ChainRig::error_of([&] { rig.connect(); }),
+                "two servos have the id " + std::to_string(id) +
+                    ": one request got two answers; connect one of them alone, and change its ID(7)");
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_EQ(rig.servos.servos[i].table, before[i].table);
+      }
+    }
+  }
+}
+
+TEST(ServoChain, OneAnswerOfASecondServoWritesNoEeprom) {
+  for (unsigned answer = 1; answer < 40; ++answer) {
+    ChainRig rig(1);
+    EmulatedServo second(1);
+    second.only_answer = answer;
+    second.table[10] = 1;
+    second.table[11] = 1;
+    rig.servos.servos.push_back(second);  // it answers last: when the next request has been sent
+    EXPECT_EQ(ChainRig::error_of([&] { rig.connect(); }), "") << answer;
+    EXPECT_EQ(rig.servos.servos[0].eeprom_writes + rig.servos.servos[1].eeprom_writes, 0U) << answer;
   }
 }
 

@@ -95,6 +95,15 @@ void EmulatedServo::fail(std::uint8_t status) {
   table[64] = 0;
 }
 
+void EmulatedServo::restart() {
+  const std::uint32_t position = number(132, 4);
+  std::fill(table.begin() + ram_begin, table.end(), std::uint8_t{0});
+  set_number(68, 1, 2);
+  set_number(116, 4, position);
+  set_number(132, 4, position);
+  set_number(146, 1, 31);
+}
+
 std::uint8_t EmulatedServo::write_goal(std::int32_t goal, std::uint64_t now_us) {
   const bool is_allowed = goal >= static_cast<std::int32_t>(number(52, 4)) &&
                           goal <= static_cast<std::int32_t>(number(48, 4)) && !was_stopped_by_watchdog();
@@ -103,8 +112,10 @@ std::uint8_t EmulatedServo::write_goal(std::int32_t goal, std::uint64_t now_us) 
   }
   set_number(116, 4, static_cast<std::uint32_t>(goal));
   goals.push_back({now_us, goal, has_power()});
-  if (has_power()) {
-    set_number(132, 4, static_cast<std::uint32_t>(goal));
+  if (has_power() && !is_blocked) {
+    const std::int32_t way = goal - position();
+    const std::int32_t step = steps_per_goal == 0 ? way : std::clamp(way, -steps_per_goal, steps_per_goal);
+    set_number(132, 4, static_cast<std::uint32_t>(position() + step));
   }
   return 0;
 }
@@ -191,7 +202,8 @@ std::vector<ServoEmulator::Answer> ServoEmulator::receive(std::span<const std::u
 
 bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<const std::uint8_t> data,
                            std::vector<Answer>& answers) {
-  if (servo.is_missing || take(servo.silent)) {
+  ++servo.requests;
+  if (servo.is_missing || take(servo.silent) || (servo.only_answer != 0 && servo.requests != servo.only_answer)) {
     return false;
   }
   const bool is_crc_error = take(servo.crc_errors);
@@ -212,6 +224,11 @@ bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<c
   }
   const bool is_late = take(servo.until_late) && servo.until_late == 0;
   answers.push_back({servo.delay_us + (is_late ? servo.late_us : 0U), packet});
+  if (servo.split_us != 0) {
+    Bytes& first = answers.back().bytes;
+    answers.push_back({servo.split_us, Bytes(first.begin() + 3, first.end())});
+    answers[answers.size() - 2].bytes.resize(3);
+  }
   return true;
 }
 

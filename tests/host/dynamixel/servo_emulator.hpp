@@ -29,6 +29,8 @@ class EmulatedServo {
   // Faults of its answers. The counters say how many of the next answers are affected.
   bool is_missing = false;
   unsigned silent = 0;
+  unsigned only_answer = 0;  ///< the only request that it answers, counted from 1; 0: it answers all
+  unsigned requests = 0;     ///< so far
   unsigned corrupt = 0;
   unsigned truncated = 0;
   unsigned with_wrong_id = 0;
@@ -37,6 +39,9 @@ class EmulatedServo {
   unsigned until_late = 0;  ///< counts answers: at 1, the answer is late
   std::uint32_t late_us = 50'000;
   std::uint32_t delay_us = 500;
+  std::uint32_t split_us = 0;       ///< delay behind the first three bytes of each answer
+  bool is_blocked = false;          ///< it does not move to its goals
+  std::int32_t steps_per_goal = 0;  ///< that it moves towards a goal when it gets one; 0: it moves there
 
   /// A goal that the servo accepted, and whether it moves there.
   struct Goal {
@@ -54,6 +59,8 @@ class EmulatedServo {
   [[nodiscard]] bool was_stopped_by_watchdog() const { return table[98] == 255; }
   /// Hardware Error Status(70); the servo switches itself off.
   void fail(std::uint8_t status);
+  /// The supply was away for a moment: the RAM has the values of the start.
+  void restart();
 
   /// Returns the error number.
   std::uint8_t write(unsigned address, std::span<const std::uint8_t> data, std::uint64_t now_us);

@@ -90,6 +90,18 @@ std::filesystem::path source_tree(const std::string& given) {
   return folder;
 }
 
+bool is_shipped(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::weakly_canonical(file, error);
+  for (std::filesystem::path folder = real.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+    if (folder.filename() == "scenarios" && folder.parent_path().filename() == "sim" &&
+        is_source_tree(folder.parent_path().parent_path())) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::filesystem::path built_page(const std::string& folder, const std::string& file) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);

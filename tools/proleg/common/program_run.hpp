@@ -10,6 +10,10 @@ namespace proleg::tools {
 /// BadInput, which names the option --source, if no checkout is found.
 [[nodiscard]] std::filesystem::path source_tree(const std::string& given);
 
+/// Whether a file is one of the scenarios that ship with Proleg (sim/scenarios of a checkout). The programs do not
+/// write them: the figures of the tests and of the documents hold for them as they are.
+[[nodiscard]] bool is_shipped(const std::filesystem::path& file);
+
 /// A folder with a page beside the build of this program, which tools/page makes. Throws BadInput if it lacks the file.
 [[nodiscard]] std::filesystem::path built_page(const std::string& folder, const std::string& file);
 

@@ -8,12 +8,14 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 json entries_json(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits) {
   json entries = json::array();
@@ -34,12 +36,26 @@ json entries_json(const sim::Scenario& file, std::span<const sim::ActuationEdit>
   return entries;
 }
 
+fs::path absolute_path(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
+
+/// The deepest folder that has all files of the scenario.
+fs::path common_folder(const sim::Scenario& scenario) {
+  fs::path common = absolute_path(scenario.path).parent_path();
+  for (const sim::SourceFile& source : scenario.sources) {
+    const fs::path path = absolute_path(source.path);
+    while (path.lexically_relative(common).begin()->string() == "..") {
+      common = common.parent_path();
+    }
+  }
+  return common;
+}
+
 }  // namespace
 
 json file_diff_json(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits) {
   json entries = entries_json(file, edits);
   std::string hash = sha256_hex(entries.dump());
-  return {{"diff", std::move(hash)}, {"entries", std::move(entries)}};
+  return {{"diff", std::move(hash)}, {"entries", std::move(entries)}, {"is_shipped", is_shipped(file.actuation_file)}};
 }
 
 std::vector<sim::ActuationEdit> chosen_edits(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits,
@@ -72,6 +88,10 @@ std::vector<sim::ActuationEdit> chosen_edits(const sim::Scenario& file, std::spa
 
 sim::Scenario write_actuation(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits) {
   const sim::SourceFile& source = sim::actuation_source(file);
+  if (is_shipped(source.path)) {
+    throw InputError(source.path, 0, "a file that ships with Proleg, which stays as it is",
+                     "a copy of your own: Save as");
+  }
   sim::DiskFiles disk;
   if (disk.read(source.path) != source.text) {
     throw InputError(source.path, 0, "a file that has changed since this program read it",
@@ -84,6 +104,32 @@ sim::Scenario write_actuation(const sim::Scenario& file, std::span<const sim::Ac
   check_outputs(std::span(&output, 1));
   write_file(source.path, text);
   return again;
+}
+
+sim::Scenario write_copy(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits, const fs::path& folder) {
+  const fs::path root = common_folder(file);
+  const auto place_of = [&](const std::string& path) { return folder / absolute_path(path).lexically_relative(root); };
+  std::error_code error;
+  if (!fs::create_directory(folder, error)) {
+    if (error) {
+      throw FileError(folder, "cannot be created: " + error.message());
+    }
+    throw InputError(folder.string(), 0, "a folder that exists", "a new name");
+  }
+  try {
+    for (const sim::SourceFile& source : file.sources) {
+      fs::create_directories(place_of(source.path).parent_path());
+      write_file(place_of(source.path),
+                 source.path == file.actuation_file ? sim::edited(source.text, edits) : source.text);
+    }
+    sim::DiskFiles disk;
+    sim::Scenario copy = sim::read_scenario(place_of(file.path), disk, file.overrides);
+    copy.moves = file.moves;  // of the command line, as the overrides
+    return copy;
+  } catch (...) {
+    fs::remove_all(folder, error);
+    throw;
+  }
 }
 
 }  // namespace proleg::tools

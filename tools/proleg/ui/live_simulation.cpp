@@ -91,7 +91,13 @@ std::vector<sim::ActuationEdit> LiveSimulation::file_edits() const {
 }
 
 void LiveSimulation::apply_to_file(std::span<const sim::ActuationEdit> edits) {
-  file_ = write_actuation(file_, edits);
+  use_file(write_actuation(file_, edits));
+}
+
+void LiveSimulation::save_as(const std::filesystem::path& folder) { use_file(write_copy(file_, file_edits(), folder)); }
+
+void LiveSimulation::use_file(sim::Scenario file) {
+  file_ = std::move(file);
   given_ = with_settings(file_, settings_);
   edits_.parameters().set_file(file_);
   ++revision_;

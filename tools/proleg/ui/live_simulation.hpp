@@ -56,6 +56,9 @@ class LiveSimulation {
   [[nodiscard]] std::vector<sim::ActuationEdit> file_edits() const;
   /// Writes some of file_edits() into the actuation file. Throws as write_actuation() does.
   void apply_to_file(std::span<const sim::ActuationEdit> edits);
+  /// Copies the files with all file_edits() into a new folder; from then on they are the files of this simulation.
+  /// Throws as write_copy() does.
+  void save_as(const std::filesystem::path& folder);
 
   /// Puts the robot elsewhere at the present tick. place: X,Y,Z,DEGREES as for --move. Throws InputError, and then
   /// moves nothing.
@@ -111,6 +114,7 @@ class LiveSimulation {
 
   /// The last tick of the simulation, and its change.
   static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const Change* change);
+  void use_file(sim::Scenario file);
   /// Keeps what recent_servos() subtracts later.
   void keep_servos();
   /// Forgets what was done to the run before.

@@ -147,6 +147,7 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
                                                             {"command_line", &SimulatedSession::tell_command_line},
                                                             {"file.diff", &SimulatedSession::tell_file_diff},
                                                             {"file.apply", &SimulatedSession::apply_to_file},
+                                                            {"file.save_as", &SimulatedSession::save_as},
                                                             {"ping", &SimulatedSession::ping}};
   const Handler handler = handler_of(handlers, operation.name);
   require_possible(operation.name);
@@ -170,7 +171,8 @@ void SimulatedSession::require_sound() const {
 
 void SimulatedSession::require_file() const {
   if (!options_.has_file) {
-    throw std::runtime_error("this robot has no file; `proleg new robot --joints 5` writes one like it");
+    throw std::runtime_error(
+        "this robot has no file yet; Save as writes its files, as `proleg new robot --joints 5` does");
   }
   if (repeated_ != nullptr) {
     throw std::runtime_error("this robot is that of the recording " + repeated_->name() + ", which stays as it is");
@@ -322,6 +324,29 @@ json SimulatedSession::apply_to_file(const json& arguments) {
   output_.notice(host::NoticeLevel::info,
                  "wrote " + std::to_string(edits.size()) + " changes into " + one_line(live_->file().actuation_file));
   return {{"written", edits.size()}};
+}
+
+json SimulatedSession::save_as(const json& arguments) {
+  if (repeated_ != nullptr) {
+    require_file();
+  }
+  const auto name = argument<std::string>(arguments, "folder", "the name of a new folder");
+  const std::filesystem::path folder(name.value_or(""));
+  const bool is_plain =
+      one_line(in_quotes(name.value_or(""))) == '\'' + name.value_or("") + '\'';  // short, and all of it visible
+  if (folder.empty() || folder.filename() != folder || name->front() == '.' || !is_plain) {
+    throw InputError("folder", 0, in_quotes(shortened(name.value_or(""))),
+                     "a short name without a path, for a new folder");
+  }
+  live_->save_as(options_.recordings / folder);
+  const std::string& file = live_->file().path;
+  options_.has_file = true;
+  if (options_.command_of_copy) {
+    options_.command = options_.command_of_copy(file);
+  }
+  publish_robot();
+  output_.notice(host::NoticeLevel::info, "saved as " + one_line(file) + "; Apply to file writes there from now on");
+  return {{"file", one_line(file)}};
 }
 
 json SimulatedSession::ping(const json& /*arguments*/) { return json::object(); }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -75,7 +76,9 @@ class RunPace {
 struct SimulatedSessionOptions {
   std::filesystem::path recordings;  ///< the folder of all recordings
   std::string command;               ///< that simulates the same scenario: "proleg simulate FILE ..."
-  bool has_file = true;              ///< the files of the scenario are on disk
+  /// The same command for a copy of the scenario's files.
+  std::function<std::string(const std::string& file)> command_of_copy = {};
+  bool has_file = true;  ///< the files of the scenario are on disk
   std::string build_id;
   bool starts_paused = false;
 };
@@ -140,6 +143,7 @@ class SimulatedSession final : private SessionThread {
   nlohmann::json continue_recording(const nlohmann::json& arguments);
   nlohmann::json tell_file_diff(const nlohmann::json& arguments);
   nlohmann::json apply_to_file(const nlohmann::json& arguments);
+  nlohmann::json save_as(const nlohmann::json& arguments);
   nlohmann::json ping(const nlohmann::json& arguments);
   nlohmann::json tell_command_line(const nlohmann::json& arguments);
 

@@ -88,11 +88,13 @@ ScenarioRun prepare(ScenarioOptions& options, bool is_simulated) {
 }
 
 /// The command that simulates the same scenario.
+std::string command_of(const ScenarioOptions& scenario, const std::string& file) {
+  return simulate_command(file, scenario.overrides, scenario.settings, scenario.moves);
+}
 std::string command_of(const UiOptions& options, bool has_file) {
   const ScenarioOptions& scenario = options.scenario;
-  const std::string file = has_file ? scenario.file : "robot/" + scenario.file;
-  return (has_file ? "" : "proleg new robot --joints 5 && ") +
-         simulate_command(file, scenario.overrides, scenario.settings, scenario.moves);
+  return has_file ? command_of(scenario, scenario.file)
+                  : "proleg new robot --joints 5 && " + command_of(scenario, "robot/" + scenario.file);
 }
 
 std::uint16_t parse_port(const std::string& word) {
@@ -206,10 +208,12 @@ int serve(UiOptions& options) {
     if (run) {
       live = std::make_unique<LiveSimulation>(run->scenario, options.scenario.settings, &run->losses);
     }
-    simulated.emplace(std::move(live),
-                      SimulatedSessionOptions{recordings.folder, run ? command_of(options, has_file) : std::string(),
-                                              has_file, build_id, options.paused},
-                      requests, remote);
+    simulated.emplace(
+        std::move(live),
+        SimulatedSessionOptions{recordings.folder, run ? command_of(options, has_file) : std::string(),
+                                [&](const std::string& file) { return command_of(options.scenario, file); }, has_file,
+                                build_id, options.paused},
+        requests, remote);
   }
   const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"

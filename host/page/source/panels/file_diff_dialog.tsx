@@ -32,6 +32,46 @@ function Entry({ app, entry, isChosen, toggle }: { app: Stores<'state'>; entry: 
   );
 }
 
+// Copies all files of the robot, with the wanted values, into a new folder.
+function SaveAs({ app, isHolder }: { app: Stores<'operations' | 'state'>; isHolder: boolean }) {
+  const folder = useSignal('');
+  const problem = useSignal<string | null>(null);
+  const save = () => {
+    app.operations.ask('file.save_as', { folder: folder.value.trim() }).then(close, (error: Error) => {
+      problem.value = error.message;
+    });
+  };
+  return (
+    <form
+      class="save-as"
+      onSubmit={(event) => {
+        event.preventDefault();
+        save();
+      }}
+    >
+      <label>
+        Save as{' '}
+        <input
+          name="folder"
+          value={folder}
+          placeholder="name of a new folder"
+          autocomplete="off"
+          onInput={(event) => (folder.value = event.currentTarget.value)}
+        />
+      </label>{' '}
+      <button type="submit" disabled={!isHolder || folder.value.trim() === ''}>
+        Save a copy
+      </button>{' '}
+      <span class="hint">All files of the robot with all values as they are now, in a folder beside the recordings.</span>
+      {problem.value !== null && (
+        <p class="problem" role="alert">
+          {problem.value}
+        </p>
+      )}
+    </form>
+  );
+}
+
 export function FileDiffDialog({ app }: { app: Stores<'operations' | 'state'> }) {
   const diff = useSignal<FileDiff | null>(null);
   const problem = useSignal<string | null>(null);
@@ -57,6 +97,12 @@ export function FileDiffDialog({ app }: { app: Stores<'operations' | 'state'> })
     });
   };
   const entries = diff.value?.entries ?? [];
+  const isShipped = diff.value?.is_shipped ?? false;
+  const hint = !isHolder
+    ? 'Writing needs control.'
+    : isShipped
+      ? 'These files ship with Proleg and stay as they are. Save a copy, and go on with that.'
+      : 'Enter switches a line on or off. Everything else in the file stays.';
 
   return (
     <Dialog title="Apply to file" isWide>
@@ -100,10 +146,11 @@ export function FileDiffDialog({ app }: { app: Stores<'operations' | 'state'> })
           {problem.value}
         </p>
       )}
-      <button type="button" class="primary" disabled={!isHolder || chosen.length === 0} onClick={apply}>
+      <button type="button" class="primary" disabled={!isHolder || isShipped || chosen.length === 0} onClick={apply}>
         {chosen.length === 1 ? 'Write 1 change' : `Write ${chosen.length} changes`}
       </button>{' '}
-      <span class="hint">{isHolder ? 'Enter switches a line on or off. Everything else in the file stays.' : 'Writing needs control.'}</span>
+      <span class="hint">{hint}</span>
+      {(diff.value !== null || problem.value !== null) && <SaveAs app={app} isHolder={isHolder} />}
     </Dialog>
   );
 }

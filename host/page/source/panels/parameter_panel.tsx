@@ -68,9 +68,8 @@ function Toolbar({ app, changed, filter }: { app: Stores<'operations' | 'state'>
         <>
           <button
             type="button"
-            disabled={changed === 0}
             onClick={() => (openDialog.value = 'file_diff')}
-            title="Write the values into the file of the robot (W)"
+            title="Write the values into the file of the robot, or save a copy of all its files (W)"
           >
             Apply to file…
           </button>

@@ -325,6 +325,7 @@ export type ServerMessage = WelcomeMessage | DocumentMessage | ResultMessage | N
 // The value of `file.diff`.
 export interface FileDiff {
   diff: string;
+  is_shipped: boolean; // the file ships with Proleg: only a copy can be written
   entries: FileDiffEntry[];
 }
 
@@ -357,6 +358,7 @@ export interface Operations {
   command_line: Record<string, never>;
   'file.diff': Record<string, never>;
   'file.apply': { diff: string; entries: number[] };
+  'file.save_as': { folder: string }; // a new folder beside the recordings
   'recording.list': Record<string, never>;
   'recording.open': { file: string };
   'recording.rows': { file: string; signals: readonly string[]; from: number; to: number; points: number };

@@ -14,7 +14,7 @@ describe('parameters of a robot with files', () => {
   after(() => rmSync(folder, { recursive: true, force: true }));
   const copyAndStart = () => {
     cpSync('sim/scenarios/travelling_wave', folder, { recursive: true });
-    return UiProgram.start(`${folder}/uniform.simulation.xml`);
+    return UiProgram.start(`${folder}/uniform.simulation.xml`, ['--recordings', folder]);
   };
   const ui = useUi(copyAndStart, { takesControl: true });
 
@@ -91,6 +91,18 @@ describe('parameters of a robot with files', () => {
     await cell.fill('7,5');
     await press('Enter');
     await ui.viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,1"]')?.value === '7.5');
+    await ui.viewer.button('Close').click();
+  });
+
+  it('are saved as a robot of one\'s own, with all its files', async () => {
+    await ui.viewer.button('Apply to file…').click();
+    await ui.viewer.page.getByLabel('Save as').fill('my wave');
+    await ui.viewer.button('Save a copy').click();
+    await ui.viewer.page.getByText(/saved as .*my wave\/uniform.simulation.xml/).waitFor();
+    const saved = readFileSync(`${folder}/my wave/uniform.actuation.xml`, 'utf8');
+    assert.match(saved, /name="amplitude" value="7.5" unit="deg" joint="J4"/);
+    await ui.viewer.button('Apply to file…').click();
+    await ui.viewer.page.getByText('The file has the wanted values.').waitFor();
     await ui.viewer.button('Close').click();
   });
 

@@ -19,7 +19,7 @@ describe('the differences from the file', () => {
 
   it('are all written but those that were left out, also after a value has changed once more', () => {
     const leftOut = new Set([keyOf(entry({ joints: [2] }))]);
-    const diff = { diff: 'x', entries: [entry({}), entry({ joints: [2], new: 'newer', line: 9 }), entry({ slot: 2 })] };
+    const diff = { diff: 'x', is_shipped: false, entries: [entry({}), entry({ joints: [2], new: 'newer', line: 9 }), entry({ slot: 2 })] };
     assert.deepEqual(chosenNumbers(diff, leftOut), [0, 2]);
     assert.deepEqual(chosenNumbers(diff, new Set()), [0, 1, 2]);
   });

@@ -90,6 +90,42 @@ TEST_F(ActuationFile, ThatHasChangedSinceItWasReadIsNotOverwritten) {
   EXPECT_EQ(text(), changed);
 }
 
+TEST_F(ActuationFile, OfAShippedScenarioIsNotWritten) {
+  sim::DiskFiles files;
+  const std::string shipped = source_path("/sim/scenarios/travelling_wave/tail_fixed.simulation.xml");
+  LiveSimulation live(sim::read_scenario(shipped, files), {}, nullptr);
+  const std::string before = file_contents(source_path("/sim/scenarios/travelling_wave/tail_fixed.actuation.xml"));
+  live.set({"amplitude=30"}, std::nullopt);
+  EXPECT_NE(message_of<InputError>([&] { live.apply_to_file(live.file_edits()); }).find("expected a copy of your own"),
+            std::string::npos);
+  EXPECT_EQ(file_contents(source_path("/sim/scenarios/travelling_wave/tail_fixed.actuation.xml")), before);
+}
+
+TEST_F(ActuationFile, ACopyHasAllFilesOfTheScenarioAndMovesAsItDoes) {
+  for (const char* name : {"robots/mesh_world/mesh_world", "robots/y1/robot", "travelling_wave/uniform"}) {
+    sim::DiskFiles files;
+    LiveSimulation live(sim::read_scenario(source_path("/sim/scenarios/") + name + ".simulation.xml", files), {},
+                        nullptr);
+    live.set({"amplitude=25"}, std::nullopt);
+    const std::filesystem::path copy = folder_ / ("copy of " + std::filesystem::path(name).filename().string());
+    live.save_as(copy);
+    EXPECT_TRUE(live.file_edits().empty());
+    EXPECT_TRUE(live.file().path.starts_with(copy.string())) << live.file().path;
+    for (const sim::SourceFile& source : live.file().sources) {
+      EXPECT_TRUE(source.path.starts_with(copy.string())) << source.path;
+    }
+    live.restart(LiveSimulation::StartValues::file);
+    for (int tick = 0; tick < 20; ++tick) {
+      live.advance();
+    }
+    sim::DiskFiles again;
+    EXPECT_EQ(hashes_of(live.simulation()), simulated(sim::read_scenario(live.file().path, again), {}, 20)) << name;
+    const std::string file = live.file().path;
+    EXPECT_THROW(live.save_as(copy), InputError) << "the folder exists";
+    EXPECT_EQ(live.file().path, file);
+  }
+}
+
 TEST_F(ActuationFile, OnlyAPresentListOfDifferencesIsApplied) {
   LiveSimulation live(read(), {}, nullptr);
   live.set({"amplitude:J1=5", "frequency=0.5"}, std::nullopt);

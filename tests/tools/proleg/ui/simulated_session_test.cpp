@@ -12,6 +12,8 @@
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shipped.hpp"
 #include "sim/record/recording.hpp"
+#include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace proleg::tools {
@@ -125,10 +127,10 @@ class SimulatedSessionTest : public ::testing::Test {
   void open(std::unique_ptr<LiveSimulation> live, bool starts_paused) {
     session_.reset();
     requests_.emplace();
-    session_.emplace(
-        std::move(live),
-        SimulatedSessionOptions{folder_ / "", "proleg simulate uniform.simulation.xml", false, "test", starts_paused},
-        *requests_, viewers_);
+    session_.emplace(std::move(live),
+                     SimulatedSessionOptions{
+                         folder_ / "", "proleg simulate uniform.simulation.xml", {}, false, "test", starts_paused},
+                     *requests_, viewers_);
   }
   /// A run with changes of all kinds.
   void record_run(const std::string& name, std::uint32_t ticks) {
@@ -300,8 +302,43 @@ TEST_F(SimulatedSessionTest, ARobotWithoutFilesRefusesToWriteThem) {
   for (const char* operation : {"file.diff", "file.apply"}) {
     const Viewers::Answer answer = ask(operation);
     EXPECT_FALSE(answer.is_done);
-    EXPECT_EQ(answer.text, "this robot has no file; `proleg new robot --joints 5` writes one like it");
+    EXPECT_EQ(answer.text,
+              "this robot has no file yet; Save as writes its files, as `proleg new robot --joints 5` does");
   }
+}
+
+TEST_F(SimulatedSessionTest, SavesARobotIntoAFolderOfItsOwnAndGoesOnThere) {
+  session_.reset();
+  requests_.emplace();
+  session_.emplace(
+      std::make_unique<LiveSimulation>(scenario_, std::vector<std::string>{}, nullptr),
+      SimulatedSessionOptions{folder_ / "", "proleg simulate shipped",
+                              [](const std::string& file) { return "proleg simulate " + file; }, true, "test", true},
+      *requests_, viewers_);
+  EXPECT_TRUE(ask("set", {{"words", {"amplitude=30"}}}).is_done);
+  const json shipped_diff = json::parse(ask("file.diff").text);
+  EXPECT_EQ(shipped_diff["is_shipped"], true);
+  const Viewers::Answer refused = ask("file.apply", {{"diff", shipped_diff["diff"]}, {"entries", {0}}});
+  EXPECT_FALSE(refused.is_done);
+  EXPECT_NE(refused.text.find("ships with Proleg"), std::string::npos) << refused.text;
+  for (const char* name : {"", ".", "..", "../wave", "a/b", ".hidden", "two\nlines", "from\u202Eright"}) {
+    EXPECT_FALSE(ask("file.save_as", {{"folder", name}}).is_done) << name;
+  }
+  EXPECT_TRUE(ask("file.save_as", {{"folder", "my wave"}}).is_done);
+  EXPECT_FALSE(ask("file.save_as", {{"folder", "my wave"}}).is_done) << "no folder is replaced";
+  const json diff = json::parse(ask("file.diff").text);
+  EXPECT_EQ(diff["entries"], json::array()) << "the copy has the wanted values";
+  EXPECT_EQ(diff["is_shipped"], false);
+  EXPECT_TRUE(ask("set", {{"words", {"amplitude=20"}}}).is_done);
+  const json again = json::parse(ask("file.diff").text);
+  EXPECT_TRUE(ask("file.apply", {{"diff", again["diff"]}, {"entries", {0}}}).is_done);
+  sim::DiskFiles files;
+  const sim::Scenario saved = sim::read_scenario(folder_ / "my wave/uniform.simulation.xml", files);
+  LiveSimulation wanted(scenario_, {"amplitude=20"}, nullptr);
+  const ParameterPlace place = wanted.places_of(std::vector<std::string>{"amplitude:J3"}).front();
+  EXPECT_EQ(sim::start_value(saved, place.slot, place.joint, place.number), wanted.parameters().at(place).wanted);
+  const std::string command = json::parse(ask("command_line").text)["text"];
+  EXPECT_NE(command.find("my wave/uniform.simulation.xml"), std::string::npos) << command;
 }
 
 TEST_F(SimulatedSessionTest, MovesAPausedRobotAndRepeatsItInTheCommand) {

@@ -44,6 +44,9 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
     }
   } else if (const auto measured = canopen::decode_monitoring(frame)) {
     node.measured = measured;
+    if (measured->angle != canopen::Monitoring::not_measured) {
+      node.position = std::int32_t{measured->angle} * (1 << 16);  // newer than what was read
+    }
   } else if (identifier::base_of(frame.identifier) == identifier::state_frame) {
     if (const auto state = canopen::decode_state(frame)) {
       node.contacts = static_cast<std::uint8_t>(state->flags() & StateFrame::contact_bits);

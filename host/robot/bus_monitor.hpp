@@ -20,9 +20,9 @@ struct MonitoredNode {
   std::optional<canopen::NmtState> state;   ///< state in the last heartbeat of the node
   std::optional<std::int32_t> setpoint;     ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
   std::optional<std::uint16_t> statusword;  ///< 0x6041
-  std::optional<canopen::Monitoring> measured;       ///< angle, current, temperature, error register
-  std::optional<std::int32_t> position;              ///< 0x6064: 90 degrees = 2^30; nothing: not measured
-  std::optional<std::uint8_t> contacts;              ///< bits 0 to 3 as in the state frame
+  std::optional<canopen::Monitoring> measured;  ///< angle, current, temperature, error register
+  std::optional<std::int32_t> position;  ///< newest of 0x6064 and `measured`: 90 degrees = 2^30; nothing: not measured
+  std::optional<std::uint8_t> contacts;  ///< bits 0 to 3 as in the state frame
   std::optional<canopen::Emergency> last_emergency;  ///< the last one that was not the end of an error
   std::optional<std::uint16_t> current_limit;        ///< 0x200A:1, mA; 0: off; nothing: not known
   Microseconds last_heard = 0;

@@ -277,7 +277,7 @@ std::vector<ConfirmationFinding> findings_of(const GaitConfirmation& confirmatio
       continue;
     }
     if (run.is_refused) {
-      findings.push_back({run.name, "not compared: " + run.failure, true});
+      findings.push_back({run.name, "not compared: " + run.failure, true, false});
     } else {
       findings.push_back(compare(run.name, first, run));
     }
@@ -337,7 +337,10 @@ std::string confirmation_text(const GaitConfirmation& confirmation) {
   }
   text += "\n";
   for (const ConfirmationFinding& finding : confirmation.findings) {
-    text += (finding.is_good ? "  ok     " : "  DOUBT  ") + padded(finding.name, 33) + finding.text + "\n";
+    text += (!finding.was_asked ? "  -      "
+             : finding.is_good  ? "  ok     "
+                                : "  DOUBT  ") +
+            padded(finding.name, 33) + finding.text + "\n";
   }
   return text + "\n" +
          (confirmation.is_real() ? "Nothing speaks against this gait.\n"

@@ -55,7 +55,8 @@ struct ConfirmedRun {
 struct ConfirmationFinding {
   std::string name;
   std::string text;
-  bool is_good = true;
+  bool is_good = true;    ///< nothing here is against the gait
+  bool was_asked = true;  ///< false: the question could not be asked, which is no doubt
 };
 
 struct GaitConfirmation {

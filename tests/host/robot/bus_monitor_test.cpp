@@ -94,6 +94,17 @@ TEST_F(BusMonitorTest, FindsTheLimitsAlthoughFramesAreLost) {
   expect_limits(2'000, 2'000);
 }
 
+TEST_F(BusMonitorTest, ThePositionIsTheNewestThatWasReadOrMeasured) {
+  bus.run_for(3 * second);
+  ASSERT_EQ(monitor.nodes().front().position, 0) << "read from a module that stands";
+  monitor.receive(bus.now(), canopen::encode(canopen::Monitoring{1, 0x2000, 100, 25, 0}));
+  EXPECT_EQ(monitor.nodes().front().position, 1 << 29) << "45 degrees";
+  monitor.receive(bus.now(), canopen::encode(canopen::Monitoring{1, canopen::Monitoring::not_measured, 100, 25, 0}));
+  EXPECT_EQ(monitor.nodes().front().position, 1 << 29);
+  bus.run_for(3 * second);
+  EXPECT_EQ(monitor.nodes().front().position, 0) << "read again";
+}
+
 TEST_F(BusMonitorTest, ReadsNothingWhileTheBusBelongsToTheMaster) {
   monitor.set_reads(false);
   bus.run_for(3 * second);

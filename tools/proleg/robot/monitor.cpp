@@ -31,10 +31,7 @@ constexpr Microseconds silent_us = 1'000'000;
 double degrees(std::int32_t angle) { return angle * 90.0 / (1 << 30); }
 
 std::optional<double> measured_degrees(const host::MonitoredNode& node) {
-  if (!node.measured || node.measured->angle == canopen::Monitoring::not_measured) {
-    return std::nullopt;
-  }
-  return node.measured->angle * 90.0 / (1 << 14);
+  return node.position ? std::optional(degrees(*node.position)) : std::nullopt;
 }
 
 std::string fixed_text(std::optional<double> value, const char* unit) {

@@ -20,17 +20,6 @@ std::optional<unsigned> joint_of(const sim::Scenario& scenario, std::uint8_t nod
                                          : std::optional(static_cast<unsigned>(found - scenario.modules.begin()));
 }
 
-/// Degrees: what the module sends while it moves, or what was read from it.
-std::optional<double> angle_of(const host::MonitoredNode& node) {
-  if (node.position) {
-    return *node.position * 90.0 / (1 << 30);
-  }
-  if (node.measured && node.measured->angle != canopen::Monitoring::not_measured) {
-    return node.measured->angle * 90.0 / (1 << 14);
-  }
-  return std::nullopt;
-}
-
 template <typename Value>
 json or_null(const std::optional<Value>& value) {
   return value ? json(*value) : json();
@@ -46,7 +35,7 @@ json module_json(const sim::Scenario& scenario, const BusView& view, const host:
       {"joint", or_null(joint)},
       {"state", node.state ? json(host::state_text(*node.state)) : json()},
       {"drive", statusword ? json(host::drive_text(*statusword)) : json()},
-      {"angle", or_null(angle_of(node))},
+      {"angle", node.position ? json(*node.position * 90.0 / (1 << 30)) : json()},
       {"current", node.measured ? json(node.measured->current_ma) : json()},
       {"current_limit", or_null(node.current_limit)},
       {"temperature", node.measured ? json(node.measured->temperature_c) : json()},

@@ -25,6 +25,7 @@ TEST(ConfirmationWithoutMujoco, SaysInOneLineWhatToInstall) {
   EXPECT_NE(mujoco->text.find("libmujoco-dev"), std::string::npos) << mujoco->text;
   EXPECT_EQ(mujoco->text.find('\n'), std::string::npos) << mujoco->text;
   EXPECT_TRUE(confirmation.is_real()) << confirmation_text(confirmation);
+  EXPECT_NE(confirmation_text(confirmation).find("\n  -      MuJoCo "), std::string::npos) << "not 'ok'";
 }
 
 }  // namespace

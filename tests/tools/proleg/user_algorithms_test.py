@@ -435,6 +435,32 @@ class UserAlgorithms(unittest.TestCase):
         self.assertEqual(twice.returncode, 2)
         self.assert_one_line(twice, f"expected another name and id than those of '{NAME}'")
 
+    def test_a_damaged_library_is_one_line(self):
+        whole = self.library.read_bytes()
+        damaged = self.folder / "damaged.so"
+        for size in range(64, len(whole), len(whole) // 25):
+            with self.subTest(size):
+                damaged.write_bytes(whole[:size])
+                result = self.simulate(damaged, "--seconds", "0.1")
+                if result.returncode == 0:
+                    self.assertGreater(size, len(whole) * 0.7, "nothing that is loaded may be missing")
+                else:
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assert_one_line(result, f"proleg simulate: {damaged}: found ", "expected ")
+
+    def test_a_library_that_ends_or_keeps_the_program_while_it_is_loaded_is_one_line(self):
+        for name, body, text in (
+                ("ends", "_exit(0);", "ends the program with exit status 0"),
+                ("is_killed", "raise(SIGKILL);", "ends the program with SIGKILL"),
+                ("waits", "sigset_t all; sigfillset(&all); pthread_sigmask(SIG_SETMASK, &all, nullptr); "
+                          "for (;;) { sleep(1); }", "does not end within 10 s")):
+            with self.subTest(name):
+                library = self.compile(f"constructor_{name}", "#include <csignal>\n#include <unistd.h>\n" + self.source +
+                                       "\nnamespace { const struct First { First() { " + body + " } } first; }\n")
+                result = self.simulate(library)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assert_one_line(result, f"{library}: found a library that, while it is loaded, {text}, expected one")
+
 
 class Verify(unittest.TestCase):
     """Proofs take a quarter of a minute each, and more the first time."""

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
+#include "shared/computer/algorithm_library/kept_signals.hpp"
 #include "shared/computer/child_process/trial.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -57,9 +58,14 @@ void check(const AlgorithmInterface& interface, const std::string& file) {
 
 /// Runs a function of the library to which no tick belongs.
 template <typename Function>
-void ask(const std::string& file, const char* name, const char* what, Function&& function) {
+void ask(const std::string& file, const char* name, const char* what, const Function& function) {
   CallFailure failure;
-  if (!run_guarded({file.c_str(), name}, function, failure)) {
+  auto keep_signals = [&] {
+    const SignalState before;
+    function();
+    before.restore();
+  };
+  if (!run_guarded({file.c_str(), name}, keep_signals, failure)) {
     throw InputError(file, 0, "a library that, " + std::string(what) + ", " + failure.text, "one that can be loaded");
   }
 }
@@ -144,6 +150,7 @@ std::vector<std::string> loaded_libraries() {
 
 void load_algorithms(std::span<const std::string> paths) {
   static std::vector<const ActuationModule*>& registered = *new std::vector<const ActuationModule*>;
+  set_ending_signals([] {});
   for (const std::string& path : paths) {
     std::unique_ptr<const GuardedAlgorithm> algorithm = load_algorithm(path);
     const Declaration& declaration = algorithm->declaration();

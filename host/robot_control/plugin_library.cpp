@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "shared/computer/child_process/trial.hpp"
+
 namespace proleg::host {
 namespace {
 
@@ -43,6 +45,29 @@ void check(const proleg_robot_control_plugin* functions, const std::string& wher
   }
 }
 
+/// Loads a library in this process.
+Plugin load(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const std::shared_ptr<void> library(dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* handle) {
+    if (handle != nullptr) {
+      dlclose(handle);
+    }
+  });
+  if (!library) {
+    throw RobotControlError(name + ": found no plug-in that can be loaded (" + loader_error(name) +
+                            "), expected a shared library for this computer");
+  }
+  using Entry = const proleg_robot_control_plugin* (*)();
+  const auto entry = reinterpret_cast<Entry>(dlsym(library.get(), PROLEG_ROBOT_CONTROL_ENTRY));
+  if (entry == nullptr) {
+    throw RobotControlError(name + ": found no function " + PROLEG_ROBOT_CONTROL_ENTRY +
+                            ", expected that of a plug-in; is this another library?");
+  }
+  Plugin plugin = check_plugin(entry(), name);
+  plugin.functions = {library, plugin.functions.get()};
+  return plugin;
+}
+
 }  // namespace
 
 std::filesystem::path find_plugin(const std::string& name, const std::filesystem::path& robot_folder,
@@ -77,25 +102,23 @@ std::vector<std::filesystem::path> plugin_folders() {
 }
 
 Plugin load_plugin(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const std::shared_ptr<void> library(dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* handle) {
-    if (handle != nullptr) {
-      dlclose(handle);
+  // A damaged library ends the program that loads it.
+  const Trial trial = try_in_child([&]() -> std::string {
+    try {
+      static_cast<void>(load(path));
+      return "";
+    } catch (const RobotControlError& error) {
+      return error.what();
     }
   });
-  if (!library) {
-    throw RobotControlError(name + ": found no plug-in that can be loaded (" + loader_error(name) +
-                            "), expected a shared library for this computer");
+  if (!trial.has_returned) {
+    throw RobotControlError(path.string() + ": found a library that, while it is loaded, " + trial.text +
+                            ", expected a plug-in that can be loaded; compile or install the plug-in again");
   }
-  using Entry = const proleg_robot_control_plugin* (*)();
-  const auto entry = reinterpret_cast<Entry>(dlsym(library.get(), PROLEG_ROBOT_CONTROL_ENTRY));
-  if (entry == nullptr) {
-    throw RobotControlError(name + ": found no function " + PROLEG_ROBOT_CONTROL_ENTRY +
-                            ", expected that of a plug-in; is this another library?");
+  if (!trial.text.empty()) {
+    throw RobotControlError(trial.text);
   }
-  Plugin plugin = check_plugin(entry(), name);
-  plugin.functions = {library, plugin.functions.get()};
-  return plugin;
+  return load(path);
 }
 
 Plugin check_plugin(const proleg_robot_control_plugin* functions, const std::string& where) {

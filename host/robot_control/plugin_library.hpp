@@ -39,8 +39,9 @@ struct Plugin {
   std::shared_ptr<const proleg_robot_control_plugin> functions;
 };
 
-/// Loads a library and checks its interface. Throws RobotControlError if the file does not load, if it exports no
-/// entry, if its version differs, or if a function is missing.
+/// Loads a library and checks its interface, in a child first: a damaged library can end the program that loads it.
+/// Throws RobotControlError if the file does not load, if it exports no entry, if its version differs, or if a function
+/// is missing.
 [[nodiscard]] Plugin load_plugin(const std::filesystem::path& path);
 
 /// Checks the interface of a plug-in that is part of the program. `where` names it in errors.

@@ -52,7 +52,9 @@ class Recorder::Storage {
     // With a write-ahead log a reader never blocks the recorder, and a killed process leaves whole transactions.
     // synchronous = NORMAL flushes at checkpoints only: data that the system has survives the end of the process. A
     // power failure may cost the latest transactions but never the file.
-    database_.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; BEGIN IMMEDIATE");
+    database_.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+    database_.require_own_file();
+    database_.execute("BEGIN IMMEDIATE");
   }
 
   ~Storage() {
@@ -216,7 +218,9 @@ class Recorder::Storage {
   void commit_if_due() {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_commit_ >= commit_interval) {
-      database_.execute("COMMIT; BEGIN IMMEDIATE");
+      database_.execute("COMMIT");
+      database_.require_own_file();
+      database_.execute("BEGIN IMMEDIATE");
       last_commit_ = now;
     }
   }
@@ -224,6 +228,7 @@ class Recorder::Storage {
   void close() {
     database_.execute("COMMIT");
     closed_ = true;
+    database_.require_own_file();
     try {
       // Merges the log into the file and removes it, so that the recording is one file, which opens even in a folder
       // without write permission.

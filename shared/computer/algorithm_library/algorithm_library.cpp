@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
+#include "shared/computer/algorithm_library/kept_signals.hpp"
+#include "shared/computer/child_process/trial.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
@@ -56,10 +58,52 @@ void check(const AlgorithmInterface& interface, const std::string& file) {
 
 /// Runs a function of the library to which no tick belongs.
 template <typename Function>
-void ask(const std::string& file, const char* name, const char* what, Function&& function) {
+void ask(const std::string& file, const char* name, const char* what, const Function& function) {
   CallFailure failure;
-  if (!run_guarded({file.c_str(), name}, function, failure)) {
+  auto keep_signals = [&] {
+    const SignalState before;
+    function();
+    before.restore();
+  };
+  if (!run_guarded({file.c_str(), name}, keep_signals, failure)) {
     throw InputError(file, 0, "a library that, " + std::string(what) + ", " + failure.text, "one that can be loaded");
+  }
+}
+
+/// Loads a library in this process.
+std::unique_ptr<const GuardedAlgorithm> load(const std::string& path) {
+  // The loader would search its folders for a name without a folder.
+  const std::string absolute = std::filesystem::absolute(path).string();
+  void* library = nullptr;
+  ask(path, "dlopen", "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
+  if (library == nullptr) {
+    throw InputError(path, 0, "no library that can be loaded (" + loader_error(absolute) + ")",
+                     "a shared library for this computer");
+  }
+  const void* const interface = dlsym(library, algorithm_interface_symbol);
+  if (interface == nullptr) {
+    throw InputError(path, 0, std::string("no object ") + algorithm_interface_symbol,
+                     "that of an algorithm; is this another library?");
+  }
+  return make_algorithm(*static_cast<const AlgorithmInterface*>(interface), path);
+}
+
+/// The guard of a call does not hold for the loader itself: a damaged library ends the program inside of it.
+void try_to_load(const std::string& path) {
+  const Trial trial = try_in_child([&]() -> std::string {
+    try {
+      static_cast<void>(load(path));
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  });
+  if (!trial.has_returned) {
+    throw InputError(path, 0, "a library that, while it is loaded, " + trial.text,
+                     std::string("one that can be loaded") + compile_again);
+  }
+  if (!trial.text.empty()) {
+    throw InputError(trial.text);
   }
 }
 
@@ -92,20 +136,8 @@ std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) 
     throw InputError(path.empty() ? in_quotes(path) : path, 0, *found,
                      "the library of an algorithm, as 'proleg new algorithm' makes it");
   }
-  // The loader would search its folders for a name without a folder.
-  const std::string absolute = std::filesystem::absolute(path).string();
-  void* library = nullptr;
-  ask(path, "dlopen", "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
-  if (library == nullptr) {
-    throw InputError(path, 0, "no library that can be loaded (" + loader_error(absolute) + ")",
-                     "a shared library for this computer");
-  }
-  const void* const interface = dlsym(library, algorithm_interface_symbol);
-  if (interface == nullptr) {
-    throw InputError(path, 0, std::string("no object ") + algorithm_interface_symbol,
-                     "that of an algorithm; is this another library?");
-  }
-  return make_algorithm(*static_cast<const AlgorithmInterface*>(interface), path);
+  try_to_load(path);
+  return load(path);
 }
 
 std::vector<std::string> loaded_libraries() {
@@ -118,6 +150,7 @@ std::vector<std::string> loaded_libraries() {
 
 void load_algorithms(std::span<const std::string> paths) {
   static std::vector<const ActuationModule*>& registered = *new std::vector<const ActuationModule*>;
+  set_ending_signals([] {});
   for (const std::string& path : paths) {
     std::unique_ptr<const GuardedAlgorithm> algorithm = load_algorithm(path);
     const Declaration& declaration = algorithm->declaration();

@@ -21,6 +21,8 @@
 #include <system_error>
 #include <thread>
 
+#include "shared/computer/algorithm_library/floating_point_modes.hpp"
+#include "shared/computer/algorithm_library/kept_signals.hpp"
 #include "shared/computer/algorithm_library/last_line.hpp"
 
 namespace proleg {
@@ -46,13 +48,16 @@ struct ThreadGuard {
   std::atomic<bool> is_checked = false;    ///< a signal has ended the call: is the C library usable?
   std::atomic<bool> memory_is_free = false;
   std::atomic<bool> streams_are_free = false;
-  std::atomic<unsigned> looks = 0;  ///< of the watchdog during the check
-  bool is_terminated = false;       ///< std::terminate() was called
+  std::atomic<unsigned> looks = 0;        ///< of the watchdog during the check
+  std::atomic<bool> is_look_due = false;  ///< the mask of signals is to be restored after the next call
+  std::atomic<bool> waits = false;        ///< the call that took too long took little processor time
+  bool is_terminated = false;             ///< std::terminate() was called
   int signal = 0;
   std::optional<const void*> address;  ///< of a bad access to memory; nothing if the process sent itself the signal
   CallSubject subject;
   std::array<char, 200> exception{};
   pthread_t thread = pthread_self();
+  sigset_t mask{};  ///< of signals, before the first call
   unsigned generation = 0;
   bool is_watched = false;
 };
@@ -73,7 +78,8 @@ const char* text_of(const ThreadGuard& guard) {
     case SIGABRT:
       return guard.is_terminated ? "throws an exception out of a function that is noexcept" : "calls abort()";
     default:
-      return "does not return within a second of processor time: an endless loop?";
+      return guard.waits ? "does not return within 20 s: does it wait or sleep?"
+                         : "does not return within a second of processor time: an endless loop?";
   }
 }
 
@@ -83,6 +89,7 @@ const char* text_of(const ThreadGuard& guard) {
   line.end_program();
 }
 
+constexpr const char* without_results = "; the program ends without its results";
 constexpr const char* left_damaged =
     "; the C library is locked or damaged after that, so the program ends without its results";
 
@@ -134,6 +141,16 @@ void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   }
 }
 
+void on_quick_exit() {
+  if (const ThreadGuard* const guard = current_guard; guard != nullptr && guard->is_active) {
+    end_program_after(*guard, "calls quick_exit()", without_results);
+  }
+  LastLine line;
+  line << "proleg: " << foreign_code.load() << ": a thread that this library started calls quick_exit()"
+       << without_results;
+  line.end_program();
+}
+
 std::terminate_handler previous_terminate = nullptr;
 
 /// The usual handler would print a second line about what is reported anyway.
@@ -147,6 +164,20 @@ std::terminate_handler previous_terminate = nullptr;
     previous_terminate();
   }
   std::abort();
+}
+
+/// Sets the handlers of the caught signals, also again if a library has changed them.
+void set_handlers() {
+  struct sigaction action {};
+  action.sa_sigaction = on_signal;
+  // After a jump out of the handler the signal must not be blocked, and a full stack has no room for the handler.
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER | SA_RESTART;
+  for (const int signal : caught_signals) {
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_sigaction != on_signal) {
+      sigaction(signal, &action, nullptr);
+    }
+  }
 }
 
 double seconds(clockid_t clock) {
@@ -171,7 +202,7 @@ class Watchdog {
     guard.is_watched = false;
     for (Watched& watched : watched_) {
       if (watched.guard == nullptr) {
-        watched = {&guard, 0, 0, 0};
+        watched = {&guard, 0, 0, 0, 0};
         guard.is_watched = true;
         break;
       }
@@ -217,6 +248,7 @@ class Watchdog {
     std::uint64_t call = 0;  ///< number of the call that the watchdog has seen last
     double cpu_s = 0;        ///< processor time when the call was seen first
     double wall_s = 0;
+    unsigned signals = 0;  ///< that were sent to this call
   };
 
   Watchdog() {
@@ -234,7 +266,10 @@ class Watchdog {
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);  // the new thread takes no signal from the others
+    for (const int signal : ending_signals) {
+      sigdelset(&all, signal);  // it takes these if a library blocks them in all other threads
+    }
+    pthread_sigmask(SIG_SETMASK, &all, &before);
     try {
       std::thread([this] { run(); }).detach();
       runs_ = true;
@@ -248,6 +283,8 @@ class Watchdog {
     while (true) {
       std::this_thread::sleep_for(watchdog_period);
       end_program_that_stays();
+      restore_ending_signals();
+      set_handlers();
       const std::lock_guard lock(mutex_);
       for (Watched& watched : watched_) {
         if (watched.guard != nullptr) {
@@ -278,6 +315,7 @@ class Watchdog {
 
   static void look_at(Watched& watched) {
     ThreadGuard& guard = *watched.guard;
+    guard.is_look_due = true;
     if (guard.is_checked) {
       const bool streams_are_free = is_free(stdout) && is_free(stderr);
       if (!(streams_are_free && guard.memory_is_free) && ++guard.looks > most_looks) {
@@ -297,7 +335,16 @@ class Watchdog {
       watched.call = call;
       watched.cpu_s = cpu_s;
       watched.wall_s = wall_s;
-    } else if (cpu_s - watched.cpu_s > longest_call_cpu_s || wall_s - watched.wall_s > longest_call_wall_s) {
+      watched.signals = 0;
+    } else if (const bool loops = cpu_s - watched.cpu_s > longest_call_cpu_s;
+               loops || wall_s - watched.wall_s > longest_call_wall_s) {
+      if (watched.signals == 0) {
+        guard.waits = !loops;
+      } else if (watched.signals > most_looks) {
+        guard.signal = time_out_signal;
+        end_program_after(guard, text_of(guard), "; it blocks signals, so the program ends without its results");
+      }
+      ++watched.signals;
       guard.expired = call;
       pthread_kill(guard.thread, time_out_signal);
     }
@@ -313,13 +360,10 @@ void catch_signals() {
   static std::once_flag once;
   std::call_once(once, [] {
     previous_terminate = std::set_terminate(on_terminate);
-    struct sigaction action {};
-    action.sa_sigaction = on_signal;
-    // After a jump out of the handler the signal must not be blocked, and a full stack has no room for the handler.
-    action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER | SA_RESTART;
     for (const int signal : caught_signals) {
-      sigaction(signal, &action, &previous_actions[static_cast<std::size_t>(signal)]);
+      sigaction(signal, nullptr, &previous_actions[static_cast<std::size_t>(signal)]);
     }
+    set_handlers();
   });
 }
 
@@ -344,7 +388,7 @@ class GuardOwner {
   }
   ~GuardOwner() {
     if (guard_.is_active) {
-      end_program_after(guard_, "calls exit()", "; the program ends without its results");
+      end_program_after(guard_, "calls exit()", without_results);
     }
     current_guard = nullptr;
     Watchdog::instance().forget(guard_);
@@ -361,6 +405,7 @@ class GuardOwner {
   ThreadGuard& guard() {
     if (guard_.generation != generation) {
       guard_.thread = pthread_self();
+      pthread_sigmask(SIG_SETMASK, nullptr, &guard_.mask);
       Watchdog::instance().watch(guard_);
     }
     return guard_;
@@ -403,21 +448,31 @@ void blame_for_crashes(const char* file) {
   }
   // Called before the destructors of the library, which was loaded earlier.
   std::atexit([] {
-    if (gettid() != getpid()) {  // programs of this tree end with the return from main()
+    if (!program_ends && gettid() != getpid()) {  // programs of this tree end with the return from main()
       LastLine line;
-      line << "proleg: " << foreign_code.load()
-           << ": a thread that this library started calls exit(); the program ends without its results";
+      line << "proleg: " << foreign_code.load() << ": a thread that this library started calls exit()"
+           << without_results;
       line.end_program();
     }
     program_ends = true;
   });
+  std::at_quick_exit(on_quick_exit);
 }
+
+void expect_program_end() { program_ends = true; }
 
 bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context, CallFailure& failure) {
   thread_local GuardOwner owner;
   ThreadGuard& guard = owner.guard();
   guard.subject = subject;
-  switch (enter(guard, function, context)) {
+  const FloatingPointModes modes;
+  const End end = enter(guard, function, context);
+  modes.restore();
+  if (guard.is_look_due) {  // not after each call: it takes a microsecond
+    guard.is_look_due = false;
+    pthread_sigmask(SIG_SETMASK, &guard.mask, nullptr);
+  }
+  switch (end) {
     case End::returned:
       return true;
     case End::exception:

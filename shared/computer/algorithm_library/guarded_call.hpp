@@ -29,8 +29,10 @@ inline constexpr double longest_call_wall_s = 20.0;
 /// Calls function(context). Returns false if it throws, breaks a rule of the processor (SIGSEGV, SIGBUS, SIGFPE,
 /// SIGILL), calls abort(), or takes too long; `failure` says which. What the function had locked or allocated is then
 /// lost: do not call its code again. If that are locks of the C library, or its lists of memory are damaged, or the
-/// function calls exit(), one line is printed and the program ends with status 1. Does not protect from code that
-/// overwrites memory of the program, or calls _exit(). Calls may not be nested. Any thread may call it.
+/// function calls exit() or quick_exit(), or does not return with all signals blocked, one line is printed and the
+/// program ends with status 1. Modes of floating point that the function changes are restored after the call; handlers
+/// and the mask of signals soon after (kept_signals.hpp). Does not protect from code that overwrites memory of the
+/// program, or calls _exit(). Calls may not be nested. Any thread may call it.
 [[nodiscard]] bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context,
                                CallFailure& failure);
 
@@ -43,9 +45,11 @@ template <typename Function>
 
 /// From now on, a crash outside of a guarded call, a call of exit() in another thread than the first, and a library
 /// that keeps the program from ending for three seconds print one line that names this file and end the program with
-/// status
-/// 1. To be called after a guarded call that has loaded the library. The first file stays. file: must live until the
-/// program ends.
+/// status 1. To be called after a guarded call that has loaded the library. The first file stays. file: must live until
+/// the program ends.
 void blame_for_crashes(const char* file);
+
+/// All work is done and all results are written: what runs from now on is what libraries do at the end of the program.
+void expect_program_end();
 
 }  // namespace proleg

@@ -14,6 +14,8 @@ namespace proleg {
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& file, int line, const std::string& found, const std::string& expected);
+  /// what(): that of another InputError, which was thrown in another process.
+  explicit InputError(const std::string& what) : std::runtime_error(what) {}
 };
 
 /// The kind of thing that a path names instead of a file whose bytes can be read to an end, for messages with "found

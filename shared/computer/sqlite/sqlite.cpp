@@ -1,8 +1,58 @@
 #include "shared/computer/sqlite/sqlite.hpp"
 
+#include <sys/stat.h>
+
+#include <array>
 #include <cstring>
 
 namespace proleg {
+namespace {
+
+constexpr int max_wait_ms = 10'000;
+
+/// A file of a connection, through SQLite: closing a descriptor of our own would release SQLite's locks.
+class OpenFile {
+ public:
+  /// operation: SQLITE_FCNTL_FILE_POINTER or, for the log, SQLITE_FCNTL_JOURNAL_POINTER.
+  OpenFile(sqlite3* connection, int operation) { sqlite3_file_control(connection, "main", operation, &file_); }
+
+  [[nodiscard]] bool is_open() const { return file_ != nullptr && file_->pMethods != nullptr; }
+  /// Whether its name is that of another file, or of none.
+  [[nodiscard]] bool has_moved() const {
+    int moved = 0;
+    return file_->pMethods->xFileControl(file_, SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK && moved != 0;
+  }
+  [[nodiscard]] sqlite3_int64 size() const {
+    sqlite3_int64 size = 0;
+    return file_->pMethods->xFileSize(file_, &size) == SQLITE_OK ? size : 0;
+  }
+  /// Of a database file (https://www.sqlite.org/fileformat.html): magic string, page size, version and kind.
+  [[nodiscard]] std::string identity() const {
+    std::array<char, 100> head{};
+    file_->pMethods->xRead(file_, head.data(), static_cast<int>(head.size()), 0);  // zeros if it is shorter
+    return std::string(head.data(), 18) + std::string(head.data() + 60, 12);
+  }
+
+ private:
+  sqlite3_file* file_ = nullptr;
+};
+
+/// The number of the log that has its name now; 0: there is none. (SQLite itself knows this of the main file only.)
+std::uint64_t inode_of_log(sqlite3* connection) {
+  struct stat status {};
+  const char* const name = sqlite3_filename_wal(sqlite3_db_filename(connection, "main"));
+  return name != nullptr && stat(name, &status) == 0 ? status.st_ino : 0;
+}
+
+/// Whether a log that became smaller lacks frames that SQLite counts. (A program may empty it in SQLite's way.)
+bool lacks_frames(sqlite3* connection, const OpenFile& log) {
+  int frames = 0;
+  const int code = sqlite3_wal_checkpoint_v2(connection, "main", SQLITE_CHECKPOINT_PASSIVE, &frames, nullptr);
+  constexpr sqlite3_int64 min_frame = 24 + 512;  // its head and the smallest page
+  return (code != SQLITE_OK && code != SQLITE_BUSY) || log.size() < frames * min_frame;
+}
+
+}  // namespace
 
 Database::Database(const std::filesystem::path& path, int flags) {
   // SQLite interprets names like ":memory:" and "file:..."; an absolute path is always a file.
@@ -17,7 +67,7 @@ Database::Database(const std::filesystem::path& path, int flags) {
       throw;
     }
   }
-  sqlite3_busy_timeout(handle_, 2000);
+  sqlite3_busy_timeout(handle_, max_wait_ms);
 }
 
 Database::~Database() { sqlite3_close(handle_); }
@@ -28,11 +78,59 @@ void Database::execute(const char* sql) {
   }
 }
 
+void Database::require_own_file() {
+  const OpenFile log(handle_, SQLITE_FCNTL_JOURNAL_POINTER);
+  const bool has_lost_log = log_.size > 0 && log.is_open() && log.size() < log_.size && lacks_frames(handle_, log);
+  if (has_lost_log || is_overwritten()) {
+    fail_as_overwritten();
+  }
+  const bool has_moved = OpenFile(handle_, SQLITE_FCNTL_FILE_POINTER).has_moved() ||
+                         (log_.inode != 0 && inode_of_log(handle_) != log_.inode);
+  if (has_moved) {
+    sqlite3_wal_checkpoint_v2(handle_, "main", SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    throw SqliteError(
+        SQLITE_READONLY_DBMOVED,
+        "another program removed, renamed or replaced the file or its log while this program wrote it; "
+        "expected that the file keeps its name; if it was renamed, rename it back: it has all data until now");
+  }
+  note_own_file();
+}
+
+void Database::note_own_file() {
+  const OpenFile file(handle_, SQLITE_FCNTL_FILE_POINTER);
+  const OpenFile log(handle_, SQLITE_FCNTL_JOURNAL_POINTER);
+  file_ = {file.size(), file.identity()};
+  log_ = log.is_open() ? Log{log.size(), inode_of_log(handle_)} : Log{};
+}
+
+bool Database::is_overwritten() const {
+  if (file_.size == 0) {
+    return false;
+  }
+  const OpenFile file(handle_, SQLITE_FCNTL_FILE_POINTER);
+  return file.size() < file_.size || file.identity() != file_.identity;
+}
+
+void Database::fail_as_overwritten() const {
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  throw SqliteError(SQLITE_CORRUPT,
+                    "another program shortened or overwrote the file or its log while this program wrote it; "
+                    "expected that no other program writes there");
+}
+
 void Database::fail(int code) const {
   std::string what = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
   // "disk I/O error" and "unable to open database file" hide the reason that the system gave.
   const int primary = code & 0xFF;
-  if (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) {
+  if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB) {
+    if (is_overwritten()) {
+      fail_as_overwritten();
+    }
+  } else if (primary == SQLITE_BUSY) {
+    what = "another program keeps it locked for more than " + std::to_string(max_wait_ms / 1000) +
+           " s; expected that it writes for a shorter time; end that program";
+  } else if (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) {
     if (const int reason = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0; reason != 0) {
       what += std::string(": ") + std::strerror(reason);
     }

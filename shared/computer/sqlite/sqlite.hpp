@@ -22,7 +22,7 @@ class SqliteError : public std::runtime_error {
   int code_;
 };
 
-/// A connection, for one thread. It waits up to 2 s for the lock of another program.
+/// A connection, for one thread. It waits up to 10 s for the lock of another program.
 class Database {
  public:
   /// flags: SQLITE_OPEN_READONLY, or SQLITE_OPEN_READWRITE with or without SQLITE_OPEN_CREATE.
@@ -34,11 +34,34 @@ class Database {
   /// Runs statements whose results are not needed.
   void execute(const char* sql);
 
+  /// For a file with a write-ahead log that this program writes for long: throws SqliteError if another program has
+  /// removed, renamed, replaced, shortened or overwritten the file or its log since the last call. SQLite does not
+  /// notice that: it writes into a file without a name, or into a damaged one. After the error nothing more is written:
+  /// a file that was renamed is complete, a file that was changed stays as it is. Call it outside of transactions.
+  void require_own_file();
+  /// Takes what this program has written since as its own. require_own_file() does that, too.
+  void note_own_file();
+
   [[nodiscard]] sqlite3* handle() const { return handle_; }
   [[noreturn]] void fail(int code) const;
 
  private:
+  /// The file at the last note_own_file(); it does not become smaller by itself.
+  struct File {
+    sqlite3_int64 size = 0;  ///< 0: not known
+    std::string identity;    ///< the parts of its head that never change
+  };
+  struct Log {
+    sqlite3_int64 size = 0;
+    std::uint64_t inode = 0;  ///< 0: not known
+  };
+
+  [[nodiscard]] bool is_overwritten() const;
+  [[noreturn]] void fail_as_overwritten() const;
+
   sqlite3* handle_ = nullptr;
+  File file_;
+  Log log_;
 };
 
 /// A prepared statement. It must not outlive its connection.

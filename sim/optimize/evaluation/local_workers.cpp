@@ -43,7 +43,8 @@ class LocalWorkers::Implementation {
       : experiment_(experiment),
         run_(std::move(run)),
         limit_(limit.fixed + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-                                 limit.per_simulated_second * experiment.scenario.duration_s))) {
+                                 limit.per_simulated_second * experiment.scenario.duration_s))),
+        resting_limit_(limit.resting) {
     workers_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (std::string reason = fork_worker(workers_[i]); !reason.empty()) {
@@ -90,6 +91,7 @@ class LocalWorkers::Implementation {
         }
       }
       replace_hung();
+      replace_resting();
       const Clock::time_point now = Clock::now();
       if (now >= end && finished_.empty()) {
         return std::nullopt;
@@ -109,6 +111,9 @@ class LocalWorkers::Implementation {
     std::unique_ptr<WorkerProcess> process;  ///< null: not replaced
     std::optional<Assignment> assignment;
     Clock::duration busy{};    ///< with its tasks; of the time between two calls of wait() at most a second
+    Clock::duration looked{};  ///< value of `busy` when its processor time was read
+    std::chrono::nanoseconds processor_time{};
+    unsigned resting = 0;      ///< looks at which that had not grown
     unsigned idle_deaths = 0;  ///< since its last result
     bool readable = false;
   };
@@ -140,6 +145,8 @@ class LocalWorkers::Implementation {
     worker.process->send(tasks);
     worker.assignment = std::move(assignment);
     worker.busy = {};
+    worker.looked = {};
+    worker.resting = 0;
   }
 
   /// Waits until a worker has sent something; returns the number of such workers, or nothing after a signal.
@@ -198,10 +205,35 @@ class LocalWorkers::Implementation {
   void replace_hung() {
     for (std::uint32_t i = 0; i < workers_.size(); ++i) {
       if (workers_[i].assignment && workers_[i].busy > time_limit(*workers_[i].assignment)) {
-        const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(workers_[i].busy).count();
-        replace(i, "did not answer for " + std::to_string(seconds) + " s");
+        replace(i, "did not answer for " + seconds_text(workers_[i].busy));
       }
     }
+  }
+
+  /// Names and then replaces workers that use no processor time. Not each look at a busy worker reads that.
+  void replace_resting() {
+    constexpr unsigned looks = 4;  // in the time after which a worker is named
+    for (std::uint32_t i = 0; i < workers_.size(); ++i) {
+      Worker& worker = workers_[i];
+      if (!worker.assignment || worker.busy < worker.looked + resting_limit_ / looks) {
+        continue;
+      }
+      worker.looked = worker.busy;
+      const std::chrono::nanoseconds before = std::exchange(worker.processor_time, worker.process->processor_time());
+      worker.resting = worker.processor_time == before ? worker.resting + 1 : 0;
+      if (worker.resting == looks) {
+        messages_.push_back(joined({"worker ", std::to_string(i), " (process ", std::to_string(worker.process->id()),
+                                    ") has computed nothing for ", seconds_text(resting_limit_), " in ",
+                                    name_of(worker.assignment->batch), ": is it stopped? It is replaced after ",
+                                    seconds_text(3 * resting_limit_)}));
+      } else if (worker.resting >= 3 * looks) {
+        replace(i, "computed nothing for " + seconds_text(3 * resting_limit_));
+      }
+    }
+  }
+
+  static std::string seconds_text(Clock::duration time) {
+    return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(time).count()) + " s";
   }
 
   /// Replaces a worker that failed, hung or died. what: what it did; empty: its exit status says it.
@@ -259,6 +291,7 @@ class LocalWorkers::Implementation {
   const Experiment& experiment_;
   RunTasks run_;
   Clock::duration limit_;
+  Clock::duration resting_limit_;
   std::vector<Worker> workers_;
   Clock::time_point last_poll_ = Clock::now();
   std::deque<Assignment> orphaned_;  ///< tasks whose worker died, until one is idle

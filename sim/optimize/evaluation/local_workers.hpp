@@ -15,6 +15,9 @@ namespace proleg::optimize {
 struct TaskLimit {
   std::chrono::milliseconds fixed{60'000};
   double per_simulated_second = 50.0;  ///< s; a simulation runs about a hundred times faster than this robot crawls
+  /// A worker that uses no processor time for so long is named, and after three times as long counts as hung: it is
+  /// stopped, or waits for something that does not come.
+  std::chrono::milliseconds resting{20'000};
 };
 
 /// Processes of this computer, forked from this one. The engine's iterative solver has one random generator in each

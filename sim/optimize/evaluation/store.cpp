@@ -41,6 +41,7 @@ class Store::Implementation {
       // The journal is that of recordings: readers never block the writer, and a killed process leaves whole
       // transactions.
       database_->execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; BEGIN IMMEDIATE; ROLLBACK");
+      database_->require_own_file();
       statements_ = std::make_unique<Statements>(*database_, columns_);
       read_last_numbers();
     });
@@ -65,18 +66,18 @@ class Store::Implementation {
   }
 
   void save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker) {
-    guard([&] { save_trial_row(statements_->save_trial, task, seed, result, worker); });
+    write([&] { save_trial_row(statements_->save_trial, task, seed, result, worker); });
     std::uint64_t& last = last_numbers_[task.run];
     last = std::max(last, task.number);
   }
 
   void save(const Evaluation& evaluation) {
-    guard([&] { save_evaluation_row(statements_->save_evaluation, experiment_, columns_, evaluation); });
+    write([&] { save_evaluation_row(statements_->save_evaluation, experiment_, columns_, evaluation); });
   }
 
   void save_search(std::uint64_t evaluations, const std::string& build_id) {
     const std::string text = std::to_string(evaluations);
-    guard([&] {
+    write([&] {
       Statement entry(*database_, "REPLACE INTO experiment VALUES(?1, ?2)");
       entry.run(std::string_view("evaluations"), std::string_view(text));
       entry.run(std::string_view("build_id"), std::string_view(build_id));
@@ -84,15 +85,15 @@ class Store::Implementation {
   }
 
   void start_run(std::uint32_t run) {
-    guard([&] { Statement(*database_, "DELETE FROM run WHERE run = ?1").run(run); });
+    write([&] { Statement(*database_, "DELETE FROM run WHERE run = ?1").run(run); });
   }
 
   void finish_run(std::uint32_t run, const std::string& ending) {
-    guard([&] { Statement(*database_, "REPLACE INTO run VALUES(?1, ?2)").run(run, std::string_view(ending)); });
+    write([&] { Statement(*database_, "REPLACE INTO run VALUES(?1, ?2)").run(run, std::string_view(ending)); });
   }
 
   void add(const std::filesystem::path& other, std::optional<std::uint32_t> run) {
-    guard([&] {
+    write([&] {
       const StoreLock lock = claim_store(other);
       {
         Database its(other, SQLITE_OPEN_READWRITE);
@@ -170,6 +171,16 @@ class Store::Implementation {
     } catch (const std::filesystem::filesystem_error& error) {
       throw StoreError(path_.string() + ": " + error.code().message());
     }
+  }
+
+  /// An action that writes.
+  template <typename Action>
+  void write(const Action& action) {
+    guard([&] {
+      database_->require_own_file();
+      action();
+      database_->note_own_file();
+    });
   }
 
   std::filesystem::path path_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <ctime>
 #include <exception>
 #include <system_error>
 
@@ -90,6 +91,15 @@ WorkerProcess::Reply WorkerProcess::receive() const {
     what.push_back(std::to_integer<char>(byte));
   }
   return Failed{what};
+}
+
+std::chrono::nanoseconds WorkerProcess::processor_time() const {
+  clockid_t clock = 0;
+  timespec time{};
+  if (clock_getcpuclockid(process_, &clock) != 0 || clock_gettime(clock, &time) != 0) {
+    return {};
+  }
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
 std::string WorkerProcess::end() {

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <span>
@@ -44,6 +45,9 @@ class WorkerProcess {
   using Reply = std::variant<Gone, Failed, std::vector<TrialResult>>;
   /// The reply to the tasks that were sent last; waits for it if it is not there yet.
   [[nodiscard]] Reply receive() const;
+
+  /// Processor time that the process has used; 0 if it has ended.
+  [[nodiscard]] std::chrono::nanoseconds processor_time() const;
 
   /// Kills the process if it still runs. Returns how it ended: "was killed by signal 9", "ended with exit status 1".
   std::string end();

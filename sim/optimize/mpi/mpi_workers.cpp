@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "shared/computer/algorithm_library/kept_signals.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/mpi/mpi_channel.hpp"
 
@@ -260,9 +261,11 @@ std::optional<Workers::Done> MpiWorkers::wait(milliseconds timeout) { return imp
 std::vector<std::string> MpiWorkers::messages() { return implementation_->messages(); }
 
 bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTasks run, TaskLimit limit) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    std::signal(signal, SIG_IGN);
-  }
+  set_ending_signals([] {
+    for (const int signal : ending_signals) {
+      std::signal(signal, SIG_IGN);
+    }
+  });
   auto worker = std::make_unique<LocalWorkers>(experiment, 1, std::move(run), limit);
   const MpiChannel channel;
   const std::vector<std::string> identities = channel.exchange(mpi_identity(experiment, build_id));

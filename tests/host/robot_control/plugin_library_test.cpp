@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -34,6 +35,17 @@ TEST(PluginLibrary, AFileThatDoesNotLoadIsNamed) {
   EXPECT_EQ(message.find(": found no plug-in that can be loaded ("), 0U) << message;
   EXPECT_NE(message.find("), expected a shared library for this computer"), std::string::npos) << message;
   EXPECT_NE(load_error(folder / "missing.so").find("No such file"), std::string::npos);
+}
+
+TEST(PluginLibrary, ADamagedFileIsNamedAndDoesNotEndTheProgram) {
+  const TemporaryFolder folder;
+  const std::filesystem::path damaged = folder / "damaged.so";
+  const std::string good = file_contents(built("proleg-example"));
+  // What is behind the first quarter is for a debugger.
+  for (std::size_t size = 64; size < good.size() / 4; size += good.size() / 100) {
+    std::ofstream(damaged, std::ios::binary) << good.substr(0, size);
+    EXPECT_EQ(load_error(damaged).find(": found "), 0U) << size << " of " << good.size() << " bytes";
+  }
 }
 
 TEST(PluginLibrary, ALibraryThatIsNoPluginIsNamed) {

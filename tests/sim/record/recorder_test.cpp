@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include "shared/computer/sqlite/sqlite.hpp"
@@ -480,6 +481,26 @@ TEST(Recorder, ReportsADiskThatIsFull) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST(Recorder, ReportsThatItsFileIsRenamedOrOverwritten) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "run.sqlite";
+  const Scenario scenario = small_scenario();
+  const auto message_after = [&](const std::function<void()>& change) {
+    Recorder recorder(path, scenario, "test", "build");
+    run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
+    change();
+    return message_of<FileError>([&] { recorder.finish({}); });
+  };
+  const std::string renamed = message_after([&] { std::filesystem::rename(path, folder / "renamed.sqlite"); });
+  EXPECT_EQ(renamed.find(path.string() + ": recording stopped: another program removed, renamed or replaced"), 0U)
+      << renamed;
+  EXPECT_EQ(Recording(folder / "renamed.sqlite").last_tick(), 19U);
+  const std::string overwritten = message_after([&] { std::ofstream(path, std::ios::binary) << "other"; });
+  EXPECT_EQ(overwritten.find(path.string() + ": recording stopped: another program shortened or overwrote"), 0U)
+      << overwritten;
+  EXPECT_EQ(file_contents(path), "other");
 }
 
 TEST(Recorder, CanBeReadWhileItWrites) {

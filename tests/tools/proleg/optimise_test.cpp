@@ -147,6 +147,21 @@ TEST_F(Optimise, PrintsTheCommandThatContinues) {
   EXPECT_EQ(object["seed"], 9);
 }
 
+TEST_F(Optimise, EndsAtOnceIfItsStoreIsRenamedAndContinuesFromIt) {
+  const pid_t search = start_proleg(words("great_deluge", "out", {"--evaluations", endless}));
+  wait_for("out", 3);
+  fs::rename(file("out/store.sqlite"), file("out/renamed"));
+  const Finished ended = finish(search);
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_NE(ended.err.find("out/store.sqlite: another program removed, renamed or replaced"), std::string::npos)
+      << ended.err;
+  EXPECT_NE(ended.err.find("continue with: proleg optimise"), std::string::npos) << ended.err;
+  fs::rename(file("out/renamed"), file("out/store.sqlite"));
+  const Json object =
+      json_of(proleg(words("great_deluge", "", {"--evaluations", "40", "--resume", file("out").string()})));
+  EXPECT_GE(object["restored"].number(), 3);
+}
+
 TEST_F(Optimise, AnIgnoredHangUpStopsNothing) {
   const pid_t search = start({"sh", "-c", "trap '' HUP; exec \"$0\" \"$@\"", PROLEG_PROGRAM, "optimise",
                               shipped("great_deluge"), "--simulation", file("short.simulation.xml").string(), "--out",

@@ -169,7 +169,7 @@ TEST_F(CommandLine, ASweepOverAMeasureThatNoRunDefinesFails) {
   EXPECT_FALSE(fs::exists(file("out/sweep.svg")));
 }
 
-TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDone) {
+TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDoneOrNothing) {
   const std::string out = file("out").string();
   const pid_t child = start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:100000", "--seconds",
                              "0.05", "--workers", "1", "--out", out});
@@ -179,10 +179,42 @@ TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDone) {
   kill(child, SIGINT);
   const Finished finished = finish(child);
   EXPECT_EQ(finished.status, 1);
-  EXPECT_NE(finished.err.find("interrupted after "), std::string::npos) << finished.err;
-  const auto table = cells(read_file(out + "/sweep.tsv"));
-  EXPECT_GE(table.size(), 1U);
-  EXPECT_LT(table.size(), 100'001U);
+  EXPECT_NE(finished.err.find("interrupted "), std::string::npos) << finished.err;
+  if (fs::exists(out)) {
+    const auto table = cells(read_file(out + "/sweep.tsv"));
+    EXPECT_GE(table.size(), 2U);
+    EXPECT_LT(table.size(), 100'001U);
+  }
+}
+
+TEST_F(CommandLine, ASweepThatIsInterruptedBeforeItsFirstRunEndsLeavesNothing) {
+  const std::string out = file("out").string();
+  const pid_t child =
+      start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:2", "--seconds", "3600", "--out", out});
+  while (!fs::exists(out) && waitpid(child, nullptr, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGINT);
+  const Finished finished = finish(child);
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("interrupted before the first run of 2 ended; nothing was written"), std::string::npos)
+      << finished.err;
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(CommandLine, TwoSweepsAtOnceDoNotWriteIntoOneFolder) {
+  const std::string out = file("out").string();
+  const pid_t first = start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:100000", "--seconds",
+                             "0.05", "--workers", "1", "--out", out});
+  while (!fs::exists(out) && waitpid(first, nullptr, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const auto second = proleg({"sweep", scenario("coupled"), "--over", "seed=1:2", "--seconds", "0.05", "--out", out});
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.err.find(out + ": found a folder into which another program writes its results"), std::string::npos)
+      << second.err;
+  kill(first, SIGINT);
+  EXPECT_EQ(finish(first).status, 1);
 }
 
 TEST_F(CommandLine, SweepRefusesBadInputAndWritesNothing) {

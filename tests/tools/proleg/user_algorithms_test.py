@@ -62,6 +62,14 @@ LOCKING_MISTAKES = {
 OTHER_MISTAKES = {
     "prints": "for (;;) { std::printf(\" \"); }",
     "exits": "std::exit(0);",
+    "exits_quickly": "std::quick_exit(0);",
+    "exits_late": "std::atexit([] { for (volatile int i = 0;; i = i + 1) {} });",
+    "rounds": "std::fesetround(FE_UPWARD);",
+    "sleeps": "sleep(1000);",
+    "ignores_signals": "std::signal(SIGINT, SIG_IGN);",
+    "blocks_signals": "sigset_t all; sigfillset(&all); pthread_sigmask(SIG_SETMASK, &all, nullptr);",
+    "blocks_signals_and_loops": "sigset_t all; sigfillset(&all); pthread_sigmask(SIG_SETMASK, &all, nullptr); "
+                                "for (volatile int i = 0;; i = i + 1) {}",
     "thread_exits": "std::thread([] { std::exit(0); }).join();",
     "thread_crashes": "std::thread([] { *volatile_null = 1; }).join();",
 }
@@ -69,6 +77,8 @@ OTHER_MISTAKES = {
 MISTAKE = "PROLEG_TEST_MISTAKE"
 
 TOOLS = """
+#include <unistd.h>
+#include <cfenv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -338,6 +348,45 @@ class UserAlgorithms(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assert_one_line(result, f"the algorithm '{NAME}' calls exit(), in advance()")
 
+        result = self.simulate_mistake("exits_quickly")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, f"the algorithm '{NAME}' calls quick_exit(), in advance()")
+
+    def test_a_call_that_sleeps_is_one_line(self):
+        result = self.simulate_mistake("sleeps")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, f"the algorithm '{NAME}' does not return within 20 s: does it wait or sleep?")
+
+    def test_a_loop_that_blocks_all_signals_ends(self):
+        result = self.simulate_mistake("blocks_signals_and_loops")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, f"the algorithm '{NAME}' does not return within a second", "it blocks signals")
+
+    def test_a_mode_of_floating_point_changes_nothing(self):
+        constructor = self.compile("rounding", "#include <cfenv>\n" + self.source + "\nnamespace { const struct First { "
+                                   "First() { std::fesetround(FE_UPWARD); } } first; }\n")
+        runs = [self.simulate(self.library, "--seconds", "5", "--json"), self.simulate_mistake("rounds", "--json"),
+                self.simulate(constructor, "--seconds", "5", "--json")]
+        measures = [json.loads(run.stdout)["measures"] for run in runs]
+        self.assertEqual(measures[0], measures[1])
+        self.assertEqual(measures[0], measures[2])
+
+    def test_signals_end_the_program_although_the_library_changes_them(self):
+        constructor = self.compile("ignoring", "#include <csignal>\n" + self.source + "\nnamespace { const struct First { "
+                                   "First() { std::signal(SIGINT, SIG_IGN); sigset_t all; sigfillset(&all); "
+                                   "pthread_sigmask(SIG_SETMASK, &all, nullptr); } } first; }\n")
+        for library, mistake in ((constructor, ""), (self.mistakes, "ignores_signals"), (self.mistakes, "blocks_signals")):
+            with self.subTest(mistake or "constructor"):
+                recording = self.folder / f"signals_{mistake}.proleg"
+                run = subprocess.Popen([PROGRAMS / "proleg-simulate", self.scenario, "--algorithms", library, "--seconds",
+                                        "50000", "--record", recording], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       text=True, env={**os.environ, MISTAKE: mistake})
+                self.addCleanup(run.kill)
+                wait_until(lambda: Path(f"{recording}-wal").exists() and Path(f"{recording}-wal").stat().st_size > 1e5)
+                run.send_signal(signal.SIGINT)
+                self.assertIn("interrupted after", run.communicate(timeout=LONGEST)[1])
+                self.assertEqual(run.returncode, 1)
+
     def test_exit_in_a_thread_of_the_library_is_no_success(self):
         result = self.simulate_mistake("thread_exits")
         self.assertEqual(result.returncode, 1)
@@ -353,6 +402,9 @@ class UserAlgorithms(unittest.TestCase):
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assert_one_line(result, library, text)
                 self.assertIn("displacement", result.stdout, "the results are written before")
+        result = self.simulate_mistake("exits_late")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assert_one_line(result, self.mistakes, "does not end with the program")
 
     def test_a_crash_of_a_thread_of_the_library_names_it(self):
         result = self.simulate_mistake("thread_crashes")
@@ -434,6 +486,32 @@ class UserAlgorithms(unittest.TestCase):
         twice = self.simulate(self.library, "--algorithms", self.library)
         self.assertEqual(twice.returncode, 2)
         self.assert_one_line(twice, f"expected another name and id than those of '{NAME}'")
+
+    def test_a_damaged_library_is_one_line(self):
+        whole = self.library.read_bytes()
+        damaged = self.folder / "damaged.so"
+        for size in range(64, len(whole), len(whole) // 25):
+            with self.subTest(size):
+                damaged.write_bytes(whole[:size])
+                result = self.simulate(damaged, "--seconds", "0.1")
+                if result.returncode == 0:
+                    self.assertGreater(size, len(whole) * 0.7, "nothing that is loaded may be missing")
+                else:
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assert_one_line(result, f"proleg simulate: {damaged}: found ", "expected ")
+
+    def test_a_library_that_ends_or_keeps_the_program_while_it_is_loaded_is_one_line(self):
+        for name, body, text in (
+                ("ends", "_exit(0);", "ends the program with exit status 0"),
+                ("is_killed", "raise(SIGKILL);", "ends the program with SIGKILL"),
+                ("waits", "sigset_t all; sigfillset(&all); pthread_sigmask(SIG_SETMASK, &all, nullptr); "
+                          "for (;;) { sleep(1); }", "does not end within 10 s")):
+            with self.subTest(name):
+                library = self.compile(f"constructor_{name}", "#include <csignal>\n#include <unistd.h>\n" + self.source +
+                                       "\nnamespace { const struct First { First() { " + body + " } } first; }\n")
+                result = self.simulate(library)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assert_one_line(result, f"{library}: found a library that, while it is loaded, {text}, expected one")
 
 
 class Verify(unittest.TestCase):

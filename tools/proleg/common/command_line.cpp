@@ -14,6 +14,8 @@
 #include <thread>
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
+#include "shared/computer/algorithm_library/guarded_call.hpp"
+#include "shared/computer/algorithm_library/kept_signals.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -163,6 +165,12 @@ void CommandLine::add_algorithms_option() {
 std::string CommandLine::name() const { return app_->get_name(); }
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
+  const int status = run_body(argc, argv, body);
+  expect_program_end();
+  return status;
+}
+
+int CommandLine::run_body(int argc, char** argv, const std::function<int()>& body) {
   const auto print_error = [&](const std::exception& error) {
     std::cerr << app_->get_name() << ": " << one_line(error.what()) << '\n';
   };
@@ -212,12 +220,14 @@ std::uint32_t parse_workers(const std::optional<std::string>& argument) {
 }
 
 void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // An ignored signal remains ignored: nohup and scripts protect their jobs this way.
-    if (std::signal(signal, [](int) { interrupt_flag = true; }) == SIG_IGN) {
-      std::signal(signal, SIG_IGN);
+  set_ending_signals([] {
+    for (const int signal : ending_signals) {
+      // An ignored signal remains ignored: nohup and scripts protect their jobs this way.
+      if (std::signal(signal, [](int) { interrupt_flag = true; }) == SIG_IGN) {
+        std::signal(signal, SIG_IGN);
+      }
     }
-  }
+  });
 }
 
 bool interrupted() { return interrupt_flag; }

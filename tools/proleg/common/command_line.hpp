@@ -78,6 +78,8 @@ class CommandLine {
   int run(int argc, char** argv, const std::function<int()>& body);
 
  private:
+  int run_body(int argc, char** argv, const std::function<int()>& body);
+
   std::unique_ptr<CLI::App> app_;
   std::vector<std::string> algorithms_;
 };

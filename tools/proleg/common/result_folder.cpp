@@ -1,5 +1,7 @@
 #include "tools/proleg/common/result_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -52,6 +54,30 @@ void create_result_folder(const fs::path& folder) {
   if (error) {
     throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
   }
+}
+
+ResultFolder::ResultFolder(const fs::path& path, std::span<const std::string_view> files)
+    : path_(path), is_new_(!fs::exists(path)) {
+  create_result_folder(path);
+  descriptor_ = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  try {
+    if (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      throw BadInput(path.string() +
+                     ": found a folder into which another program writes its results, expected one of " +
+                     "this program alone; --out FOLDER names another folder");
+    }
+    check_result_folder(path, files);  // again: another program may have ended meanwhile
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+}
+
+ResultFolder::~ResultFolder() {
+  if (is_new_) {
+    rmdir(path_.c_str());  // it fails unless the folder is empty
+  }
+  close(descriptor_);
 }
 
 }  // namespace proleg::tools

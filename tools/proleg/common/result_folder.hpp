@@ -16,6 +16,23 @@ void check_result_folder(const std::filesystem::path& folder, std::span<const st
 /// Creates the folder. Throws BadInput.
 void create_result_folder(const std::filesystem::path& folder);
 
+/// A folder for results, created if there is none, which no other program can claim while this object exists. The end
+/// removes it again if it was created and is still empty. The lock is on the folder itself (flock), so it ends with the
+/// process; on a file system without such locks the folder is not locked.
+class ResultFolder {
+ public:
+  /// Throws BadInput if another program has claimed the folder; otherwise as check_result_folder().
+  ResultFolder(const std::filesystem::path& path, std::span<const std::string_view> files);
+  ~ResultFolder();
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  bool is_new_;
+  int descriptor_ = -1;
+};
+
 /// The name of a file that belongs to a recording: run.svg for run.proleg. Only the usual extension of recordings is
 /// replaced, so that run.1 and run.2 do not share a file.
 [[nodiscard]] inline std::filesystem::path beside_recording(const std::filesystem::path& recording,

@@ -193,6 +193,7 @@ int experiment(Options options) {
   const optimize::Experiment& first = chosen.front().experiment;
 
   catch_interrupts();
+  const ResultFolder claim(folder, {});  // what may be in it is checked above
   const auto started = std::chrono::steady_clock::now();
   const std::vector<optimize::Reference> references = reference_distances(thesis, first, scenarios);
   std::vector<MethodResult> results;

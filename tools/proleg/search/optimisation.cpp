@@ -111,7 +111,11 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
     display.show(progress);
     print_messages();
   };
-  optimize::Evaluator evaluator(experiment, run, workers, &store, observe, interrupted);
+  const auto stop = [&] {
+    print_messages();  // also while no evaluation ends
+    return interrupted();
+  };
+  optimize::Evaluator evaluator(experiment, run, workers, &store, observe, stop);
   store.start_run(run);
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = own_cpu_s();

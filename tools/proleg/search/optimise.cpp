@@ -156,6 +156,38 @@ void print_warnings_on(const std::filesystem::path& best) {
   print_warning_on_clipping("proleg optimise", scenario, simulation.chain().clipped_ticks(), simulation.tick());
 }
 
+/// Returns the exit status. continuation: the command that continues the search.
+int search_and_write(const OptimiseOptions& options, const Experiment& experiment, const std::filesystem::path& folder,
+                     optimize::Workers& workers, optimize::Store& store, const std::string& continuation) {
+  SearchOutcome outcome = run_search(experiment, 0, workers, store, optimize::method_name(experiment.method));
+  if (outcome.progress.evaluations == 0) {
+    std::cerr << "proleg optimise: interrupted before the first evaluation; continue with: " << continuation << '\n';
+    return exit_failed;
+  }
+  const bool has_score = outcome.progress.best.has_value();
+  if (!has_score) {
+    write_results(experiment, outcome, nullptr, folder);
+    std::cerr << "proleg optimise: none of " << outcome.progress.evaluations
+              << " evaluations has a score, so there is no best scenario; the first failure: "
+              << outcome.progress.first_failure << '\n';
+  } else {
+    std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, workers, store, outcome);
+    const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
+    const std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
+    if (options.json) {
+      print_json(experiment, outcome, result, folder, workers.count());
+    } else {
+      print_text(experiment, outcome, result, files, workers.count());
+    }
+    print_warnings_on(folder / "best.simulation.xml");
+  }
+  if (outcome.ending.empty()) {
+    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
+              << " evaluations; continue with: " << continuation << '\n';
+  }
+  return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
+}
+
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   Experiment experiment = read_experiment(options);
   const std::filesystem::path folder = folder_of(options, experiment);
@@ -176,35 +208,13 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
   const std::unique_ptr<optimize::Store> store = open_store(
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
-  keep_stored_evaluations(*store, experiment);
-  SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
   const std::string continuation = command_to_continue(options, folder);
-  if (outcome.progress.evaluations == 0) {
-    std::cerr << "proleg optimise: interrupted before the first evaluation; continue with: " << continuation << '\n';
-    return exit_failed;
+  try {
+    keep_stored_evaluations(*store, experiment);
+    return search_and_write(options, experiment, folder, *workers, *store, continuation);
+  } catch (const optimize::StoreError& error) {
+    throw std::runtime_error(std::string(error.what()) + "; continue with: " + continuation);
   }
-  const bool has_score = outcome.progress.best.has_value();
-  if (!has_score) {
-    write_results(experiment, outcome, nullptr, folder);
-    std::cerr << "proleg optimise: none of " << outcome.progress.evaluations
-              << " evaluations has a score, so there is no best scenario; the first failure: "
-              << outcome.progress.first_failure << '\n';
-  } else {
-    std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, *workers, *store, outcome);
-    const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
-    const std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
-    if (options.json) {
-      print_json(experiment, outcome, result, folder, workers->count());
-    } else {
-      print_text(experiment, outcome, result, files, workers->count());
-    }
-    print_warnings_on(folder / "best.simulation.xml");
-  }
-  if (outcome.ending.empty()) {
-    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
-              << " evaluations; continue with: " << continuation << '\n';
-  }
-  return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
 }
 
 }  // namespace

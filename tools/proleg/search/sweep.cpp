@@ -64,6 +64,8 @@ sim::Measure read_measure(const std::string& name) {
   throw InputError("--measure", 0, in_quotes(name), "one of " + listed(sim::measure_names()));
 }
 
+constexpr std::array<std::string_view, 3> result_files{"sweep.tsv", "summary.tsv", "sweep.svg"};
+
 /// The folder of the results; none of the files may exist in it.
 std::filesystem::path result_folder(const SweepOptions& options) {
   if (options.out && options.out->empty()) {
@@ -71,8 +73,7 @@ std::filesystem::path result_folder(const SweepOptions& options) {
   }
   const std::string file = std::filesystem::path(options.scenario.file).filename().string();
   std::filesystem::path folder = options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
-  constexpr std::array<std::string_view, 3> names{"sweep.tsv", "summary.tsv", "sweep.svg"};
-  check_result_folder(folder, names);
+  check_result_folder(folder, result_files);
   return folder;
 }
 
@@ -272,13 +273,18 @@ int sweep(const SweepOptions& options) {
   const std::filesystem::path folder = result_folder(options);
   static_cast<void>(sim::Simulation(sweep.scenario));  // an engine without the features of the world refuses it now
   catch_interrupts();
-  create_result_folder(folder);
+  const ResultFolder claim(folder, result_files);
   print_warnings("proleg sweep", sweep.scenario);
   warn_of_equal_runs(sweep);
   SweepResult result = run(sweep, worker_count);
+  if (result.runs.empty()) {
+    std::cerr << "proleg sweep: interrupted before the first run of " << sweep.size()
+              << " ended; nothing was written\n";
+    return exit_failed;
+  }
   result.groups = optimize::group_runs(sweep, result.runs, measure);
   write_results(sweep, measure, folder, result);
-  const bool has_result = has_values(result) || result.runs.empty();
+  const bool has_result = has_values(result);
   if (!has_result) {
     std::cerr << "proleg sweep: " << why_without_values(sweep, options, result) << '\n';
   } else if (options.json) {

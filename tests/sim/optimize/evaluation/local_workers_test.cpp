@@ -299,6 +299,21 @@ TEST_F(LocalWorkersTest, ReplaceOneThatHangs) {
   EXPECT_NE(messages[0].find("did not answer"), std::string::npos) << messages[0];
 }
 
+TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatIsStopped) {
+  LocalWorkers workers(experiment_, 1, once([] { std::raise(SIGSTOP); }), {.resting = milliseconds(400)});
+  workers.start(std::vector{TicketedTask{1, task_}});
+  const Workers::Done done = next(workers);
+  EXPECT_EQ(exact(done.result), exact(made_up_trial(experiment_, task_)));
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_NE(messages[0].find("has computed nothing for 0 s in evaluation 17 of run 0: is it stopped?"),
+            std::string::npos)
+      << messages[0];
+  EXPECT_NE(messages[1].find("computed nothing for 1 s in evaluation 17 of run 0; started again, evaluation repeated"),
+            std::string::npos)
+      << messages[1];
+}
+
 TEST_F(LocalWorkersTest, IgnoreTheSignalsThatAreForTheirParent) {
   const RunTask asked_to_end = [](const Experiment& experiment, const Task& task) {
     raise(SIGINT);

@@ -4,10 +4,15 @@
 
 #include <bit>
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <limits>
+#include <thread>
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "small_experiment.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -220,6 +225,81 @@ TEST_F(StoreTest, IsNotBlockedByASlowReader) {
     store->save({0, i, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
   }
   EXPECT_TRUE(store->find({0, 99, 0, {1, 2, 3}, {}}));
+}
+
+TEST_F(StoreTest, IfItsFileIsRenamedSavesNoMoreAndLeavesAllUntilThenInIt) {
+  const std::filesystem::path renamed = folder_ / "renamed.sqlite";
+  std::unique_ptr<Store> store = fresh();
+  store->save({0, 0, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+  std::filesystem::rename(path_, renamed);
+  const std::string message = message_of<StoreError>([&] { store->finish_run(0, "converged"); });
+  EXPECT_EQ(message.find(path_.string() + ": another program removed, renamed or replaced the file"), 0U) << message;
+  store.reset();
+  std::filesystem::rename(renamed, path_);
+  EXPECT_EQ(ask("SELECT count(*) FROM trial"), "1");
+  EXPECT_EQ(ask("PRAGMA integrity_check"), "ok");
+}
+
+TEST_F(StoreTest, ReportsThatItsFileOrItsLogIsRemovedOrReplaced) {
+  const std::filesystem::path log = path_.string() + "-wal";
+  const std::filesystem::path copy = folder_ / "copy";
+  const std::vector<std::function<void()>> changes{
+      [&] { std::filesystem::remove(path_); },
+      [&] {
+        std::filesystem::copy_file(path_, copy);
+        std::filesystem::rename(copy, path_);
+      },
+      [&] { std::filesystem::remove(log); },
+  };
+  for (const auto& change : changes) {
+    const std::unique_ptr<Store> store = fresh();
+    store->save({0, 0, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+    change();
+    EXPECT_NE(message_of<StoreError>([&] {
+                store->save({0, 1, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+              }).find("removed, renamed or replaced"),
+              std::string::npos);
+    std::filesystem::remove(path_);
+  }
+}
+
+TEST_F(StoreTest, ReportsThatItsFileOrItsLogIsShortenedOrOverwrittenAndWritesNothingIntoIt) {
+  const std::string other(200'000, 'x');
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {path_.string(), ""}, {path_.string(), other}, {path_.string() + "-wal", ""}};
+  for (const auto& [file, contents] : changes) {
+    std::unique_ptr<Store> store = fresh();
+    store->save({0, 0, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+    std::ofstream(file, std::ios::binary) << contents;
+    EXPECT_NE(message_of<StoreError>([&] {
+                store->save({0, 1, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+              }).find("shortened or overwrote"),
+              std::string::npos);
+    store.reset();
+    EXPECT_EQ(file_contents(file), contents);
+    std::filesystem::remove(path_);
+    std::filesystem::remove(path_.string() + "-wal");
+  }
+}
+
+TEST_F(StoreTest, AllowsAnotherProgramToEmptyTheLogInTheWayOfSqlite) {
+  const std::unique_ptr<Store> store = fresh();
+  store->save({0, 0, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+  Database(path_, SQLITE_OPEN_READWRITE).execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  store->save({0, 1, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+  EXPECT_EQ(ask("SELECT count(*) FROM trial"), "2");
+}
+
+TEST_F(StoreTest, WaitsForAnotherProgramThatWrites) {
+  const std::unique_ptr<Store> store = fresh();
+  Database other(path_, SQLITE_OPEN_READWRITE);
+  other.execute("BEGIN IMMEDIATE");
+  std::thread end([&] {
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    other.execute("COMMIT");
+  });
+  EXPECT_NO_THROW(store->finish_run(0, "converged"));
+  end.join();
 }
 
 TEST_F(StoreTest, KnowsWhyARunEnded) {

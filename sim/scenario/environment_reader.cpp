@@ -301,6 +301,9 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
   constexpr std::array<std::string_view, 3> tags{"physicsengine", "KinBody", "ruler"};
   root.allow(attributes, joined({tags, viewer_tags}));
 
+  if (root.attribute("type")) {
+    remark_no_effect_of("type", remarks, root, "only a plug-in of OpenRAVE reads it");
+  }
   EnvironmentModel environment;
   if (const auto physics = root.child("physicsengine")) {
     read_physics(*physics, environment, warnings);

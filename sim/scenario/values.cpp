@@ -15,6 +15,8 @@ namespace {
 
 constexpr Range angles{-1e4, 1e4, "degrees"};
 constexpr double min_direction = 1e-6;
+constexpr std::array<std::string_view, 4> switch_words{"true", "1", "false", "0"};
+constexpr std::size_t count_of_true = 2;  ///< of these words
 
 std::string described(const Range& range) {
   return number_text(range.min) + " to " + number_text(range.max) +
@@ -72,6 +74,12 @@ std::size_t checked_choice(const XmlElement& element, const LocatedText& located
   return static_cast<std::size_t>(found - words.begin());
 }
 
+void add_remark(std::vector<std::string>& remarks, const XmlElement& element, const std::string& what,
+                std::string_view reason) {
+  remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": " + what +
+                             " has no effect: " + std::string(reason)));
+}
+
 }  // namespace
 
 std::optional<double> parse_number_in(std::string_view word, const Range& range) {
@@ -104,6 +112,14 @@ std::size_t read_choice(const XmlElement& element, std::initializer_list<std::st
 std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
                                   std::initializer_list<std::string_view> words) {
   return checked_choice(element, attribute_of(element, attribute), std::span(words.begin(), words.size()));
+}
+
+bool read_switch(const XmlElement& element) {
+  return checked_choice(element, text_of(element), switch_words) < count_of_true;
+}
+
+bool read_switch_attribute(const XmlElement& element, std::string_view attribute) {
+  return checked_choice(element, attribute_of(element, attribute), switch_words) < count_of_true;
 }
 
 double read_quantity(const XmlElement& element, const Range& range) {
@@ -188,8 +204,12 @@ std::vector<std::string_view> joined(std::initializer_list<std::span<const std::
 }
 
 void remark_no_effect(std::vector<std::string>& remarks, const XmlElement& element, std::string_view reason) {
-  remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": " + element.label() +
-                             " has no effect: " + std::string(reason)));
+  add_remark(remarks, element, element.label(), reason);
+}
+
+void remark_no_effect_of(std::string_view attribute, std::vector<std::string>& remarks, const XmlElement& element,
+                         std::string_view reason) {
+  add_remark(remarks, element, "attribute '" + std::string(attribute) + "' in " + element.label(), reason);
 }
 
 }  // namespace proleg::sim

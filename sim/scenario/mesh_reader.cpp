@@ -21,6 +21,8 @@ constexpr double least_size = 0.001;   // m
 constexpr double most_of_link = 5.0;   // m
 constexpr double most_of_world = 1e3;  // m
 constexpr std::uint64_t most_columns = 1024;
+constexpr double no_height = -9999.0;  // as programs for maps write it; the other usual numbers are out of the range
+constexpr std::string_view height_hint = "; a file has heights alone: no header, and no number for an unknown height";
 
 /// The file and the scale that an element names.
 struct FileMention {
@@ -112,15 +114,16 @@ NumberText numbers_of_file(const XmlElement& data, SourceSet& sources) {
   return {std::string(without_byte_order_mark(bytes)), in_quotes(data.text()), true};
 }
 
+/// hint: what else a message says about the numbers that are expected.
 std::vector<double> all_numbers(const XmlElement& element, const NumberText& source, const Range& range,
-                                std::size_t most) {
+                                std::size_t most, std::string_view hint = "") {
   std::vector<double> numbers;
   for (const std::string_view word : words(source.text)) {
     const std::optional<double> number = parse_number_in(word, range);
     if (!number) {
-      element.refuse(
-          in_quotes(word) + " in " + source.place_of(word),
-          "numbers from " + number_text(range.min) + " to " + number_text(range.max) + ' ' + std::string(range.unit));
+      element.refuse(in_quotes(word) + " in " + source.place_of(word), "numbers from " + number_text(range.min) +
+                                                                           " to " + number_text(range.max) + ' ' +
+                                                                           std::string(range.unit) + std::string(hint));
     }
     if (numbers.size() == most) {
       element.refuse("more than " + std::to_string(most) + " numbers in " + source.name, "at most that");
@@ -219,10 +222,15 @@ void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& 
   }
   const XmlElement& place = heights ? *heights : *data;
   const NumberText source = heights ? numbers_of(*heights) : numbers_of_file(*data, sources);
-  field.heights = all_numbers(place, source, coordinates, count);
+  field.heights = all_numbers(place, source, coordinates, count, height_hint);
   if (field.heights.size() != count) {
     place.refuse(std::to_string(field.heights.size()) + " heights in " + source.name,
                  std::to_string(count) + ", one for each column of each row");
+  }
+  if (const auto unknown = std::ranges::find(field.heights, no_height); unknown != field.heights.end()) {
+    const std::string_view word = words(source.text)[static_cast<std::size_t>(unknown - field.heights.begin())];
+    place.refuse(in_quotes(word) + " in " + source.place_of(word) + ", which stands for an unknown height",
+                 "a height at each place of the grid");
   }
   geometry.shape = Shape::height_field;
   geometry.mesh = std::make_shared<const TriangleMesh>(surface_of(field));

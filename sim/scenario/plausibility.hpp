@@ -1,8 +1,8 @@
 #pragma once
 
 // Finds what is valid in a scenario and probably not meant: a joint far from its links, links at the same place,
-// gravity that points upwards, a start inside a wall. Each warning is one line: file, line, what is there, and the
-// usual cause.
+// gravity that points upwards, heights in millimetres, a start inside a wall. Each warning is one line: file, line,
+// what is there, and the usual cause.
 
 #include <string>
 #include <vector>
@@ -17,6 +17,9 @@ namespace proleg::sim {
 
 /// A warning on gravity (m/s^2) that does not hold a robot on the ground. origin: where it is given.
 [[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
+
+/// A warning on heights in another unit than the sides of their field, or far from all others. origin: of the body.
+[[nodiscard]] std::vector<std::string> check_heights(const HeightField& field, const Origin& origin);
 
 /// A robot that lies on the ground may be in it by this, in m.
 inline constexpr double largest_start_depth = 0.003;

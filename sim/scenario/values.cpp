@@ -54,7 +54,8 @@ double checked_number(const XmlElement& element, std::string_view word, const Ra
 
 std::uint64_t checked_whole(const XmlElement& element, const LocatedText& located, std::uint64_t min,
                             std::uint64_t max) {
-  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(located.text);
+  const std::string_view unsigned_text = std::string_view(located.text).substr(located.text.starts_with('+') ? 1 : 0);
+  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(unsigned_text);
   if (!value || *value < min || *value > max) {
     element.refuse(located.in_message, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   }

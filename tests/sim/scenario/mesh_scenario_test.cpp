@@ -206,6 +206,37 @@ TEST(MeshScenario, HeightsMayBeInAFile) {
             (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
 }
 
+TEST(MeshScenario, NumbersForUnknownHeightsAreNoHeights) {
+  MemoryFiles files = with_objects(body("static",
+                                        "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns>"
+                                        "<rows>2</rows><data>dem.asc</data></Geom>"));
+  // As GDAL, GRASS and ArcGIS write them: for whole numbers of 16 and 32 bits, and for floating point.
+  for (const std::string unknown : {"-9999", "-9999.0", "-9.999e3", "-32768", "-32767", "-2147483648", "1e20", "-99999",
+                                    "-3.4028235e+38", "3.40282e38", "nan", "NaN", "*"}) {
+    files.texts["dem.asc"] = "0.1 0.2\n0.3 " + unknown + "\n";
+    expect_refused(files, "found '" + unknown + "' in line 2 of 'dem.asc'");
+    expect_refused(files, "height");
+  }
+  files.texts["dem.asc"] = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 2\n3 4\n";
+  expect_refused(files,
+                 "found 'ncols' in line 1 of 'dem.asc', expected numbers from -10000 to 10000 m; a file has heights");
+  expect_refused(with_objects(body("static",
+                                   "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns>"
+                                   "<rows>2</rows><heights>0 0 -9999 0</heights></Geom>")),
+                 "found '-9999' in <heights>, which stands for an unknown height");
+}
+
+TEST(MeshScenario, NumbersMayHaveAPlus) {
+  const Scenario scenario = with_objects(body("static",
+                                              "<translation>+1 +2.5 +0</translation>"
+                                              "<Geom type=\"heightfield\"><extents>+1 +1</extents><columns>+2</columns>"
+                                              "<rows>+2</rows><heights>+0.1 -0.2 +3e-1 +0</heights></Geom>"))
+                                .scenario();
+  EXPECT_EQ(scenario.environment.objects.back().pose.position, Eigen::Vector3d(1, 2.5, 0));
+  EXPECT_EQ(scenario.environment.objects.back().geometries.at(0).heights->heights,
+            (std::vector<double>{0.1, -0.2, 0.3, 0.0}));
+}
+
 TEST(MeshScenario, ABodyThatMovesHasItsPoseMassAndShape) {
   const Scenario scenario = with_objects(
                                 "<KinBody name=\"ball\"><Body type=\"dynamic\"><translation>0 2 0.1"

@@ -149,14 +149,14 @@ void paint(const XmlElement& element, SourceSet& sources, ReadGeometry& result) 
 
 /// <render> is a mesh, or, as in the thesis's files, a switch of the viewer. A file of another kind, such as VRML, is
 /// not shown.
-bool is_mesh(const XmlElement& render, std::vector<std::string>& remarks) {
-  const std::string text = render.text();
-  const std::vector<std::string_view> parts = words(text);
-  if (parts.empty() || parts[0].find('.') == std::string_view::npos) {
-    return false;
-  }
-  if (is_mesh_file_name(parts[0])) {
+bool is_mesh(const XmlElement& render, SourceSet& sources, std::vector<std::string>& remarks) {
+  const std::string file = mesh_file_named_by(render, sources);
+  if (is_mesh_file_name(file)) {
     return true;
+  }
+  if (file.find('.') == std::string::npos) {
+    static_cast<void>(read_switch(render));
+    return false;
   }
   remark_no_effect(remarks, render,
                    "meshes that can be shown are files that end with " + std::string(mesh_file_endings));
@@ -316,7 +316,7 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
                    "'box', 'sphere', 'cylinder', 'trimesh' or 'heightfield'");
   }
   const Pose pose = read_pose(element);
-  if (const auto render = element.child("render"); render && is_mesh(*render, remarks)) {
+  if (const auto render = element.child("render"); render && is_mesh(*render, sources, remarks)) {
     result.look = Look{pose, read_mesh_of_file(*render, MeshUse::look, true, sources, remarks)};
   }
   paint(element, sources, result);

@@ -59,6 +59,32 @@ TEST(MeshScenario, AScaleOfThreeNumbersIsForEachAxis) {
   EXPECT_TRUE(head_solid(scenario).extents.isApprox(Eigen::Vector3d(0.01, 0.04, 0.09), 1e-6));
 }
 
+TEST(MeshScenario, ThePathOfAMeshMayHaveBlanks) {
+  const auto has_size = [](const std::string& text, const std::string& name, const Eigen::Vector3d& size) {
+    MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>" + text + "</data></Geom>");
+    files.texts[name] = box_off;
+    return head_solid(files.scenario()).extents.isApprox(size, 1e-6);
+  };
+  const Eigen::Vector3d half(0.1, 0.2, 0.3);
+  EXPECT_TRUE(has_size("my body.off", "my body.off", half));
+  EXPECT_TRUE(has_size("my body.off 2", "my body.off", 2.0 * half));
+  EXPECT_TRUE(has_size(" my  2 body.off\n1 2 +3 ", "my  2 body.off", {0.1, 0.4, 0.9}));
+  EXPECT_TRUE(has_size("sub dir/b.off 2", "sub dir/b.off", 2.0 * half));
+  EXPECT_TRUE(has_size("\"sub dir/b.off\" 2", "sub dir/b.off", 2.0 * half));
+  EXPECT_TRUE(has_size("'box.off'", "box.off", half));
+  EXPECT_TRUE(has_size("box.off 2.off 3", "box.off 2.off", 3.0 * half)) << "the longest beginning that is a file";
+}
+
+TEST(MeshScenario, ARenderedPathMayHaveBlanks) {
+  MemoryFiles files = with_head("<Geom type=\"sphere\"><radius>0.03</radius><render>my body.off 0.1</render></Geom>");
+  files.texts["my body.off"] = box_off;
+  EXPECT_EQ(files.scenario().robot.links.front().looks.size(), 1U);
+  files.texts.erase("my body.off");
+  expect_refused(files, "no such file 'my body.off'");
+  expect_refused(with_head("<Geom type=\"sphere\"><radius>0.03</radius><render>banana</render></Geom>"),
+                 "'banana' in <render>, expected 'true', '1', 'false' or '0'");
+}
+
 TEST(MeshScenario, ARenderedMeshReplacesWhatIsShownAndNotWhatTouches) {
   const Scenario scenario =
       with_head("<Geom type=\"sphere\"><radius>0.03</radius><render>box.off 0.1</render></Geom>").scenario();
@@ -268,6 +294,12 @@ TEST(MeshScenario, BadMeshesAreRefusedWithFileAndLine) {
   };
   expect_refused(of_link("<data>missing.stl</data>"), "robot.xml:");
   expect_refused(of_link("<data>missing.stl</data>"), "no such file 'missing.stl'");
+  expect_refused(of_link("<data>my missing.stl 1 2 3</data>"), "no such file 'my missing.stl'");
+  expect_refused(of_link("<data>box.off 1 2 3 4</data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>box.off x</data>"), "the scale 'x'");
+  expect_refused(of_link("<data></data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>\"\"</data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>\"box.off</data>"), "no such file '\"box.off'");
   expect_refused(of_link("<data>box.off 100</data>"), "a mesh of 20 x 40 x 60 m");
   expect_refused(of_link("<data>box.off 100</data>"), "needs the scale 0.001");
   expect_refused(of_link("<data>box.off 0.0001</data>"), "needs the scale 1000");

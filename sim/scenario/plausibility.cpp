@@ -263,6 +263,66 @@ double usual_distance(const HeightField& field) {
   return range > 0.0 ? std::clamp(ranges * range, side / 10.0, side / 2.0) : side / 2.0;
 }
 
+struct Surface {
+  double height = 0.0;  ///< m, in the world
+  bool faces_up = true;
+  const StaticObject* object = nullptr;
+};
+
+/// The higher one is first under a point. Of two at one height, as in a sheet with two sides, one that faces up.
+bool is_over(const Surface& surface, const std::optional<Surface>& other) {
+  constexpr double rounding = 1e-9;  // m
+  return !other || surface.height > other->height + rounding ||
+         (surface.height > other->height - rounding && surface.faces_up);
+}
+
+/// Where the vertical through a point meets a triangle; nothing if the triangle is beside it or vertical.
+std::optional<Surface> met_by_vertical(const std::array<Eigen::Vector3d, 3>& triangle, const Eigen::Vector3d& point,
+                                       const StaticObject& object) {
+  constexpr double vertical = 1e-6;  // part of the normal
+  const Eigen::Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).stableNormalized();
+  if (std::abs(normal.z()) < vertical) {
+    return std::nullopt;
+  }
+  for (std::size_t corner = 0; corner < triangle.size(); ++corner) {
+    const Eigen::Vector3d side = triangle[(corner + 1) % triangle.size()] - triangle[corner];
+    const Eigen::Vector3d to_point = point - triangle[corner];
+    if ((side.x() * to_point.y() - side.y() * to_point.x()) * normal.z() < 0.0) {
+      return std::nullopt;
+    }
+  }
+  const double above = normal.dot(point - triangle[0]) / normal.z();
+  return Surface{point.z() - above, normal.z() > 0.0, &object};
+}
+
+/// The first surface under a point. Shapes without a mesh count as the boxes around them.
+std::optional<Surface> surface_under(const Eigen::Vector3d& point, const EnvironmentModel& environment) {
+  std::optional<Surface> first;
+  const auto add = [&](const std::optional<Surface>& surface) {
+    if (surface && surface->height <= point.z() && is_over(*surface, first)) {
+      first = surface;
+    }
+  };
+  for (const StaticObject& object : environment.objects) {
+    for (const Geometry& geometry : object.geometries) {
+      const Bounds bounds = bounds_of(geometry, object.pose);
+      if (!contains_from_above(bounds, point)) {
+        continue;
+      }
+      if (!geometry.mesh) {
+        add(Surface{bounds.highest.z(), true, &object});
+        continue;
+      }
+      const Pose pose = object.pose * geometry.pose;
+      for (const auto& [a, b, c] : geometry.mesh->triangles) {
+        const std::vector<Eigen::Vector3d>& vertices = geometry.mesh->vertices;
+        add(met_by_vertical({pose * vertices[a], pose * vertices[b], pose * vertices[c]}, point, object));
+      }
+    }
+  }
+  return first;
+}
+
 }  // namespace
 
 std::vector<std::string> check_robot(const Chain& chain) { return RobotCheck(chain).run(); }
@@ -347,6 +407,18 @@ std::vector<std::string> check_start(const std::vector<Link>& links, const Envir
       warnings.push_back(one_line(environment_file + ": body " + in_quotes(link.name) + " starts " +
                                   millimetres(deepest) + " inside " + in_quotes(obstacle->name) +
                                   "; usually the start position is wrong"));
+    }
+  }
+  std::vector<const StaticObject*> known;
+  for (const Link& link : links) {
+    const std::optional<Bounds> bounds = bounds_of(link.geometries, environment.robot_pose * link.pose);
+    const std::optional<Surface> ground =
+        bounds ? surface_under((bounds->lowest + bounds->highest) / 2.0, environment) : std::nullopt;
+    if (ground && !ground->faces_up && std::ranges::find(known, ground->object) == known.end()) {
+      known.push_back(ground->object);
+      warnings.push_back(one_line(environment_file + ": the triangles of " + in_quotes(ground->object->name) +
+                                  " face downwards under body " + in_quotes(link.name) +
+                                  ", and touch only from below; usually the mesh must be turned inside out"));
     }
   }
   return warnings;

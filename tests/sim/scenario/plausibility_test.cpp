@@ -274,6 +274,40 @@ TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {
   EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{}) << "2 mm";
 }
 
+/// A level square of 8 m x 8 m around the middle.
+std::string sheet(const std::string& name, const std::string& height, bool faces_up) {
+  return "<KinBody name=\"" + name + "\"><Body type=\"static\"><translation>0 0 " + height +
+         "</translation><Geom type=\"trimesh\" open=\"1\"><vertices>-4 -4 0  4 -4 0  4 4 0  -4 4 "
+         "0</vertices><triangles>" +
+         (faces_up ? "0 1 2  0 2 3" : "0 2 1  0 3 2") + "</triangles></Geom></Body></KinBody>";
+}
+
+MemoryFiles caterpillar_among(const std::string& objects) {
+  MemoryFiles files = caterpillar_files();
+  files.replace("flat.environment.xml", "</Environment>", objects + "</Environment>");
+  return files;
+}
+
+TEST(Plausibility, ASheetOfGroundThatFacesDownwardsIsNamed) {
+  for (const char* height : {"0.001", "0.02", "0.5"}) {  // the robot is lifted onto the higher ones
+    MemoryFiles files = caterpillar_among(sheet("ground", height, false));
+    expect_warning(files, "flat.environment.xml: the triangles of 'ground' face downwards under body 'Head'",
+                   "usually the mesh must be turned inside out");
+  }
+}
+
+TEST(Plausibility, WhatFacesDownwardsElsewhereIsMeant) {
+  for (const std::string& objects :
+       {sheet("ground", "0.02", true), sheet("underside", "-0.2", false),
+        sheet("ground", "0.02", true) + sheet("underside", "0.02", false),  // one sheet with two sides
+        sheet("ground", "0.02", true) + sheet("underside", "0.01", false),
+        std::string("<KinBody name=\"aside\"><translation>20 0 0</translation>") + sheet("far", "0.01", false) +
+            "</KinBody>"}) {
+    MemoryFiles files = caterpillar_among(objects);
+    EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
+  }
+}
+
 TEST(Plausibility, ARobotBesideATurnedBoxIsNotInIt) {
   MemoryFiles files = caterpillar_files();
   // A corner of the box points at the robot; the bounds of the box along the axes of the world contain the robot.

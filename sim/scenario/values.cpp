@@ -75,6 +75,19 @@ std::size_t checked_choice(const XmlElement& element, const LocatedText& located
   return static_cast<std::size_t>(found - words.begin());
 }
 
+/// Whether a name has U+202A to U+202E or U+2066 to U+2069.
+bool turns_direction(std::string_view name) {
+  for (std::size_t i = 0; i + 2 < name.size(); ++i) {
+    const std::string_view start = name.substr(i, 2);
+    const auto last = static_cast<unsigned char>(name[i + 2]);
+    if ((start == "\xE2\x80" && last >= 0xAA && last <= 0xAE) ||
+        (start == "\xE2\x81" && last >= 0xA6 && last <= 0xA9)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void add_remark(std::vector<std::string>& remarks, const XmlElement& element, const std::string& what,
                 std::string_view reason) {
   remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": " + what +
@@ -166,6 +179,10 @@ std::string checked_name(const XmlElement& element, std::string name) {
   }
   if (one_line(name) != name) {
     element.refuse("control characters in the name " + in_quotes(name), "a name of one line");
+  }
+  if (turns_direction(name)) {
+    element.refuse("a character that turns the direction of text in the name " + in_quotes(name),
+                   "a name without it, which would exchange what is beside it in tables");
   }
   return name;
 }

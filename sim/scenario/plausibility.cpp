@@ -10,6 +10,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/robot/bounds.hpp"
 #include "sim/scenario/geometry_reader.hpp"
+#include "sim/scenario/surface_under.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -261,66 +262,6 @@ double usual_distance(const HeightField& field) {
   const double side = 2.0 * std::max(field.half_x, field.half_y);
   const double range = quantile(field.heights, 1.0 - few) - quantile(field.heights, few);
   return range > 0.0 ? std::clamp(ranges * range, side / 10.0, side / 2.0) : side / 2.0;
-}
-
-struct Surface {
-  double height = 0.0;  ///< m, in the world
-  bool faces_up = true;
-  const StaticObject* object = nullptr;
-};
-
-/// The higher one is first under a point. Of two at one height, as in a sheet with two sides, one that faces up.
-bool is_over(const Surface& surface, const std::optional<Surface>& other) {
-  constexpr double rounding = 1e-9;  // m
-  return !other || surface.height > other->height + rounding ||
-         (surface.height > other->height - rounding && surface.faces_up);
-}
-
-/// Where the vertical through a point meets a triangle; nothing if the triangle is beside it or vertical.
-std::optional<Surface> met_by_vertical(const std::array<Eigen::Vector3d, 3>& triangle, const Eigen::Vector3d& point,
-                                       const StaticObject& object) {
-  constexpr double vertical = 1e-6;  // part of the normal
-  const Eigen::Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).stableNormalized();
-  if (std::abs(normal.z()) < vertical) {
-    return std::nullopt;
-  }
-  for (std::size_t corner = 0; corner < triangle.size(); ++corner) {
-    const Eigen::Vector3d side = triangle[(corner + 1) % triangle.size()] - triangle[corner];
-    const Eigen::Vector3d to_point = point - triangle[corner];
-    if ((side.x() * to_point.y() - side.y() * to_point.x()) * normal.z() < 0.0) {
-      return std::nullopt;
-    }
-  }
-  const double above = normal.dot(point - triangle[0]) / normal.z();
-  return Surface{point.z() - above, normal.z() > 0.0, &object};
-}
-
-/// The first surface under a point. Shapes without a mesh count as the boxes around them.
-std::optional<Surface> surface_under(const Eigen::Vector3d& point, const EnvironmentModel& environment) {
-  std::optional<Surface> first;
-  const auto add = [&](const std::optional<Surface>& surface) {
-    if (surface && surface->height <= point.z() && is_over(*surface, first)) {
-      first = surface;
-    }
-  };
-  for (const StaticObject& object : environment.objects) {
-    for (const Geometry& geometry : object.geometries) {
-      const Bounds bounds = bounds_of(geometry, object.pose);
-      if (!contains_from_above(bounds, point)) {
-        continue;
-      }
-      if (!geometry.mesh) {
-        add(Surface{bounds.highest.z(), true, &object});
-        continue;
-      }
-      const Pose pose = object.pose * geometry.pose;
-      for (const auto& [a, b, c] : geometry.mesh->triangles) {
-        const std::vector<Eigen::Vector3d>& vertices = geometry.mesh->vertices;
-        add(met_by_vertical({pose * vertices[a], pose * vertices[b], pose * vertices[c]}, point, object));
-      }
-    }
-  }
-  return first;
 }
 
 }  // namespace

@@ -30,19 +30,18 @@ constexpr Range limits_in_radians{-6.2832, 6.2832, "rad"};
 constexpr Range planner_values{0.0, 1e9, ""};
 constexpr double min_axis = 1e-6;
 
-/// Raw value of a limit in degrees, from its text, so that floating point adds no rounding.
-std::int32_t kernel_limit(std::string_view degrees) {
-  const DecimalResult result = parse_decimal(degrees, Unit::degree);
-  if (result.error == DecimalError::none) {
-    return std::clamp(result.raw, -quarter_turn, quarter_turn);
-  }
-  return degrees.starts_with('-') ? -quarter_turn : quarter_turn;
-}
-
 std::int32_t kernel_limit(double radians) {
   const double raw = std::round(radians * (2.0 / std::numbers::pi) * quarter_turn);
   return static_cast<std::int32_t>(
       std::clamp(raw, -static_cast<double>(quarter_turn), static_cast<double>(quarter_turn)));
+}
+
+/// Raw value of a limit in degrees, from its text, so that floating point adds no rounding. A text with too many digits
+/// has that rounding.
+std::int32_t kernel_limit(std::string_view degrees, double radians) {
+  const DecimalResult result = parse_decimal(degrees, Unit::degree);
+  return result.error == DecimalError::none ? std::clamp(result.raw, -quarter_turn, quarter_turn)
+                                            : kernel_limit(radians);
 }
 
 void read_limits(const XmlElement& element, JointDescription& description) {
@@ -69,7 +68,7 @@ void read_limits(const XmlElement& element, JointDescription& description) {
     joint.lower_limit = numbers[0] * radians_per_degree;
     joint.upper_limit = numbers[1] * radians_per_degree;
     const std::string text = limits.text();
-    kernel = {kernel_limit(words(text)[0]), kernel_limit(words(text)[1])};
+    kernel = {kernel_limit(words(text)[0], joint.lower_limit), kernel_limit(words(text)[1], joint.upper_limit)};
   } else {
     joint.lower_limit = numbers[0];
     joint.upper_limit = numbers[1];

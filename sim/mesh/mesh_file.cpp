@@ -28,6 +28,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/mesh/import_process.hpp"
 #include "sim/mesh/mesh_checks.hpp"
+#include "sim/mesh/mesh_text.hpp"
 
 namespace Assimp {
 
@@ -45,6 +46,7 @@ namespace proleg::sim {
 namespace {
 
 constexpr std::array<std::string_view, 4> endings{".stl", ".obj", ".dae", ".off"};
+constexpr const char* format_hint = "a file without this error, of the format that its ending says";
 
 /// A file in memory, for reading.
 class MemoryStream final : public Assimp::IOStream {
@@ -100,8 +102,10 @@ class Files final : public Assimp::IOSystem {
     if (name == name_) {
       return bytes_;
     }
-    const auto known = companions_.find(name);
-    return known != companions_.end() ? known->second : companions_.emplace(name, companion_(name)).first->second;
+    if (const auto known = companions_.find(name); known != companions_.end()) {
+      return known->second;
+    }
+    return companions_.emplace(name, companion_(name)).first->second;
   }
 
   std::string name_;
@@ -208,6 +212,21 @@ bool reads_ending(Assimp::BaseImporter& importer, const std::string& ending) {
   return extensions.contains(ending.substr(1));
 }
 
+/// A node of a COLLADA file may name a mesh twice, which is one surface, and which Assimp's validation refuses.
+void leave_out_repetitions(aiNode& node) {
+  std::set<unsigned> known;
+  unsigned count = 0;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    if (known.insert(node.mMeshes[i]).second) {
+      node.mMeshes[count++] = node.mMeshes[i];
+    }
+  }
+  node.mNumMeshes = count;
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    leave_out_repetitions(*node.mChildren[i]);
+  }
+}
+
 [[noreturn]] void refuse(const std::string& name, const std::string& found) {
   throw MeshError(found + " in " + in_quotes(name), "a mesh of triangles");
 }
@@ -288,11 +307,12 @@ bool is_mesh_file_name(std::string_view name) {
   return std::ranges::find(endings, lower_case(std::filesystem::path(name).extension().string())) != endings.end();
 }
 
-TriangleMesh import_mesh(const std::string& name, const std::string& bytes, const MeshCompanion& companion) {
+TriangleMesh import_mesh(const std::string& name, const std::string& file_bytes, const MeshCompanion& companion) {
   const std::string ending = lower_case(std::filesystem::path(name).extension().string());
   if (!is_mesh_file_name(name)) {
     throw MeshError("a mesh file of another kind, " + in_quotes(name), std::string(mesh_file_endings));
   }
+  const std::string bytes = ending == ".stl" ? plain_stl(name, file_bytes) : plain_text(name, file_bytes);
   if (ending == ".dae") {
     check_collada_unit(name, bytes);
   } else if (ending == ".off") {
@@ -301,7 +321,17 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes, cons
   try {
     const ErrorLog log;
     Assimp::Importer importer;
-    importer.SetIOHandler(new Files(name, bytes, companion));
+    std::optional<MeshError> bad_companion;  // Assimp's importers go on without a file that cannot be opened
+    const MeshCompanion text_companion = [&](const std::string& path) -> std::optional<std::string> {
+      const std::optional<std::string> text = companion(path);
+      try {
+        return text ? std::optional(plain_text(std::filesystem::path(path).filename().string(), *text)) : std::nullopt;
+      } catch (const MeshError& error) {
+        bad_companion = error;
+        return std::nullopt;
+      }
+    };
+    importer.SetIOHandler(new Files(name, bytes, text_companion));
     std::vector<Assimp::BaseImporter*> others;
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
       if (Assimp::BaseImporter* const other = importer.GetImporter(i); !reads_ending(*other, ending)) {
@@ -317,16 +347,22 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes, cons
     // The validation comes before all other steps, which trust the numbers of a file.
     constexpr unsigned steps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                                aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
-    const aiScene* const scene = importer.ReadFile(name, steps);
+    if (const aiScene* const read = importer.ReadFile(name, 0); read != nullptr && read->mRootNode != nullptr) {
+      leave_out_repetitions(*read->mRootNode);
+    }
+    if (bad_companion) {
+      throw *bad_companion;
+    }
+    const aiScene* const scene = importer.GetScene() == nullptr ? nullptr : importer.ApplyPostProcessing(steps);
     if (scene == nullptr) {
       throw MeshError("a mesh that cannot be read, " + in_quotes(name) +
                           " (Assimp: " + one_line(shortened(importer.GetErrorString(), 200)) + ")",
-                      "a file of the format that its ending says");
+                      format_hint);
     }
     // Of a vertex that a face names and the file does not have, Assimp takes the last one.
     if (ending == ".off" && !log.first().empty()) {
       throw MeshError(in_quotes(name) + " with an error (Assimp: " + one_line(shortened(log.first(), 200)) + ")",
-                      "a file of the format that its ending says");
+                      format_hint);
     }
     return joined_meshes(*scene, name);
   } catch (const MeshError&) {
@@ -334,7 +370,7 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes, cons
   } catch (const std::exception& error) {
     throw MeshError(
         "a mesh that cannot be read, " + in_quotes(name) + " (Assimp: " + one_line(shortened(error.what(), 200)) + ")",
-        "a file of the format that its ending says");
+        format_hint);
   }
 }
 

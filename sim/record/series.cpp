@@ -171,18 +171,8 @@ class SeriesCollector {
     time_ = position("--x", "time_s");
     x_ = position("--x", request_.x);
     set_.x_name = request_.x;
-    for (const std::string& name : request_.names) {
-      bool is_known = false;
-      for (std::size_t i = 0; i < names.size(); ++i) {
-        const bool is_named = names[i] == name || names[i].starts_with(name + ".");
-        is_known = is_known || is_named;
-        if (is_named && std::ranges::find(columns_, i) == columns_.end()) {
-          columns_.push_back(i);
-        }
-      }
-      if (!is_known) {
-        refuse_name(std::string(series_option), name, names);
-      }
+    for (const std::string& list : request_.names) {
+      add_columns(list, names);
     }
     if (columns_.size() > max_series) {
       throw InputError("--series", 0, std::to_string(columns_.size()) + " columns",
@@ -191,6 +181,38 @@ class SeriesCollector {
     for (const std::size_t column : columns_) {
       set_.series.push_back({names[column], {}});
     }
+  }
+
+  void add_columns(const std::string& list, const std::vector<std::string>& names) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+      std::size_t end = list.size();
+      while (!add_column(trimmed(std::string_view(list).substr(begin, end - begin)), names)) {
+        const std::size_t comma = std::string_view(list).substr(begin, end - begin).rfind(',');
+        if (comma == std::string_view::npos) {
+          const std::string first(trimmed(std::string_view(list).substr(begin, end - begin)));
+          if (first.empty()) {
+            throw InputError(std::string(series_option), 0, in_quotes(list),
+                             "names of columns with commas between them");
+          }
+          refuse_name(std::string(series_option), first, names);
+        }
+        end = begin + comma;
+      }
+      begin = end + 1;
+    }
+  }
+
+  /// Adds the columns with this name. Returns whether there is one.
+  bool add_column(std::string_view name, const std::vector<std::string>& names) {
+    bool is_known = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const bool is_named = names[i] == name || names[i].starts_with(std::string(name) + ".");
+      is_known = is_known || is_named;
+      if (is_named && std::ranges::find(columns_, i) == columns_.end()) {
+        columns_.push_back(i);
+      }
+    }
+    return is_known;
   }
 
   [[nodiscard]] static double number_in(const std::vector<std::string_view>& cells, std::size_t column) {

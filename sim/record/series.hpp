@@ -17,7 +17,9 @@ namespace proleg::sim {
 using WriteTable = std::function<void(const std::function<void(std::string_view)>&)>;
 
 struct SeriesRequest {
-  /// Columns, or what comes before the dot of several: "angle_deg" means angle_deg.J1, angle_deg.J2 and so on.
+  /// Columns, or what comes before the dot of several: "angle_deg" means angle_deg.J1, angle_deg.J2 and so on. One text
+  /// may have several names with commas between them. The name of a column, which has that of a joint, may have commas:
+  /// the longest name that the table has counts.
   std::vector<std::string> names;
   std::string x = "time_s";
   TimeWindow window = {};  ///< by default the whole table

@@ -301,6 +301,9 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
   constexpr std::array<std::string_view, 3> tags{"physicsengine", "KinBody", "ruler"};
   root.allow(attributes, joined({tags, viewer_tags}));
 
+  if (root.attribute("type")) {
+    remark_no_effect_of("type", remarks, root, "only a plug-in of OpenRAVE reads it");
+  }
   EnvironmentModel environment;
   if (const auto physics = root.child("physicsengine")) {
     read_physics(*physics, environment, warnings);
@@ -315,6 +318,11 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
     KinBodyContents contents = read_kinbody(child, KinBodyUse::environment, sources, remarks);
     for (BodyEntry& body : contents.bodies) {
       Link& link = body.link;
+      for (const Geometry& geometry : link.geometries) {
+        if (geometry.heights) {
+          std::ranges::move(check_heights(*geometry.heights, body.origin), std::back_inserter(warnings));
+        }
+      }
       if (body.is_fixed) {
         environment.objects.push_back(
             {std::move(link.name), link.pose, std::move(link.geometries), std::move(link.looks)});

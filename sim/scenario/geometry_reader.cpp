@@ -82,14 +82,6 @@ void set_mesh(Geometry& geometry, Shape shape, std::shared_ptr<const TriangleMes
   geometry.extents = geometry.extents.cwiseMax(lengths.min);
 }
 
-bool read_open(const XmlElement& element) {
-  const std::string open = element.attribute("open").value_or("0");
-  if (open != "0" && open != "1") {
-    element.refuse("open " + in_quotes(open) + " in " + element.label(), "0 or 1");
-  }
-  return open == "1";
-}
-
 /// What is touched. A mesh of a file is also what is shown, with its colours; a <render> replaces it.
 void read_trimesh(const XmlElement& element, BodyKind kind, SourceSet& sources, std::vector<std::string>& remarks,
                   ReadGeometry& result) {
@@ -106,7 +98,13 @@ void read_trimesh(const XmlElement& element, BodyKind kind, SourceSet& sources, 
   }
   const Shape shape = kind == BodyKind::moving ? Shape::hull : Shape::surface;
   const MeshUse use = kind == BodyKind::moving ? MeshUse::hull : MeshUse::surface;
-  const bool is_open = read_open(element);
+  const bool is_open = element.attribute("open") && read_switch_attribute(element, "open");
+  if (is_open && kind == BodyKind::moving) {
+    remark_no_effect_of("open", remarks, element, "a body that moves touches with the convex hull of its mesh");
+  }
+  if (const auto triangles = element.child("triangles"); triangles && !vertices) {
+    triangles->refuse(triangles->label() + " without <vertices>", "both, or a file in <data>");
+  }
   if (vertices) {
     set_mesh(*result.solid, shape, read_mesh_of_text(element, use, is_open, remarks));
     return;
@@ -115,6 +113,24 @@ void read_trimesh(const XmlElement& element, BodyKind kind, SourceSet& sources, 
   set_mesh(*result.solid, shape, read_mesh_of_file(file, use, is_open, sources, remarks));
   if (shape == Shape::hull) {
     result.look = Look{{}, read_mesh_of_file(file, MeshUse::look, true, sources, remarks)};
+  }
+}
+
+/// Values for viewers that have no effect here are checked all the same.
+void check_visual_values(const XmlElement& element) {
+  for (const std::string_view tag : {"diffuseColor", "ambientColor"}) {
+    if (const auto colour = element.child(tag)) {
+      static_cast<void>(read_vector(*colour, colour_parts));
+    }
+  }
+  if (const auto transparency = element.child("transparency")) {
+    static_cast<void>(read_number(*transparency, colour_parts));
+  }
+  if (const auto visible = element.child("visible")) {
+    static_cast<void>(read_switch(*visible));
+  }
+  if (element.attribute("render")) {
+    static_cast<void>(read_switch_attribute(element, "render"));
   }
 }
 
@@ -133,14 +149,14 @@ void paint(const XmlElement& element, SourceSet& sources, ReadGeometry& result) 
 
 /// <render> is a mesh, or, as in the thesis's files, a switch of the viewer. A file of another kind, such as VRML, is
 /// not shown.
-bool is_mesh(const XmlElement& render, std::vector<std::string>& remarks) {
-  const std::string text = render.text();
-  const std::vector<std::string_view> parts = words(text);
-  if (parts.empty() || parts[0].find('.') == std::string_view::npos) {
-    return false;
-  }
-  if (is_mesh_file_name(parts[0])) {
+bool is_mesh(const XmlElement& render, SourceSet& sources, std::vector<std::string>& remarks) {
+  const std::string file = mesh_file_named_by(render, sources);
+  if (is_mesh_file_name(file)) {
     return true;
+  }
+  if (file.find('.') == std::string::npos) {
+    static_cast<void>(read_switch(render));
+    return false;
   }
   remark_no_effect(remarks, render,
                    "meshes that can be shown are files that end with " + std::string(mesh_file_endings));
@@ -265,11 +281,13 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
   ReadGeometry result;
   Geometry& geometry = result.solid.emplace();
   const std::string type = lower_case(element.required_attribute("type"));
-  const auto allow_tags = [&element](std::initializer_list<std::string_view> size_tags) {
-    constexpr std::array<std::string_view, 4> attributes{"type", "name", "render", "open"};
+  const auto allow_tags = [&element, &type](std::initializer_list<std::string_view> size_tags) {
+    constexpr std::array<std::string_view, 4> attributes{"type", "name", "render", "open"};  // a mesh may be open
+    const std::size_t count = attributes.size() - (type == "trimesh" ? 0 : 1);
     constexpr std::array<std::string_view, 2> friction{"friction", "frictionAcross"};
     const std::span<const std::string_view> sizes(size_tags.begin(), size_tags.size());
-    element.allow(attributes, joined({sizes, pose_tags, friction, visual_tags}));
+    element.allow(std::span(attributes).first(count), joined({sizes, pose_tags, friction, visual_tags}));
+    check_visual_values(element);
   };
   if (type == "box") {
     allow_tags({"extents"});
@@ -298,7 +316,7 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
                    "'box', 'sphere', 'cylinder', 'trimesh' or 'heightfield'");
   }
   const Pose pose = read_pose(element);
-  if (const auto render = element.child("render"); render && is_mesh(*render, remarks)) {
+  if (const auto render = element.child("render"); render && is_mesh(*render, sources, remarks)) {
     result.look = Look{pose, read_mesh_of_file(*render, MeshUse::look, true, sources, remarks)};
   }
   paint(element, sources, result);
@@ -308,6 +326,12 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
   if (!result.solid) {
     if (!result.look) {
       element.refuse("no mesh in " + element.label(), "<data>, <vertices> or <render>");
+    }
+    for (const std::string_view tag : {"friction", "frictionAcross"}) {
+      if (const auto child = element.child(tag)) {
+        static_cast<void>(read_number(*child, frictions));
+        remark_no_effect(remarks, *child, "a mesh that is only shown touches nothing");
+      }
     }
     return result;
   }

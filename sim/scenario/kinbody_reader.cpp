@@ -27,21 +27,21 @@ constexpr Range torques{1e-9, 1e6, "Nm"};
 constexpr Range speeds{1e-9, 1e6, "rad/s"};
 constexpr Range limits_in_degrees{-360.0, 360.0, "degrees"};
 constexpr Range limits_in_radians{-6.2832, 6.2832, "rad"};
+constexpr Range planner_values{0.0, 1e9, ""};
 constexpr double min_axis = 1e-6;
-
-/// Raw value of a limit in degrees, from its text, so that floating point adds no rounding.
-std::int32_t kernel_limit(std::string_view degrees) {
-  const DecimalResult result = parse_decimal(degrees, Unit::degree);
-  if (result.error == DecimalError::none) {
-    return std::clamp(result.raw, -quarter_turn, quarter_turn);
-  }
-  return degrees.starts_with('-') ? -quarter_turn : quarter_turn;
-}
 
 std::int32_t kernel_limit(double radians) {
   const double raw = std::round(radians * (2.0 / std::numbers::pi) * quarter_turn);
   return static_cast<std::int32_t>(
       std::clamp(raw, -static_cast<double>(quarter_turn), static_cast<double>(quarter_turn)));
+}
+
+/// Raw value of a limit in degrees, from its text, so that floating point adds no rounding. A text with too many digits
+/// has that rounding.
+std::int32_t kernel_limit(std::string_view degrees, double radians) {
+  const DecimalResult result = parse_decimal(degrees, Unit::degree);
+  return result.error == DecimalError::none ? std::clamp(result.raw, -quarter_turn, quarter_turn)
+                                            : kernel_limit(radians);
 }
 
 void read_limits(const XmlElement& element, JointDescription& description) {
@@ -68,11 +68,36 @@ void read_limits(const XmlElement& element, JointDescription& description) {
     joint.lower_limit = numbers[0] * radians_per_degree;
     joint.upper_limit = numbers[1] * radians_per_degree;
     const std::string text = limits.text();
-    kernel = {kernel_limit(words(text)[0]), kernel_limit(words(text)[1])};
+    kernel = {kernel_limit(words(text)[0], joint.lower_limit), kernel_limit(words(text)[1], joint.upper_limit)};
   } else {
     joint.lower_limit = numbers[0];
     joint.upper_limit = numbers[1];
     kernel = {kernel_limit(numbers[0]), kernel_limit(numbers[1])};
+  }
+}
+
+/// Refuses the kinds of joints of OpenRAVE that Proleg does not have.
+void check_switches(const XmlElement& element) {
+  if (element.attribute("enable") && !read_switch_attribute(element, "enable")) {
+    element.refuse("a passive joint, enable='false' in " + element.label(),
+                   "joints that a servo moves, without this attribute or with enable='true'; to fix two bodies to each "
+                   "other, write one <Body> with the geometries of both");
+  }
+  if (element.attribute("circular") && read_switch_attribute(element, "circular")) {
+    element.refuse("a joint that turns without end, circular='true' in " + element.label(),
+                   "joints with limits, without this attribute or with circular='false'");
+  }
+}
+
+/// Properties of a joint that only OpenRAVE's planners use. They have no effect.
+void check_planner_tags(const XmlElement& element, std::vector<std::string>& remarks) {
+  for (const auto& [tag, reason] : {std::pair("maxaccel", "a servo has limits of torque and speed only"),
+                                    std::pair("resolution", "no planner divides the angle into steps"),
+                                    std::pair("weight", "no planner weighs the joints")}) {
+    if (const auto child = element.child(tag)) {
+      static_cast<void>(read_number(*child, planner_values));
+      remark_no_effect(remarks, *child, reason);
+    }
   }
 }
 
@@ -88,6 +113,8 @@ JointDescription read_joint(const XmlElement& element, std::vector<std::string>&
   if (const std::string type = element.required_attribute("type"); lower_case(type) != "hinge") {
     element.refuse("type " + in_quotes(type) + " in " + element.label(), "'hinge'");
   }
+
+  check_switches(element);
 
   std::size_t bodies = 0;
   for (const XmlElement& child : element.children()) {
@@ -126,9 +153,7 @@ JointDescription read_joint(const XmlElement& element, std::vector<std::string>&
                                in_quotes(joint.name) +
                                " has limits beyond +-90 degrees; it moves within +-90 degrees"));
   }
-  if (const auto acceleration = element.child("maxaccel")) {
-    remark_no_effect(remarks, *acceleration, "a servo has limits of torque and speed only");
-  }
+  check_planner_tags(element, remarks);
   return description;
 }
 
@@ -167,6 +192,9 @@ class KinBodyReader {
       scope.prefix += checked_name(element, *prefix);
     }
     scope.pose = scope.pose * read_pose(element);
+    if (element.attribute("type")) {
+      remark_no_effect_of("type", *remarks_, element, "it chooses a plug-in of OpenRAVE; the type of a <Body> counts");
+    }
     if (const auto file = element.attribute("file")) {
       element.allow(attributes, pose_tags);
       const auto document = sources_->open(element, *file);
@@ -179,6 +207,9 @@ class KinBodyReader {
         use_ == KinBodyUse::robot ? std::span<const std::string_view>(robot_tags) : tags_of_environments;
     constexpr std::array<std::string_view, 1> visual_tags{"visible"};
     element.allow(attributes, joined({tags, pose_tags, extra_tags, visual_tags}));
+    if (const auto visible = element.child("visible")) {
+      static_cast<void>(read_switch(*visible));
+    }
     for (const XmlElement& child : element.children()) {
       if (child.is("KinBody")) {
         read(child, scope, {});

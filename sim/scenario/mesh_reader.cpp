@@ -21,6 +21,8 @@ constexpr double least_size = 0.001;   // m
 constexpr double most_of_link = 5.0;   // m
 constexpr double most_of_world = 1e3;  // m
 constexpr std::uint64_t most_columns = 1024;
+constexpr double no_height = -9999.0;  // as programs for maps write it; the other usual numbers are out of the range
+constexpr std::string_view height_hint = "; a file has heights alone: no header, and no number for an unknown height";
 
 /// The file and the scale that an element names.
 struct FileMention {
@@ -28,23 +30,28 @@ struct FileMention {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
 };
 
-FileMention read_mention(const XmlElement& element) {
+std::function<bool(const std::string& path)> file_test(const XmlElement& element, SourceSet& sources) {
+  return [&](const std::string& path) { return sources.has(element, path); };
+}
+
+FileMention read_mention(const XmlElement& element, SourceSet& sources) {
   const std::string text = element.text();
-  const std::vector<std::string_view> parts = words(text);
-  if (parts.empty() || parts.size() == 3 || parts.size() > 4) {
+  const auto [path, rest] = split_file_text(text, file_test(element, sources));
+  const std::vector<std::string_view> parts = words(rest);
+  if (path.empty() || parts.size() == 2 || parts.size() > 3) {
     element.refuse(in_quotes(text) + " in " + element.label(), "a file, or a file and 1 or 3 scales");
   }
-  FileMention mention{std::string(parts.front()), Eigen::Vector3d::Ones()};
-  for (std::size_t i = 1; i < parts.size(); ++i) {
+  FileMention mention{std::string(path), Eigen::Vector3d::Ones()};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::optional<double> scale = parse_number_in(parts[i], scales);
     if (!scale) {
       element.refuse("the scale " + in_quotes(parts[i]) + " in " + element.label(),
                      "a number from " + number_text(scales.min) + " to " + number_text(scales.max));
     }
-    if (parts.size() == 2) {
+    if (parts.size() == 1) {
       mention.scale.setConstant(*scale);
     } else {
-      mention.scale[static_cast<Eigen::Index>(i - 1)] = *scale;
+      mention.scale[static_cast<Eigen::Index>(i)] = *scale;
     }
   }
   return mention;
@@ -112,15 +119,16 @@ NumberText numbers_of_file(const XmlElement& data, SourceSet& sources) {
   return {std::string(without_byte_order_mark(bytes)), in_quotes(data.text()), true};
 }
 
+/// hint: what else a message says about the numbers that are expected.
 std::vector<double> all_numbers(const XmlElement& element, const NumberText& source, const Range& range,
-                                std::size_t most) {
+                                std::size_t most, std::string_view hint = "") {
   std::vector<double> numbers;
   for (const std::string_view word : words(source.text)) {
     const std::optional<double> number = parse_number_in(word, range);
     if (!number) {
-      element.refuse(
-          in_quotes(word) + " in " + source.place_of(word),
-          "numbers from " + number_text(range.min) + " to " + number_text(range.max) + ' ' + std::string(range.unit));
+      element.refuse(in_quotes(word) + " in " + source.place_of(word), "numbers from " + number_text(range.min) +
+                                                                           " to " + number_text(range.max) + ' ' +
+                                                                           std::string(range.unit) + std::string(hint));
     }
     if (numbers.size() == most) {
       element.refuse("more than " + std::to_string(most) + " numbers in " + source.name, "at most that");
@@ -132,9 +140,39 @@ std::vector<double> all_numbers(const XmlElement& element, const NumberText& sou
 
 }  // namespace
 
+FileText split_file_text(std::string_view text, const std::function<bool(const std::string& path)>& is_file) {
+  const std::vector<std::string_view> parts = words(text);
+  const bool is_quoted = text.starts_with('\'') || text.starts_with('"');
+  if (parts.size() < 2 && !is_quoted) {
+    return {text, {}};
+  }
+  const auto split_behind = [&](std::string_view word) -> FileText {
+    const auto size = static_cast<std::size_t>(word.data() + word.size() - text.data());
+    return {text.substr(0, size), text.substr(size)};
+  };
+  for (auto last = parts.rbegin(); last != parts.rend(); ++last) {
+    if (const FileText split = split_behind(*last); is_file(std::string(split.path))) {
+      return split;
+    }
+  }
+  if (const std::size_t end = is_quoted ? text.find(text.front(), 1) : text.npos; end != text.npos) {
+    return {text.substr(1, end - 1), text.substr(end + 1)};
+  }
+  std::size_t count = parts.size();
+  while (count > 1 && parts.size() - count < 3 && parse_number(parts[count - 1])) {
+    --count;
+  }
+  return split_behind(parts[count - 1]);
+}
+
+std::string mesh_file_named_by(const XmlElement& element, SourceSet& sources) {
+  const std::string text = element.text();
+  return std::string(split_file_text(text, file_test(element, sources)).path);
+}
+
 std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element, MeshUse use, bool is_open,
                                                       SourceSet& sources, std::vector<std::string>& remarks) {
-  const FileMention mention = read_mention(element);
+  const FileMention mention = read_mention(element, sources);
   const SourceSet::Bytes file = sources.find_bytes(element, mention.file);
   const std::string name = name_of(file.path);
   const std::string key = name + '\n' + exact_text(mention.scale.x()) + ' ' + exact_text(mention.scale.y()) + ' ' +
@@ -219,10 +257,15 @@ void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& 
   }
   const XmlElement& place = heights ? *heights : *data;
   const NumberText source = heights ? numbers_of(*heights) : numbers_of_file(*data, sources);
-  field.heights = all_numbers(place, source, coordinates, count);
+  field.heights = all_numbers(place, source, coordinates, count, height_hint);
   if (field.heights.size() != count) {
     place.refuse(std::to_string(field.heights.size()) + " heights in " + source.name,
                  std::to_string(count) + ", one for each column of each row");
+  }
+  if (const auto unknown = std::ranges::find(field.heights, no_height); unknown != field.heights.end()) {
+    const std::string_view word = words(source.text)[static_cast<std::size_t>(unknown - field.heights.begin())];
+    place.refuse(in_quotes(word) + " in " + source.place_of(word) + ", which stands for an unknown height",
+                 "a height at each place of the grid");
   }
   geometry.shape = Shape::height_field;
   geometry.mesh = std::make_shared<const TriangleMesh>(surface_of(field));

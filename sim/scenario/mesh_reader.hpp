@@ -2,9 +2,11 @@
 
 // Meshes and height fields of a <Geom>.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/robot/robot_model.hpp"
@@ -19,8 +21,22 @@ enum class MeshUse : std::uint8_t {
   look,     ///< for the eye
 };
 
-/// A mesh from a file: the text of the element is the path of the file, then nothing, a scale, or three of them for x,
-/// y and z.
+/// A text that names a file: its path, and what is behind it. Both are parts of the text.
+struct FileText {
+  std::string_view path;
+  std::string_view rest;
+};
+
+/// Splits the text of an element that names a mesh: a path, which may be in quotes, then nothing, a scale, or three of
+/// them for x, y and z. The path may have blanks: it is the longest beginning that is a file. Without such a file it is
+/// what is before the last numbers, at most three.
+[[nodiscard]] FileText split_file_text(std::string_view text,
+                                       const std::function<bool(const std::string& path)>& is_file);
+
+/// The path of the mesh that an element names.
+[[nodiscard]] std::string mesh_file_named_by(const XmlElement& element, SourceSet& sources);
+
+/// A mesh from the file that the element names.
 [[nodiscard]] std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element, MeshUse use,
                                                                     bool is_open, SourceSet& sources,
                                                                     std::vector<std::string>& remarks);

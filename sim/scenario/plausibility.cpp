@@ -10,6 +10,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/robot/bounds.hpp"
 #include "sim/scenario/geometry_reader.hpp"
+#include "sim/scenario/surface_under.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -231,6 +232,38 @@ double depth_of_sphere(const Geometry& sphere, const Pose& sphere_body, const Ge
   return sphere.extents.x() - distance;
 }
 
+/// The value that the share of the values is below.
+double quantile(std::vector<double> values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, place);
+  return *place;
+}
+
+/// The slope between half of the neighbours in the rows and columns of the grid is below this.
+double median_slope(const HeightField& field) {
+  const double along_x = 2.0 * field.half_x / static_cast<double>(field.columns - 1);
+  const double along_y = 2.0 * field.half_y / static_cast<double>(field.rows - 1);
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < field.heights.size(); ++i) {
+    if ((i + 1) % field.columns != 0) {
+      slopes.push_back(std::abs(field.heights[i + 1] - field.heights[i]) / along_x);
+    }
+    if (i + field.columns < field.heights.size()) {
+      slopes.push_back(std::abs(field.heights[i + field.columns] - field.heights[i]) / along_y);
+    }
+  }
+  return quantile(std::move(slopes), 0.5);
+}
+
+/// How far from the median a height may be. Most heights are within a range; 0 is that of a plane with obstacles.
+double usual_distance(const HeightField& field) {
+  constexpr double few = 0.05;
+  constexpr double ranges = 20.0;
+  const double side = 2.0 * std::max(field.half_x, field.half_y);
+  const double range = quantile(field.heights, 1.0 - few) - quantile(field.heights, few);
+  return range > 0.0 ? std::clamp(ranges * range, side / 10.0, side / 2.0) : side / 2.0;
+}
+
 }  // namespace
 
 std::vector<std::string> check_robot(const Chain& chain) { return RobotCheck(chain).run(); }
@@ -244,6 +277,30 @@ std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Ori
                             : gravity.z() > noticeable ? "points upwards"
                                                        : "points to the side";
   return {warning(origin, "gravity " + where + "; usually it is 0 0 -9.81")};
+}
+
+std::vector<std::string> check_heights(const HeightField& field, const Origin& origin) {
+  constexpr double max_slope = 5.0;  // 79 degrees
+  if (const double slope = median_slope(field); slope > max_slope) {
+    return {warning(origin, "heights whose neighbours differ by " + number_text(slope) +
+                                " times their distance, in the median; usually they are not in metres, or <extents> "
+                                "is wrong")};
+  }
+  const double median = quantile(field.heights, 0.5);
+  const double most = usual_distance(field);
+  const auto is_far = [&](double height) { return std::abs(height - median) > most; };
+  const auto first = std::ranges::find_if(field.heights, is_far);
+  if (first == field.heights.end()) {
+    return {};
+  }
+  const auto place = static_cast<std::size_t>(first - field.heights.begin());
+  const auto others = std::ranges::count_if(first + 1, field.heights.end(), is_far);
+  return {warning(origin, "the height " + number_text(*first) + " m in row " +
+                              std::to_string(place / field.columns + 1) + ", column " +
+                              std::to_string(place % field.columns + 1) +
+                              (others > 0 ? " (the first of " + std::to_string(others + 1) + ")" : "") +
+                              " is far from the median, " + number_text(median) +
+                              " m; usually such a number says that no height is known, or is not in metres")};
 }
 
 double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
@@ -291,6 +348,18 @@ std::vector<std::string> check_start(const std::vector<Link>& links, const Envir
       warnings.push_back(one_line(environment_file + ": body " + in_quotes(link.name) + " starts " +
                                   millimetres(deepest) + " inside " + in_quotes(obstacle->name) +
                                   "; usually the start position is wrong"));
+    }
+  }
+  std::vector<const StaticObject*> known;
+  for (const Link& link : links) {
+    const std::optional<Bounds> bounds = bounds_of(link.geometries, environment.robot_pose * link.pose);
+    const std::optional<Surface> ground =
+        bounds ? surface_under((bounds->lowest + bounds->highest) / 2.0, environment) : std::nullopt;
+    if (ground && !ground->faces_up && std::ranges::find(known, ground->object) == known.end()) {
+      known.push_back(ground->object);
+      warnings.push_back(one_line(environment_file + ": the triangles of " + in_quotes(ground->object->name) +
+                                  " face downwards under body " + in_quotes(link.name) +
+                                  ", and touch only from below; usually the mesh must be turned inside out"));
     }
   }
   return warnings;

@@ -1,8 +1,8 @@
 #pragma once
 
 // Finds what is valid in a scenario and probably not meant: a joint far from its links, links at the same place,
-// gravity that points upwards, a start inside a wall. Each warning is one line: file, line, what is there, and the
-// usual cause.
+// gravity that points upwards, heights in millimetres, a start inside a wall, ground that faces downwards. Each warning
+// is one line: file, line, what is there, and the usual cause.
 
 #include <string>
 #include <vector>
@@ -18,6 +18,9 @@ namespace proleg::sim {
 /// A warning on gravity (m/s^2) that does not hold a robot on the ground. origin: where it is given.
 [[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
 
+/// A warning on heights in another unit than the sides of their field, or far from all others. origin: of the body.
+[[nodiscard]] std::vector<std::string> check_heights(const HeightField& field, const Origin& origin);
+
 /// A robot that lies on the ground may be in it by this, in m.
 inline constexpr double largest_start_depth = 0.003;
 
@@ -31,7 +34,8 @@ inline constexpr double largest_start_depth = 0.003;
 [[nodiscard]] double overlap_depth(const std::vector<Geometry>& left, const Pose& left_body, const Geometry& right,
                                    const Pose& right_body);
 
-/// Warnings on links that start inside an object. environment_file: the file that gives the start pose.
+/// Warnings on links that start inside an object, and on surfaces under links that face downwards: a mesh touches only
+/// what is on the side that its triangles face. environment_file: the file that gives the start pose.
 [[nodiscard]] std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
                                                    const std::string& environment_file);
 

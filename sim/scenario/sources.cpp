@@ -136,6 +136,19 @@ std::unique_ptr<XmlDocument> SourceSet::open_top() {
   return std::make_unique<XmlDocument>(top_, *text, nullptr);
 }
 
+std::array<std::filesystem::path, 2> SourceSet::paths_of(const XmlElement& mention,
+                                                         const std::string& reference) const {
+  return {mention.document().path().parent_path() / reference, top_.parent_path() / reference};
+}
+
+bool SourceSet::has(const XmlElement& mention, const std::string& reference) {
+  const auto is_file = [&](const std::filesystem::path& path) {
+    return recorded_.contains(name_of(path)) || files_->read(path).has_value();
+  };
+  return !reference.empty() && reference.size() <= max_path_size &&
+         std::ranges::any_of(paths_of(mention, reference), is_file);
+}
+
 SourceSet::Found SourceSet::find(const XmlElement& mention, const std::string& reference, Contents contents) {
   if (reference.empty() || reference.size() > max_path_size) {
     mention.refuse(
@@ -143,8 +156,7 @@ SourceSet::Found SourceSet::find(const XmlElement& mention, const std::string& r
         "a path of 1 to " + std::to_string(max_path_size) + " characters");
   }
   std::optional<std::string> instead;
-  for (const std::filesystem::path& base : {mention.document().path(), top_}) {
-    std::filesystem::path path = base.parent_path() / reference;
+  for (std::filesystem::path& path : paths_of(mention, reference)) {
     if (const std::string* const text = text_of(path, contents)) {
       return {std::move(path), text};
     }

@@ -86,6 +86,8 @@ class SourceSet {
     const std::string* source;  ///< valid until another file is read; bytes_of_source() gives its bytes
   };
   [[nodiscard]] Bytes find_bytes(const XmlElement& mention, const std::string& reference);
+  /// Whether find_bytes() would find a file.
+  [[nodiscard]] bool has(const XmlElement& mention, const std::string& reference);
   /// A file of any bytes beside another, for the element `mention`; nothing if it is not there. Counts as in
   /// find_bytes().
   [[nodiscard]] std::optional<std::string> companion(const XmlElement& mention, const std::filesystem::path& path);
@@ -106,6 +108,9 @@ class SourceSet {
 
   enum class Contents { xml, any };
 
+  /// Where a file may be that an element names.
+  [[nodiscard]] std::array<std::filesystem::path, 2> paths_of(const XmlElement& mention,
+                                                              const std::string& reference) const;
   [[nodiscard]] const std::string* text_of(const std::filesystem::path& path, Contents contents);
   [[nodiscard]] Found find(const XmlElement& mention, const std::string& reference, Contents contents);
   void count_bytes(const XmlElement& mention, std::size_t bytes);

@@ -15,6 +15,8 @@ namespace {
 
 constexpr Range angles{-1e4, 1e4, "degrees"};
 constexpr double min_direction = 1e-6;
+constexpr std::array<std::string_view, 4> switch_words{"true", "1", "false", "0"};
+constexpr std::size_t count_of_true = 2;  ///< of these words
 
 std::string described(const Range& range) {
   return number_text(range.min) + " to " + number_text(range.max) +
@@ -52,7 +54,8 @@ double checked_number(const XmlElement& element, std::string_view word, const Ra
 
 std::uint64_t checked_whole(const XmlElement& element, const LocatedText& located, std::uint64_t min,
                             std::uint64_t max) {
-  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(located.text);
+  const std::string_view unsigned_text = std::string_view(located.text).substr(located.text.starts_with('+') ? 1 : 0);
+  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(unsigned_text);
   if (!value || *value < min || *value > max) {
     element.refuse(located.in_message, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   }
@@ -70,6 +73,25 @@ std::size_t checked_choice(const XmlElement& element, const LocatedText& located
     element.refuse(located.in_message, known);
   }
   return static_cast<std::size_t>(found - words.begin());
+}
+
+/// Whether a name has U+202A to U+202E or U+2066 to U+2069.
+bool turns_direction(std::string_view name) {
+  for (std::size_t i = 0; i + 2 < name.size(); ++i) {
+    const std::string_view start = name.substr(i, 2);
+    const auto last = static_cast<unsigned char>(name[i + 2]);
+    if ((start == "\xE2\x80" && last >= 0xAA && last <= 0xAE) ||
+        (start == "\xE2\x81" && last >= 0xA6 && last <= 0xA9)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void add_remark(std::vector<std::string>& remarks, const XmlElement& element, const std::string& what,
+                std::string_view reason) {
+  remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": " + what +
+                             " has no effect: " + std::string(reason)));
 }
 
 }  // namespace
@@ -104,6 +126,14 @@ std::size_t read_choice(const XmlElement& element, std::initializer_list<std::st
 std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
                                   std::initializer_list<std::string_view> words) {
   return checked_choice(element, attribute_of(element, attribute), std::span(words.begin(), words.size()));
+}
+
+bool read_switch(const XmlElement& element) {
+  return checked_choice(element, text_of(element), switch_words) < count_of_true;
+}
+
+bool read_switch_attribute(const XmlElement& element, std::string_view attribute) {
+  return checked_choice(element, attribute_of(element, attribute), switch_words) < count_of_true;
 }
 
 double read_quantity(const XmlElement& element, const Range& range) {
@@ -150,6 +180,10 @@ std::string checked_name(const XmlElement& element, std::string name) {
   if (one_line(name) != name) {
     element.refuse("control characters in the name " + in_quotes(name), "a name of one line");
   }
+  if (turns_direction(name)) {
+    element.refuse("a character that turns the direction of text in the name " + in_quotes(name),
+                   "a name without it, which would exchange what is beside it in tables");
+  }
   return name;
 }
 
@@ -188,8 +222,12 @@ std::vector<std::string_view> joined(std::initializer_list<std::span<const std::
 }
 
 void remark_no_effect(std::vector<std::string>& remarks, const XmlElement& element, std::string_view reason) {
-  remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": " + element.label() +
-                             " has no effect: " + std::string(reason)));
+  add_remark(remarks, element, element.label(), reason);
+}
+
+void remark_no_effect_of(std::string_view attribute, std::vector<std::string>& remarks, const XmlElement& element,
+                         std::string_view reason) {
+  add_remark(remarks, element, "attribute '" + std::string(attribute) + "' in " + element.label(), reason);
 }
 
 }  // namespace proleg::sim

@@ -61,6 +61,10 @@ inline constexpr Range turns{-360.0, 360.0, "degrees"};
 [[nodiscard]] std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
                                                 std::initializer_list<std::string_view> words);
 
+/// Whether the element's only word, or an attribute, is "true" or "1"; the other words are "false" and "0".
+[[nodiscard]] bool read_switch(const XmlElement& element);
+[[nodiscard]] bool read_switch_attribute(const XmlElement& element, std::string_view attribute);
+
 /// `count` numbers.
 [[nodiscard]] std::vector<double> read_numbers(const XmlElement& element, std::size_t count, const Range& range);
 
@@ -82,5 +86,9 @@ inline constexpr std::array<std::string_view, 3> pose_tags{"translation", "rotat
 
 /// Adds the remark that an element is accepted but has no effect.
 void remark_no_effect(std::vector<std::string>& remarks, const XmlElement& element, std::string_view reason);
+
+/// Adds the remark that an attribute is accepted but has no effect.
+void remark_no_effect_of(std::string_view attribute, std::vector<std::string>& remarks, const XmlElement& element,
+                         std::string_view reason);
 
 }  // namespace proleg::sim

@@ -20,6 +20,7 @@
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/svg.hpp"
+#include "sim/scenario/mesh_reader.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/sources.hpp"
@@ -96,10 +97,10 @@ bool names_file_in_text(const tinyxml2::XMLElement& element) {
   return name == "data" || name == "collision" || name == "render";
 }
 
-/// Calls use(reference, replace) for each file that a document names: in an attribute `file`, or as the first word of
-/// the text of mesh and height elements. replace(text) writes another reference in its place.
+/// Calls use(reference, replace) for each file that a document names: in an attribute `file`, or in the text of mesh
+/// and height elements. replace(text) writes another reference in its place. path: of the document.
 template <typename Use>
-void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
+void for_each_include(const Sources& sources, const fs::path& path, tinyxml2::XMLElement* element, const Use& use) {
   for (; element != nullptr; element = element->NextSiblingElement()) {
     for (const auto* attribute = element->FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
       if (lower_case(attribute->Name()) == "file") {
@@ -109,11 +110,12 @@ void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
     }
     if (names_file_in_text(*element) && element->GetText() != nullptr) {
       const std::string text(trimmed(element->GetText()));
-      const std::string reference = text.substr(0, text.find_first_of(" \t\r\n"));
-      use(reference,
-          [&](const std::string& other) { element->SetText((other + text.substr(reference.size())).c_str()); });
+      const auto is_file = [&](const std::string& reference) { return !sources.find(path, reference).empty(); };
+      const sim::FileText split = sim::split_file_text(text, is_file);
+      use(std::string(split.path),
+          [&](const std::string& other) { element->SetText((other + std::string(split.rest)).c_str()); });
     }
-    for_each_include(element->FirstChildElement(), use);
+    for_each_include(sources, path, element->FirstChildElement(), use);
   }
 }
 
@@ -128,7 +130,7 @@ void add_with_includes(const Sources& sources, const fs::path& path, std::set<fs
   tinyxml2::XMLDocument document;
   const std::string& text = sources.text(path);
   document.Parse(text.data(), text.size());
-  for_each_include(document.RootElement(), [&](const std::string& reference, const auto& /*replace*/) {
+  for_each_include(sources, path, document.RootElement(), [&](const std::string& reference, const auto& /*replace*/) {
     add_with_includes(sources, sources.find(path, reference), files);
   });
 }
@@ -181,7 +183,7 @@ std::string text_to_write(const Sources& sources, const fs::path& path, std::str
     return sim::bytes_of_source(text);  // the file is a mesh or heights
   }
   bool changed = !engine.empty() && set_engine(*document.RootElement(), engine);
-  for_each_include(document.RootElement(), [&](const std::string& reference, const auto& replace) {
+  for_each_include(sources, path, document.RootElement(), [&](const std::string& reference, const auto& replace) {
     const fs::path target = sources.find(path, reference);
     const std::string wanted = target.lexically_relative(path.parent_path()).string();
     if (!target.empty() && reference != wanted) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -137,6 +138,50 @@ TEST(MeshFile, ColoursOfMaterialsAreKept) {
   }
   EXPECT_EQ(red, 8U);
   EXPECT_EQ(blue, 4U);
+}
+
+TEST(MeshFile, AByteOrderMarkIsNoPartOfAFile) {
+  const std::string mark = "\xEF\xBB\xBF";
+  expect_box(read("box.off", mark + box_off));
+  expect_box(read("box.stl", mark + ascii_stl(box_mesh({0.1, 0.2, 0.3}))));
+  const std::string without_head = std::string(box_obj).substr(std::string(box_obj).find("v "));
+  expect_box(read("box.obj", mark + without_head));
+  expect_box(read("box.obj", mark + "v 9 9 9\n" + without_head.substr(0, without_head.find('f')) +
+                                 "f 2 3 5 4\nf 6 8 9 7\nf 2 6 7 3\nf 4 5 9 8\nf 2 4 8 6\nf 3 7 9 5\n"));
+  EXPECT_NEAR(solid_of(read("t.dae", mark + collada("0.01", "Z_UP"))).volume, 1e-6, 1e-12);
+  const TriangleMesh mesh =
+      read("box.obj", mark + box_obj, {{"box.mtl", mark + "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 1 0 0\n"}});
+  ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
+  for (const Eigen::Vector3f& colour : mesh.colours) {
+    EXPECT_EQ(colour, Eigen::Vector3f(1, 0, 0));
+  }
+}
+
+TEST(MeshFile, MaterialsInUtf16AreRefusedByTheirName) {
+  try {
+    static_cast<void>(read("box.obj", box_obj, {{"box.mtl", std::string("\xFF\xFEn\0e\0w\0", 8)}}));
+    ADD_FAILURE() << "no error";
+  } catch (const MeshError& error) {
+    EXPECT_EQ(error.found, "text in UTF-16, 'box.mtl'");
+  }
+}
+
+TEST(MeshFile, StlFilesOfOtherProgramsAreRead) {
+  const TriangleMesh box = box_mesh({0.1, 0.2, 0.3});
+  std::string capitals = ascii_stl(box);
+  std::ranges::transform(capitals, capitals.begin(), [](char c) { return c >= 'a' && c <= 'z' ? char(c - 32) : c; });
+  expect_box(read("box.stl", capitals));
+  expect_box(read("box.stl", "solid 4\nendsolid\n" + ascii_stl(box)));
+  expect_box(read("box.stl", "\n" + ascii_stl(box) + "solid 4\nendsolid\n"));
+  expect_box(read("box.stl", binary_stl(box) + "\r\n\r\n"));
+}
+
+TEST(MeshFile, AMeshThatANodeOfAColladaFileNamesTwiceIsOne) {
+  std::string text = collada("0.01", "Z_UP");
+  const std::size_t begin = text.find("<instance_geometry");
+  const std::string end = "</instance_geometry>";
+  text.insert(begin, text.substr(begin, text.find(end) + end.size() - begin));
+  EXPECT_NEAR(solid_of(read("t.dae", text)).volume, 1e-6, 1e-12);
 }
 
 TEST(MeshFile, ANegativeVertexOfAnOffFileIsRefused) {

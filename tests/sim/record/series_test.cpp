@@ -55,6 +55,23 @@ TEST(Series, TheNameBeforeTheDotMeansAllItsColumnsOnce) {
             (std::vector<std::string>{"angle_deg.J2", "angle_deg.J1"}));
 }
 
+TEST(Series, ANameMayHaveCommasAndAListSeparatesNamesByThem) {
+  const WriteTable table = table_with("angle_deg.J,1\tangle_deg.J\tangle_deg.J,1,2\tx_m.Head", 3,
+                                      [](std::uint32_t /*row*/) { return "1\t2\t3\t4"; });
+  const auto columns = [&](const std::string& list) { return names_of(collect_series(table, {{list}})); };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(columns("angle_deg.J,1"), (Names{"angle_deg.J,1"}));
+  EXPECT_EQ(columns("angle_deg.J, x_m.Head"), (Names{"angle_deg.J", "x_m.Head"}));
+  EXPECT_EQ(columns("x_m,angle_deg.J,1,2,angle_deg.J,1"), (Names{"x_m.Head", "angle_deg.J,1,2", "angle_deg.J,1"}));
+  for (const auto& [list, found] : {std::pair("angle_deg.J,2", "'2'"), std::pair("x_m,", "'x_m,'"), std::pair("", "''"),
+                                    std::pair("y_m,angle_deg.J,1", "'y_m'")}) {
+    EXPECT_NE(
+        message_of<InputError>([&, text = list] { columns(text); }).find(std::string("found ") + found + ", expected "),
+        std::string::npos)
+        << list;
+  }
+}
+
 TEST(Series, AnEmptyCellIsNotANumber) {
   const SeriesSet set = collect_series(small_table(), {{"angle_deg.J2"}});
   EXPECT_EQ(set.series[0].points[1].y, -1e3);

@@ -35,6 +35,16 @@ class MemoryFiles final : public FileSource {
   [[nodiscard]] Scenario scenario() { return read_scenario("top.xml", *this); }
 };
 
+/// The message with which the reader refuses a scenario; "nothing" if it does not.
+[[nodiscard]] inline std::string refusal(MemoryFiles files) {
+  try {
+    static_cast<void>(files.scenario());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
 /// A small scenario that is valid: links Tail, Middle and Head along y, joints J1 (tail) and J2 of different axes.
 [[nodiscard]] inline MemoryFiles small_scenario() {
   MemoryFiles files;

@@ -33,19 +33,12 @@ std::string body(const std::string& type, const std::string& contents) {
   return "<KinBody name=\"thing\"><Body type=\"" + type + "\">" + contents + "</Body></KinBody>";
 }
 
-std::string refusal(MemoryFiles files) {
-  try {
-    static_cast<void>(files.scenario());
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    EXPECT_EQ(text.find('\n'), std::string::npos);
-    EXPECT_NE(text.find(", expected "), std::string::npos) << text;
-    return text;
-  }
-  return "nothing";
+void expect_refused(const MemoryFiles& files, const std::string& part) {
+  const std::string text = refusal(files);
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_NE(text.find(", expected "), std::string::npos) << text;
 }
-
-#define EXPECT_REFUSED(files, part) EXPECT_NE(refusal(files).find(part), std::string::npos) << refusal(files)
 
 const Geometry& head_solid(const Scenario& scenario) { return scenario.robot.links.front().geometries.at(0); }
 
@@ -64,6 +57,32 @@ TEST(MeshScenario, AMeshOfALinkBecomesItsHullAndIsShownAsItIs) {
 TEST(MeshScenario, AScaleOfThreeNumbersIsForEachAxis) {
   const Scenario scenario = with_head("<Geom type=\"trimesh\"><data>box.off 0.1 0.2 0.3</data></Geom>").scenario();
   EXPECT_TRUE(head_solid(scenario).extents.isApprox(Eigen::Vector3d(0.01, 0.04, 0.09), 1e-6));
+}
+
+TEST(MeshScenario, ThePathOfAMeshMayHaveBlanks) {
+  const auto has_size = [](const std::string& text, const std::string& name, const Eigen::Vector3d& size) {
+    MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>" + text + "</data></Geom>");
+    files.texts[name] = box_off;
+    return head_solid(files.scenario()).extents.isApprox(size, 1e-6);
+  };
+  const Eigen::Vector3d half(0.1, 0.2, 0.3);
+  EXPECT_TRUE(has_size("my body.off", "my body.off", half));
+  EXPECT_TRUE(has_size("my body.off 2", "my body.off", 2.0 * half));
+  EXPECT_TRUE(has_size(" my  2 body.off\n1 2 +3 ", "my  2 body.off", {0.1, 0.4, 0.9}));
+  EXPECT_TRUE(has_size("sub dir/b.off 2", "sub dir/b.off", 2.0 * half));
+  EXPECT_TRUE(has_size("\"sub dir/b.off\" 2", "sub dir/b.off", 2.0 * half));
+  EXPECT_TRUE(has_size("'box.off'", "box.off", half));
+  EXPECT_TRUE(has_size("box.off 2.off 3", "box.off 2.off", 3.0 * half)) << "the longest beginning that is a file";
+}
+
+TEST(MeshScenario, ARenderedPathMayHaveBlanks) {
+  MemoryFiles files = with_head("<Geom type=\"sphere\"><radius>0.03</radius><render>my body.off 0.1</render></Geom>");
+  files.texts["my body.off"] = box_off;
+  EXPECT_EQ(files.scenario().robot.links.front().looks.size(), 1U);
+  files.texts.erase("my body.off");
+  expect_refused(files, "no such file 'my body.off'");
+  expect_refused(with_head("<Geom type=\"sphere\"><radius>0.03</radius><render>banana</render></Geom>"),
+                 "'banana' in <render>, expected 'true', '1', 'false' or '0'");
 }
 
 TEST(MeshScenario, ARenderedMeshReplacesWhatIsShownAndNotWhatTouches) {
@@ -141,7 +160,7 @@ TEST(MeshScenario, MaterialsAreRecordedAndCountTowardsTheSizeOfAScenario) {
   EXPECT_EQ(refusal(files), "nothing");
   files.texts["a.obj"].insert(0, "mtllib a.mtl\n");
   files.texts["a.mtl"].append(100'000, '\n');
-  EXPECT_REFUSED(files, "more than 1000 included files or 64 MiB");
+  expect_refused(files, "more than 1000 included files or 64 MiB");
 }
 
 TEST(MeshScenario, AStaticMeshStaysAsItIs) {
@@ -201,16 +220,47 @@ TEST(MeshScenario, HeightsMayBeInAFile) {
   EXPECT_EQ(files.scenario().environment.objects.back().geometries.at(0).heights->heights,
             (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
   files.texts["heights.txt"] = "0.1 0.2 0.3";
-  EXPECT_REFUSED(files, "3 heights in 'heights.txt', expected 4, one for each column of each row");
+  expect_refused(files, "3 heights in 'heights.txt', expected 4, one for each column of each row");
   files.texts["heights.txt"] = "0.1 0.2\n0.3 x\n";
-  EXPECT_REFUSED(files, "'x' in line 2 of 'heights.txt', expected numbers");
+  expect_refused(files, "'x' in line 2 of 'heights.txt', expected numbers");
   files.texts["heights.txt"] = "0.1 0.2\n0.3 0.4\n0.5 0.6\n";
-  EXPECT_REFUSED(files, "more than 4 numbers in 'heights.txt'");
+  expect_refused(files, "more than 4 numbers in 'heights.txt'");
   files.texts["heights.txt"] =
       "\xEF\xBB\xBF"
       "0.1 0.2\r\n0.3 0.4\r\n";  // as Notepad writes it
   EXPECT_EQ(files.scenario().environment.objects.back().geometries.at(0).heights->heights,
             (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
+}
+
+TEST(MeshScenario, NumbersForUnknownHeightsAreNoHeights) {
+  MemoryFiles files = with_objects(body("static",
+                                        "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns>"
+                                        "<rows>2</rows><data>dem.asc</data></Geom>"));
+  // As GDAL, GRASS and ArcGIS write them: for whole numbers of 16 and 32 bits, and for floating point.
+  for (const std::string unknown : {"-9999", "-9999.0", "-9.999e3", "-32768", "-32767", "-2147483648", "1e20", "-99999",
+                                    "-3.4028235e+38", "3.40282e38", "nan", "NaN", "*"}) {
+    files.texts["dem.asc"] = "0.1 0.2\n0.3 " + unknown + "\n";
+    expect_refused(files, "found '" + unknown + "' in line 2 of 'dem.asc'");
+    expect_refused(files, "height");
+  }
+  files.texts["dem.asc"] = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 2\n3 4\n";
+  expect_refused(files,
+                 "found 'ncols' in line 1 of 'dem.asc', expected numbers from -10000 to 10000 m; a file has heights");
+  expect_refused(with_objects(body("static",
+                                   "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns>"
+                                   "<rows>2</rows><heights>0 0 -9999 0</heights></Geom>")),
+                 "found '-9999' in <heights>, which stands for an unknown height");
+}
+
+TEST(MeshScenario, NumbersMayHaveAPlus) {
+  const Scenario scenario = with_objects(body("static",
+                                              "<translation>+1 +2.5 +0</translation>"
+                                              "<Geom type=\"heightfield\"><extents>+1 +1</extents><columns>+2</columns>"
+                                              "<rows>+2</rows><heights>+0.1 -0.2 +3e-1 +0</heights></Geom>"))
+                                .scenario();
+  EXPECT_EQ(scenario.environment.objects.back().pose.position, Eigen::Vector3d(1, 2.5, 0));
+  EXPECT_EQ(scenario.environment.objects.back().geometries.at(0).heights->heights,
+            (std::vector<double>{0.1, -0.2, 0.3, 0.0}));
 }
 
 TEST(MeshScenario, ABodyThatMovesHasItsPoseMassAndShape) {
@@ -242,45 +292,52 @@ TEST(MeshScenario, BadMeshesAreRefusedWithFileAndLine) {
   const auto of_world = [](const std::string& text) {
     return with_objects(body("static", "<Geom type=\"trimesh\">" + text + "</Geom>"));
   };
-  EXPECT_REFUSED(of_link("<data>missing.stl</data>"), "robot.xml:");
-  EXPECT_REFUSED(of_link("<data>missing.stl</data>"), "no such file 'missing.stl'");
-  EXPECT_REFUSED(of_link("<data>box.off 100</data>"), "a mesh of 20 x 40 x 60 m");
-  EXPECT_REFUSED(of_link("<data>box.off 100</data>"), "needs the scale 0.001");
-  EXPECT_REFUSED(of_link("<data>box.off 0.0001</data>"), "needs the scale 1000");
-  EXPECT_REFUSED(of_link("<data>box.off 1 2</data>"), "a file and 1 or 3 scales");
-  EXPECT_REFUSED(of_link("<data>box.off -1</data>"), "the scale '-1'");
-  EXPECT_REFUSED(of_link("<data>box.off</data><collision>box.off</collision>"), "more than one of");
-  EXPECT_REFUSED(of_link(""), "no mesh in <Geom>");
-  EXPECT_REFUSED(of_link("<vertices>0 0 0 1 0 0 0 1 0</vertices>"), "a flat mesh");
-  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices>"), "a mesh with holes: 3 of 3 edges");
-  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 2 0 0</vertices>"), "without area");
-  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0</vertices>"), "5 numbers");
-  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 nan</vertices>"), "'nan'");
-  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1 3</triangles>"), "'3' in <triangles>");
-  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1</triangles>"), "2 corners");
+  expect_refused(of_link("<data>missing.stl</data>"), "robot.xml:");
+  expect_refused(of_link("<data>missing.stl</data>"), "no such file 'missing.stl'");
+  expect_refused(of_link("<data>my missing.stl 1 2 3</data>"), "no such file 'my missing.stl'");
+  expect_refused(of_link("<data>box.off 1 2 3 4</data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>box.off x</data>"), "the scale 'x'");
+  expect_refused(of_link("<data></data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>\"\"</data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>\"box.off</data>"), "no such file '\"box.off'");
+  expect_refused(of_link("<data>box.off 100</data>"), "a mesh of 20 x 40 x 60 m");
+  expect_refused(of_link("<data>box.off 100</data>"), "needs the scale 0.001");
+  expect_refused(of_link("<data>box.off 0.0001</data>"), "needs the scale 1000");
+  expect_refused(of_link("<data>box.off 1 2</data>"), "a file and 1 or 3 scales");
+  expect_refused(of_link("<data>box.off -1</data>"), "the scale '-1'");
+  expect_refused(of_link("<data>box.off</data><collision>box.off</collision>"), "more than one of");
+  expect_refused(of_link("<data>box.off</data><triangles>0 1 2</triangles>"), "<triangles> without <vertices>");
+  expect_refused(of_link(""), "no mesh in <Geom>");
+  expect_refused(of_link("<vertices>0 0 0 1 0 0 0 1 0</vertices>"), "a flat mesh");
+  expect_refused(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices>"), "a mesh with holes: 3 of 3 edges");
+  expect_refused(of_world("<vertices>0 0 0 1 0 0 2 0 0</vertices>"), "without area");
+  expect_refused(of_world("<vertices>0 0 0 1 0</vertices>"), "5 numbers");
+  expect_refused(of_world("<vertices>0 0 0 1 0 0 0 1 nan</vertices>"), "'nan'");
+  expect_refused(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1 3</triangles>"), "'3' in <triangles>");
+  expect_refused(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1</triangles>"), "2 corners");
 }
 
 TEST(MeshScenario, ADamagedFileIsRefused) {
   MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>box.off</data></Geom>");
   files.texts["box.off"] = "OFF\n8 6 0\n0 0";
-  EXPECT_REFUSED(files, "'box.off'");
+  expect_refused(files, "'box.off'");
 }
 
 TEST(MeshScenario, BadBodiesAndRulersAreRefused) {
   const std::string ball = "<Geom type=\"sphere\"><radius>0.1</radius></Geom>";
   const std::string mass = "<Mass type=\"mimicgeom\"><total>1</total></Mass>";
-  EXPECT_REFUSED(with_objects(body("dynamic", ball)), "<Mass>");
-  EXPECT_REFUSED(with_objects(body("dynamic", "<Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass>")),
+  expect_refused(with_objects(body("dynamic", ball)), "<Mass>");
+  expect_refused(with_objects(body("dynamic", "<Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass>")),
                  "without a <Geom>");
-  EXPECT_REFUSED(with_objects(body("loose", ball + mass)), "'static' for an object that stays");
-  EXPECT_REFUSED(with_objects("<KinBody name=\"a\"><Body>" + ball + "</Body></KinBody>"), "no type in <Body>");
-  EXPECT_REFUSED(with_objects(body("dynamic",
+  expect_refused(with_objects(body("loose", ball + mass)), "'static' for an object that stays");
+  expect_refused(with_objects("<KinBody name=\"a\"><Body>" + ball + "</Body></KinBody>"), "no type in <Body>");
+  expect_refused(with_objects(body("dynamic",
                                    "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns><rows>2"
                                    "</rows><heights>0 0 0 0</heights></Geom>" +
                                        mass)),
                  "a height field in a body that moves");
-  EXPECT_REFUSED(with_objects("<ruler><from>0 0 0</from><to>0 0 0</to></ruler>"), "a ruler of 0 m");
-  EXPECT_REFUSED(with_objects("<ruler><from>0 0 0</from><to>0 9 0</to><division>0.001</division></ruler>"),
+  expect_refused(with_objects("<ruler><from>0 0 0</from><to>0 0 0</to></ruler>"), "a ruler of 0 m");
+  expect_refused(with_objects("<ruler><from>0 0 0</from><to>0 9 0</to><division>0.001</division></ruler>"),
                  "1 to 1000 segments");
 }
 

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "memory_files.hpp"
+#include "shared/computer/text/text.hpp"
 #include "tests/support/files.hpp"
 
 namespace proleg::sim {
@@ -201,6 +204,64 @@ TEST(Plausibility, AnActuationForAnotherRobotIsNamed) {
                  ": the actuation was made for robot 'snake.robot.xml', not for 'caterpillar.robot.xml'");
 }
 
+/// Hills of 3 cm in a field of 4 m x 10 m.
+HeightField hills() {
+  HeightField field{17, 41, 2.0, 5.0, {}};
+  for (std::size_t row = 0; row < field.rows; ++row) {
+    for (std::size_t column = 0; column < field.columns; ++column) {
+      field.heights.push_back(0.015 * std::sin(0.7 * static_cast<double>(row)) *
+                              std::cos(0.9 * static_cast<double>(column)));
+    }
+  }
+  return field;
+}
+
+/// The warning on the heights; empty if there is none.
+std::string height_warning(const HeightField& field) {
+  const std::vector<std::string> warnings = check_heights(field, {"hills.xml", 7});
+  EXPECT_LE(warnings.size(), 1U);
+  return warnings.empty() ? "" : warnings[0];
+}
+
+TEST(Plausibility, HeightsInMillimetresAreNamed) {
+  HeightField field = hills();
+  EXPECT_EQ(height_warning(field), "");
+  for (double& height : field.heights) {
+    height *= 1000.0;
+  }
+  EXPECT_TRUE(height_warning(field).starts_with("hills.xml:7: heights whose neighbours differ by "))
+      << height_warning(field);
+}
+
+TEST(Plausibility, AHeightFarFromAllOthersIsNamedWithItsPlace) {
+  for (const double unknown : {-500.0, -9.999, 3.0}) {
+    HeightField field = hills();
+    field.heights[2 * 17 + 4] = unknown;
+    field.heights.back() = unknown;
+    EXPECT_TRUE(height_warning(field).starts_with("hills.xml:7: the height " + number_text(unknown) +
+                                                  " m in row 3, column 5 (the first of 2) is far from the median, "))
+        << height_warning(field);
+  }
+}
+
+TEST(Plausibility, HillsPitsAndSlopesThatARobotCanMeetAreMeant) {
+  HeightField field = hills();
+  field.heights[100] = 0.5;  // a post
+  field.heights[200] = -0.5;
+  EXPECT_EQ(height_warning(field), "");
+  std::ranges::fill(field.heights, 0.0);
+  field.heights[100] = 2.0;  // a wall on a plane
+  EXPECT_EQ(height_warning(field), "");
+  for (std::size_t i = 0; i < field.heights.size(); ++i) {
+    field.heights[i] = 0.25 * static_cast<double>(i / field.columns);  // 45 degrees
+  }
+  EXPECT_EQ(height_warning(field), "");
+  for (std::size_t i = 0; i < field.heights.size(); ++i) {
+    field.heights[i] = i % 2 == 0 ? 0.0 : 0.5;  // blocks
+  }
+  EXPECT_EQ(height_warning(field), "");
+}
+
 TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {
   MemoryFiles files = caterpillar_files();
   // The head ends at y = 310 mm.
@@ -211,6 +272,40 @@ TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {
                  "usually the start position is wrong");
   files.replace("flat.environment.xml", "0 1.292 0", "0 1.308 0");
   EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{}) << "2 mm";
+}
+
+/// A level square of 8 m x 8 m around the middle.
+std::string sheet(const std::string& name, const std::string& height, bool faces_up) {
+  return "<KinBody name=\"" + name + "\"><Body type=\"static\"><translation>0 0 " + height +
+         "</translation><Geom type=\"trimesh\" open=\"1\"><vertices>-4 -4 0  4 -4 0  4 4 0  -4 4 "
+         "0</vertices><triangles>" +
+         (faces_up ? "0 1 2  0 2 3" : "0 2 1  0 3 2") + "</triangles></Geom></Body></KinBody>";
+}
+
+MemoryFiles caterpillar_among(const std::string& objects) {
+  MemoryFiles files = caterpillar_files();
+  files.replace("flat.environment.xml", "</Environment>", objects + "</Environment>");
+  return files;
+}
+
+TEST(Plausibility, ASheetOfGroundThatFacesDownwardsIsNamed) {
+  for (const char* height : {"0.001", "0.02", "0.5"}) {  // the robot is lifted onto the higher ones
+    MemoryFiles files = caterpillar_among(sheet("ground", height, false));
+    expect_warning(files, "flat.environment.xml: the triangles of 'ground' face downwards under body 'Head'",
+                   "usually the mesh must be turned inside out");
+  }
+}
+
+TEST(Plausibility, WhatFacesDownwardsElsewhereIsMeant) {
+  for (const std::string& objects :
+       {sheet("ground", "0.02", true), sheet("underside", "-0.2", false),
+        sheet("ground", "0.02", true) + sheet("underside", "0.02", false),  // one sheet with two sides
+        sheet("ground", "0.02", true) + sheet("underside", "0.01", false),
+        std::string("<KinBody name=\"aside\"><translation>20 0 0</translation>") + sheet("far", "0.01", false) +
+            "</KinBody>"}) {
+    MemoryFiles files = caterpillar_among(objects);
+    EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
+  }
 }
 
 TEST(Plausibility, ARobotBesideATurnedBoxIsNotInIt) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "memory_files.hpp"
+#include "tests/sim/mesh/mesh_shapes.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -90,6 +91,69 @@ TEST(Remarks, AreNotMadeForColours) {
                 "<radius>0.03</radius><diffuseColor>1 0 0</diffuseColor><ambientcolor>1 0 0</ambientcolor>"
                 "<TRANSPARENCY>0.5</TRANSPARENCY><render>true</render>");
   EXPECT_EQ(files.scenario().remarks.size(), 1U);
+}
+
+TEST(Remarks, NameWhatOnlyPlannersAndPlugInsOfOpenRaveUse) {
+  MemoryFiles files = small_scenario();
+  files
+      .replace("robot.xml", "<maxvel>5</maxvel>",
+               "<maxvel>5</maxvel><resolution>1</resolution>\n<weight>0.5</weight><maxaccel>2</maxaccel>")
+      .replace("robot.xml", "name=\"J2\"", "name=\"J2\" enable=\"true\" circular=\"FALSE\"")
+      .replace("robot.xml", "<Robot name=\"small\">", "<Robot name=\"small\" type=\"GenericRobot\">");
+  const Scenario scenario = files.scenario();
+  for (const char* text :
+       {"robot.xml:42: <resolution> has no effect", "robot.xml:43: <weight> has no effect",
+        "robot.xml:43: <maxaccel> has no effect", "robot.xml:1: attribute 'type' in <Robot> has no effect"}) {
+    EXPECT_TRUE(remarked(scenario, text)) << text;
+  }
+  EXPECT_EQ(scenario.remarks.size(), 5U);
+}
+
+TEST(Remarks, AreMadeForFrictionOfWhatIsOnlyShownAndForAnOpenMeshOfALink) {
+  MemoryFiles files = small_scenario();
+  files.texts["box.off"] = box_off;
+  files.replace("robot.xml", "<Geom type=\"sphere\">\n        <radius>0.03</radius>\n      </Geom>",
+                "<Geom type=\"trimesh\" open=\"1\"><data>box.off 0.1</data></Geom>"
+                "<Geom type=\"trimesh\"><render>box.off 0.1</render><friction>0.5</friction></Geom>");
+  const Scenario scenario = files.scenario();
+  EXPECT_TRUE(remarked(scenario, "robot.xml:19: attribute 'open' in <Geom> has no effect: a body that moves"));
+  EXPECT_TRUE(remarked(scenario, "robot.xml:19: <friction> has no effect: a mesh that is only shown"));
+}
+
+TEST(Remarks, AreNotEnoughForAJointThatWouldMoveInAnotherWay) {
+  for (const auto& [attribute, message] :
+       {std::pair("enable=\"false\"",
+                  "robot.xml:35: found a passive joint, enable='false' in <Joint>, expected joints"),
+        std::pair("ENABLE=\"0\"", "robot.xml:35: found a passive joint, enable='false' in <Joint>, expected joints"),
+        std::pair("enable=\"banana\"", "robot.xml:35: found enable 'banana' in <Joint>, expected 'true', '1', 'false'"),
+        std::pair("enable=\"\"", "robot.xml:35: found enable '' in <Joint>, expected 'true', '1', 'false'"),
+        std::pair("circular=\"true\"", "robot.xml:35: found a joint that turns without end, circular='true' in"),
+        std::pair("circular=\"2\"", "robot.xml:35: found circular '2' in <Joint>, expected 'true', '1', 'false'")}) {
+    MemoryFiles files = small_scenario();
+    files.replace("robot.xml", "name=\"J2\"", std::string("name=\"J2\" ") + attribute);
+    EXPECT_EQ(refusal(files).substr(0, std::string(message).size()), message);
+  }
+}
+
+TEST(Remarks, AreMadeOnlyForValuesThatAreValid) {
+  for (const auto& [tag, message] :
+       {std::pair("<resolution>fine</resolution>", "found 'fine' in <resolution>, expected a number from 0"),
+        std::pair("<weight>1 2</weight>", "found '1 2' in <weight>, expected a number from 0"),
+        std::pair("<maxaccel>-1</maxaccel>", "found '-1' in <maxaccel>, expected a number from 0")}) {
+    MemoryFiles files = small_scenario();
+    files.replace("robot.xml", "<maxvel>5</maxvel>", std::string("<maxvel>5</maxvel>") + tag);
+    EXPECT_NE(refusal(files).find(message), std::string::npos) << refusal(files);
+  }
+  for (const auto& [geometry, message] :
+       {std::pair("<Geom type=\"sphere\" open=\"1\">", "found attribute 'open' in <Geom>, expected one of the"),
+        std::pair("<Geom type=\"sphere\" render=\"banana\">", "found render 'banana' in <Geom>, expected 'true'"),
+        std::pair("<Geom type=\"sphere\"><visible>maybe</visible>", "found 'maybe' in <visible>, expected 'true'"),
+        std::pair("<Geom type=\"sphere\"><transparency>x</transparency>", "found 'x' in <transparency>, expected"),
+        std::pair("<Geom type=\"sphere\"><ambientColor>red</ambientColor>", "found 'red' in <ambientColor>, exp")}) {
+    MemoryFiles files = small_scenario();
+    files.replace("robot.xml", "<Geom type=\"sphere\">", geometry);
+    EXPECT_NE(refusal(files).find(message), std::string::npos) << refusal(files);
+  }
 }
 
 TEST(Remarks, SayThatAMeshOfAnotherFormatIsNotShown) {

@@ -182,6 +182,15 @@ TEST(RobotFormat, LimitsBeyondARightAngleStayInTheModelButNotInTheKernel) {
   EXPECT_NE(scenario.remarks[0].find("'J1' has limits beyond +-90 degrees"), std::string::npos);
 }
 
+TEST(RobotFormat, LimitsMayHaveAnyNumberOfDigitsAndAPlus) {
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<limitsdeg>-45 90</limitsdeg>",
+                "<limitsdeg>-45.0000000000000000000000000000 +22.5</limitsdeg>");
+  const Scenario scenario = files.scenario();
+  EXPECT_EQ(scenario.joint_limits[1].lower, -(1 << 29));
+  EXPECT_EQ(scenario.joint_limits[1].upper, 1 << 28);
+}
+
 TEST(RobotFormat, AMassOfItsOwnBoxHasThatBoxesInertia) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<Mass type=\"mimicgeom\">\n        <density>",

@@ -123,21 +123,6 @@ std::filesystem::path picture_of(const Options& options, bool is_data_file) {
                       : beside_recording(options.recording, extension);
 }
 
-std::vector<std::string> names_in(const std::string& list) {
-  std::vector<std::string> names;
-  std::size_t begin = 0;
-  while (begin <= list.size()) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    const std::string_view name = trimmed(std::string_view(list).substr(begin, end - begin));
-    if (name.empty()) {
-      throw InputError("--series", 0, in_quotes(list), "names of columns with commas between them");
-    }
-    names.emplace_back(name);
-    begin = end + 1;
-  }
-  return names;
-}
-
 /// The series of a data file that are drawn without --series: the commands of its modules; else the motion of the
 /// joints; else the first type.
 std::vector<std::string> usual_series(const sim::DataFile& data) {
@@ -172,14 +157,14 @@ std::string draw_table(const Options& options, std::vector<std::string> names, c
 
 Drawing draw_data_file(const Options& options) {
   sim::DataFile data(options.recording);
-  std::vector<std::string> names = options.series ? names_in(*options.series) : usual_series(data);
+  std::vector<std::string> names = options.series ? std::vector{*options.series} : usual_series(data);
   std::string svg = draw_table(options, std::move(names), [&](const auto& write) { data.write_table(write); });
   return {std::move(svg), data.remark_on_cut()};
 }
 
 Drawing draw_recording(const Options& options) {
   const sim::Recording recording(options.recording);
-  std::string svg = options.series ? draw_table(options, names_in(*options.series),
+  std::string svg = options.series ? draw_table(options, {*options.series},
                                                 [&](const auto& write) { sim::write_tsv(recording, write); })
                                    : sim::draw_figure(recording, options.window);
   return {std::move(svg), sim::remark_on_unfinished_run(recording)};

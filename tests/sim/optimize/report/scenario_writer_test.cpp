@@ -226,6 +226,19 @@ TEST(WriteScenario, MeshesHeightsAndObjectsThatMoveComeBack) {
   EXPECT_FALSE(ridge.mesh->colours.empty()) << "the file of its materials, too";
 }
 
+TEST(WriteScenario, MeshesAndHeightsWhoseNamesHaveBlanksComeBack) {
+  const TemporaryFolder folder;
+  fs::copy(source_path("/sim/scenarios/robots"), folder.path(), fs::copy_options::recursive);
+  const fs::path world = folder.path() / "mesh_world";
+  fs::rename(world / "hills.txt", world / "hills 2.txt");
+  fs::rename(world / "ridge.obj", world / "a ridge.obj");
+  std::string text = file_contents(world / "hills.environment.xml");
+  text.replace(text.find("hills.txt"), 9, "hills 2.txt");
+  text.replace(text.find("ridge.obj"), 9, "'a ridge.obj' 1");
+  std::ofstream(world / "hills.environment.xml") << text;
+  (void)expect_round_trip(experiment_of(read_back(world / "mesh_world.simulation.xml")), {});
+}
+
 TEST(WriteScenario, TheThesissFilesComeBack) {
   std::mt19937 random(5);
   Experiment experiment = experiment_of(read_back(source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml")));

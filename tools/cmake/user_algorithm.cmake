@@ -124,6 +124,17 @@ const proleg::AlgorithmInterface proleg_algorithm_interface =
   target_compile_options(${algorithm_NAME} PRIVATE -fno-exceptions -fno-rtti)
   target_link_libraries(${algorithm_NAME} PRIVATE proleg_core)
   target_link_options(${algorithm_NAME} PRIVATE -Wl,--no-undefined -Wl,--exclude-libs,ALL)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT PROLEG_ALLOW_FLOATING_POINT)
+    set(check ${CMAKE_CURRENT_BINARY_DIR}/${algorithm_NAME}.without_floating_point.o)
+    add_custom_command(OUTPUT ${check}.checked
+      COMMAND ${CMAKE_COMMAND} -D COMPILER=${CMAKE_CXX_COMPILER} -D SOURCE=${algorithm_SOURCE} -D TREE=${PROLEG_SOURCE} -D OBJECT=${check}
+        -P ${PROLEG_SOURCE}/tools/cmake/check_floating_point.cmake
+      DEPENDS ${library_source} ${algorithm_SOURCE}
+      COMMENT "Looking for floating point in ${algorithm_NAME}"
+      VERBATIM)
+    add_custom_target(${algorithm_NAME}_uses_integers ALL DEPENDS ${check}.checked)
+    add_dependencies(${algorithm_NAME} ${algorithm_NAME}_uses_integers)
+  endif()
 
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${algorithm_NAME}_test.cpp)
     enable_testing()

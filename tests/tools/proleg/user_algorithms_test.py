@@ -432,6 +432,25 @@ class UserAlgorithms(unittest.TestCase):
         self.assertIn(f"the algorithm '{NAME}' throws an exception: no idea", result.stderr)
         self.assertTrue(any(out.iterdir()))
 
+    # Sources that do not become a library.
+
+    def test_floating_point_ends_the_build_with_its_reason(self):
+        for name, code in (("double", "static_cast<std::int32_t>(state[0] * 0.37)"),
+                           ("float", "static_cast<std::int32_t>(std::sqrt(static_cast<float>(state[0])))")):
+            with self.subTest(name):
+                folder = self.folder / f"floating_{name}"
+                self.assertEqual(proleg("new", "algorithm", f"floating_{name}", "--out", folder).returncode, 0)
+                file = folder / f"floating_{name}.cpp"
+                text = file.read_text()
+                step = "next[current_phase] = "
+                self.assertEqual(text.count(step), 1)
+                file.write_text("#include <cmath>\n" + text.replace(step, f"{step}{code} + "))
+                build = folder / "build"
+                subprocess.run(["cmake", "-S", folder, "-B", build, "-G", "Ninja"], check=True, capture_output=True)
+                done = subprocess.run(["cmake", "--build", build], capture_output=True, text=True, timeout=LONGEST)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertRegex(done.stdout, rf"{re.escape(str(file))}: found\s+floating point")
+
     # Libraries that cannot be used.
 
     def test_bad_libraries_are_named_before_anything_runs(self):

@@ -17,8 +17,10 @@ class Diagnosis {
   std::vector<ModuleFault> run() {
     if (!program_.has_answered) {
       add(ModuleFaultKind::no_update_protocol,
-          "answers no request for an update: its program is older than that, or it has no bootloader",
-          {Remedy::by_hand, std::string(flash_bare)});
+          "was found on the bus, but no answer to the requests for its program was received: frames are lost, or its "
+          "program is older than updates over the bus",
+          {Remedy::by_hand, "try again, and look with 'proleg doctor' whether frames are lost; if none are, " +
+                                std::string(flash_bare)});
     } else {
       examine_program();
     }

@@ -86,7 +86,7 @@ void ModuleQuery::ask(Microseconds now) {
   asked_at_ = now;
   constexpr Microseconds least_us = 5'000;
   const Microseconds timeout = longest_answer_ == 0 ? options_.answer_timeout_us : least_us + 4 * longest_answer_;
-  deadline_ = now + std::min(timeout << (attempt_ - 1), options_.answer_timeout_us);
+  deadline_ = now + std::min(timeout << std::min(attempt_ - 1, 8U), options_.longest_timeout_us);
   send_waiting();
 }
 
@@ -134,6 +134,7 @@ void ModuleQuery::take_word(Microseconds now, const broadcast::HeaderWord& word)
   const bool was_asked = found - missing_.begin() < static_cast<std::ptrdiff_t>(asked_);
   missing_.erase(found);
   asked_ -= was_asked ? 1U : 0U;
+  attempt_ = 0;
   if (missing_.empty()) {
     const image::HeaderResult result = image::decode(bytes_);
     if (result.error == image::Error::none) {
@@ -142,7 +143,6 @@ void ModuleQuery::take_word(Microseconds now, const broadcast::HeaderWord& word)
     next_module(now);
   } else if (asked_ == 0) {
     longest_answer_ = std::max(longest_answer_, now - asked_at_);
-    attempt_ = 0;
     ask(now);
   }
 }
@@ -154,6 +154,7 @@ void ModuleQuery::poll(Microseconds now) {
   if (attempt_ < options_.attempts) {
     ask(now);
   } else {
+    module().missing_words = static_cast<unsigned>(missing_.size());
     next_module(now);
   }
 }
@@ -186,8 +187,9 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
   const ModuleProgram& program = module.program;
   if (!program.has_answered) {
     return refuse(
-        "answers no request for an update: its program is older than that, or it has no bootloader; flash it "
-        "with 'proleg flash --bare'");
+        "was found on the bus, but no answer to " + std::to_string(ModuleQueryOptions{}.attempts) +
+        " requests for its program was received: try again, and look with 'proleg doctor' whether frames are lost; if "
+        "none are, its program is older than updates over the bus, and only 'proleg flash --bare' replaces it");
   }
   if (!program.is(flag::has_bootloader)) {
     return refuse("has no bootloader: flash it with 'proleg flash --bare'");
@@ -206,6 +208,11 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
   }
   if (program.is(flag::is_busy)) {
     return refuse("its servo has power, or it is Operational: stop the robot first");
+  }
+  if (program.missing_words != 0) {
+    return refuse("answers, but " + std::to_string(program.missing_words) +
+                  " words of the header of its program were not received: frames are lost ('proleg doctor' looks "
+                  "for the cause); try again");
   }
   if (!program.image) {
     return {FlashAction::install, "no program -> " + version_text(image)};

@@ -18,8 +18,11 @@ namespace proleg::host {
 struct ModuleProgram {
   std::uint32_t serial = 0;  ///< object 0x1018:4
   bool has_answered = false;
-  broadcast::StatusAnswer status{};    ///< valid if the module has answered
-  std::optional<image::Header> image;  ///< nothing: there is no image, or its header is damaged
+  broadcast::StatusAnswer status{};  ///< valid if the module has answered
+  std::optional<image::Header>
+      image;  ///< nothing: there is no image, its header is damaged, or words of it are missing
+  /// Number of words of the header that the module was asked for and that were not received.
+  unsigned missing_words = 0;
 
   [[nodiscard]] bool is(std::uint8_t flag) const { return (status.condition.flags & flag) != 0; }
 };
@@ -28,7 +31,8 @@ struct ModuleQueryOptions {
   /// Timeout of the first answer of a module; later it is four times the longest answer of the module, doubled with
   /// each attempt.
   Microseconds answer_timeout_us = 60'000;
-  unsigned attempts = 8;  ///< number of attempts of a request without an answer
+  Microseconds longest_timeout_us = 150'000;
+  unsigned attempts = 12;  ///< number of times in a row that a request is sent without an answer, as in a transfer
 };
 
 /// Reads what modules report about the program that they run (shared/broadcast/transfer_frame.hpp): their state, and

@@ -268,7 +268,11 @@ void RobotUpdate::look(Microseconds now) {
       serials.push_back(module.serial);
     }
   }
-  query_ = std::make_unique<ModuleQuery>(port_, ModuleQueryOptions{.attempts = 3});
+  // A module that restarts answers nothing; the last look decides.
+  constexpr unsigned attempts_before_the_end = 3;
+  is_last_look_ = now >= restart_ends_;
+  query_ = std::make_unique<ModuleQuery>(
+      port_, is_last_look_ ? ModuleQueryOptions() : ModuleQueryOptions{.attempts = attempts_before_the_end});
   query_->start(now, serials);
 }
 
@@ -276,12 +280,11 @@ void RobotUpdate::take_answers(Microseconds now) {
   if (!query_->is_done()) {
     return;
   }
-  const bool is_last = now >= restart_ends_;
   bool is_still_in_bootloader = false;
   for (const ModuleProgram& program : query_->modules()) {
     for (UpdatedModule& module : modules_) {
       if (module.serial == program.serial && module.outcome == UpdateOutcome::pending) {
-        take_answer(module, program, is_last);
+        take_answer(module, program);
       }
     }
     is_still_in_bootloader = is_still_in_bootloader || (program.has_answered && !program.is(flag::runs_program));
@@ -298,7 +301,7 @@ void RobotUpdate::take_answers(Microseconds now) {
   }
 }
 
-void RobotUpdate::take_answer(UpdatedModule& module, const ModuleProgram& program, bool is_last) {
+void RobotUpdate::take_answer(UpdatedModule& module, const ModuleProgram& program) {
   if (program.has_answered) {
     module.program = program;
   }
@@ -308,12 +311,12 @@ void RobotUpdate::take_answer(UpdatedModule& module, const ModuleProgram& progra
     module.outcome = UpdateOutcome::runs;
   } else if (runs && program.image && !is_new && !options_.through_its_line) {
     module.outcome = module.has_image ? UpdateOutcome::old_program_runs : UpdateOutcome::not_transferred;
-  } else if (is_last) {
-    module.outcome = !program.has_answered ? UpdateOutcome::vanished
-                     : !runs               ? UpdateOutcome::starts_badly
-                     : is_new              ? UpdateOutcome::not_confirmed
-                     : module.has_image    ? UpdateOutcome::old_program_runs
-                                           : UpdateOutcome::not_transferred;
+  } else if (is_last_look_) {
+    module.outcome = !program.has_answered || program.missing_words != 0 ? UpdateOutcome::vanished
+                     : !runs                                             ? UpdateOutcome::starts_badly
+                     : is_new                                            ? UpdateOutcome::not_confirmed
+                     : module.has_image                                  ? UpdateOutcome::old_program_runs
+                                                                         : UpdateOutcome::not_transferred;
   }
 }
 

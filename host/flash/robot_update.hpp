@@ -98,7 +98,7 @@ class RobotUpdate final : public BusUser, private CanPort {
   void send_leave(Microseconds now);
   void look(Microseconds now);
   void take_answers(Microseconds now);
-  void take_answer(UpdatedModule& module, const ModuleProgram& program, bool is_last);
+  void take_answer(UpdatedModule& module, const ModuleProgram& program);
   [[nodiscard]] bool any_pending() const;
 
   CanPort& port_;
@@ -122,6 +122,7 @@ class RobotUpdate final : public BusUser, private CanPort {
   Microseconds resume_at_ = never;   ///< time until which frames wait, because of longest_lead_us
   Microseconds look_at_ = never;
   Microseconds restart_ends_ = never;
+  bool is_last_look_ = false;  ///< the query began after that time
 };
 
 }  // namespace proleg::host

@@ -104,6 +104,10 @@ std::string BusConnection::diagnosis() const {
   if (!bus.is_connected) {
     return "the connection is lost: " + (bus.reason.empty() ? "no reason is known" : bus.reason);
   }
+  if (numbers.received == 0 && numbers.malformed > 0) {
+    return "no line of the adapter was understood: received " + numbers.malformed_line +
+           ", expected slcan: a line such as t1230 (proleg doctor says what to do)";
+  }
   if (requested_ > 0 && numbers.transmitted == 0) {
     return "no frame was acknowledged: no other node is on the bus, or it has another bit rate than 1 Mbit/s, or the "
            "cable or a terminator is missing";
@@ -121,7 +125,11 @@ std::string BusConnection::diagnosis() const {
     }
   }
   return std::to_string(numbers.received) + " frames were received" +
-         (nodes.empty() ? ", none of them from a node" : ", from the nodes " + nodes);
+         (nodes.empty() ? ", none of them from a node" : ", from the nodes " + nodes) +
+         (numbers.malformed == 0
+              ? ""
+              : "; " + std::to_string(numbers.malformed) +
+                    " lines of the adapter were not understood, the last one was " + numbers.malformed_line);
 }
 
 }  // namespace proleg::host

@@ -231,6 +231,9 @@ std::optional<Finding> find_dead_bus(const BusObservations& seen, const BusAddre
   if (seen.own.statistics.received > 0) {
     return std::nullopt;
   }
+  if (auto finding = find_damaged_lines(seen, address)) {
+    return finding;
+  }
   const bool is_off = seen.worst_controller_state == CanState::bus_off;
   if (has_signals(seen)) {
     return Finding{"wrong_bit_rate",
@@ -254,6 +257,23 @@ std::optional<Finding> find_dead_bus(const BusObservations& seen, const BusAddre
       "Check that this is the right bus, that the robot has power, and that its cable is plugged in. If that is "
       "so, " +
           std::string(wires) + ".",
+      {}};
+}
+
+std::optional<Finding> find_damaged_lines(const BusObservations& seen, const BusAddress& address) {
+  constexpr std::uint64_t most_at_opening = 2;  // lines that can be the rest of another program's output
+  const Statistics& numbers = seen.own.statistics;
+  if (numbers.malformed == 0 || (numbers.received > 0 && numbers.malformed <= most_at_opening)) {
+    return std::nullopt;
+  }
+  return Finding{
+      "damaged_lines",
+      std::to_string(numbers.malformed) + " lines from the adapter were not understood. The last one was " +
+          numbers.malformed_line + ", expected slcan: a line such as t1230.",
+      "If lines are cut or have strange characters, they were damaged on their way to this computer: check the cable "
+      "between adapter and computer, its length and its ground" +
+          std::string(address.kind == BusAddress::Kind::serial ? ", and the baud rate" : "") +
+          ". If not, the adapter speaks another dialect: docs/adapters.md lists what works.",
       {}};
 }
 

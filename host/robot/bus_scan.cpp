@@ -46,6 +46,7 @@ void BusScan::ask(SdoQueue& queue, std::uint8_t node) {
     if (!result.is_good()) {
       return;
     }
+    note_attempts(result);
     seen.is_heard = true;
     seen.info.has_answered = true;
     seen.info.device_type = result.number();
@@ -65,8 +66,9 @@ void BusScan::ask_fresh(Microseconds now) {
 }
 
 void BusScan::read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take) {
-  inquiries_.read(node, address, [take](const SdoResult& result) {
+  inquiries_.read(node, address, [this, take](const SdoResult& result) {
     if (result.is_good()) {
+      note_attempts(result);
       take(result.number());
     }
   });
@@ -171,12 +173,34 @@ void BusScan::poll(Microseconds now) {
   finish(now);
 }
 
+void BusScan::note_attempts(const SdoResult& result) { is_losing_ = is_losing_ || result.attempts > 1; }
+
+/// Whether requests to the node ids from which nothing was received are under way again: on a bus that loses frames,
+/// and if no node has answered, the first ones may be lost.
+bool BusScan::probes_again(Microseconds now) {
+  const bool has_answer = std::ranges::any_of(seen_, [](const Seen& seen) { return seen.info.has_answered; });
+  if (rounds_ == options_.rounds || (has_answer && !is_losing_)) {
+    return false;
+  }
+  ++rounds_;
+  for (std::uint8_t node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {
+    if (!seen_.at(node).is_heard) {
+      ask(probes_, node);
+    }
+  }
+  probes_.poll(now);
+  return true;
+}
+
 void BusScan::finish(Microseconds now) {
   if (now >= listening_until_) {
     listening_until_ = never;
     has_listened_ = true;
   }
   if (!has_listened_ || !probes_.is_idle() || !inquiries_.is_idle()) {
+    return;
+  }
+  if (probes_again(now)) {
     return;
   }
   // A present node that has not answered may only be slow, or this computer is.

@@ -41,7 +41,8 @@ struct BusScanOptions {
   Microseconds listening_us = 250'000;      ///< heartbeats have a period of 100 ms; the scan takes at least this long
   Microseconds answer_timeout_us = 60'000;  ///< timeout of each request
   unsigned attempts = 2;                    ///< attempts of the first request to each node id
-  unsigned further_attempts = 8;            ///< attempts of requests to a node that has answered, or sent by itself
+  unsigned rounds = 3;            ///< greatest number of times that these are made, on a bus that loses frames
+  unsigned further_attempts = 8;  ///< attempts of requests to a node that has answered, or sent by itself
   /// Attempts of the request to modules without a node id, spread over the time that the scan listens: on most buses
   /// no module answers it, so nothing else would show its loss.
   unsigned fresh_attempts = 5;
@@ -88,6 +89,8 @@ class BusScan final : public BusUser {
   void inquire_texts(std::uint8_t node);
   void read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take);
   void read_text(std::uint8_t node, canopen::Address address, std::string ScannedNode::*field);
+  void note_attempts(const SdoResult& result);
+  [[nodiscard]] bool probes_again(Microseconds now);
   void finish(Microseconds now);
 
   CanPort& port_;
@@ -100,6 +103,8 @@ class BusScan final : public BusUser {
   bool has_host_ = false;
   bool has_fresh_ = false;
   bool has_asked_again_ = false;
+  bool is_losing_ = false;  ///< a request was answered only after it was repeated
+  unsigned rounds_ = 1;
   bool reads_texts_ = false;
   unsigned syncs_ = 0;
   std::uint64_t frames_ = 0;

@@ -39,7 +39,9 @@ class Diagnosis {
     find_modules_without_node_id();
     find_stopped_modules();
     find_mute_nodes();
-    find_damaged_lines();
+    if (auto finding = find_damaged_lines(seen_, address_)) {
+      findings_.push_back(std::move(*finding));
+    }
     find_reports();
     find_absence();
     for (Finding& finding : findings_) {
@@ -294,18 +296,6 @@ class Diagnosis {
     if (!nodes.empty() && !is_explained) {
       add("no_answer", nodes_text(nodes) + " can be received but answers no request.",
           "Switch the module off and on. If that does not help, flash it again.", nodes);
-    }
-  }
-
-  void find_damaged_lines() {
-    constexpr std::uint64_t most_at_opening = 2;  // malformed lines that can be the rest of another program's output
-    if (seen_.own.statistics.malformed > most_at_opening) {
-      add("damaged_lines",
-          std::to_string(seen_.own.statistics.malformed) +
-              " lines from the adapter were damaged on their way to this computer.",
-          "Check the cable between adapter and computer, its length and its ground; use a lower baud rate if the "
-          "adapter "
-          "offers one.");
     }
   }
 

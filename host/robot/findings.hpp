@@ -33,6 +33,9 @@ struct Finding {
 /// received.
 [[nodiscard]] std::optional<Finding> find_dead_bus(const BusObservations& observations, const BusAddress& address);
 
+/// Finds lines of an slcan adapter that were not understood: damaged ones, or those of an unknown dialect.
+[[nodiscard]] std::optional<Finding> find_damaged_lines(const BusObservations& observations, const BusAddress& address);
+
 /// Finds errors on the wires, and a bus that is full.
 [[nodiscard]] std::vector<Finding> find_wire_faults(const BusObservations& observations, const BusAddress& address);
 

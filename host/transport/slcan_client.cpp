@@ -7,7 +7,6 @@
 namespace proleg::host {
 namespace {
 
-constexpr std::size_t max_line = 200;        // characters; longer than any known answer to V
 constexpr std::size_t sample_length = 40;    // characters in an error
 constexpr std::size_t output_ahead = 1'024;  // characters that are prepared before the line takes them
 constexpr unsigned max_refusals = 2;
@@ -19,24 +18,6 @@ bool is_printable(std::string_view text) {
 
 }  // namespace
 
-std::string printable_bytes(std::string_view bytes) {
-  std::string text;
-  for (const char character : bytes.substr(0, sample_length)) {
-    if (character == '\r') {
-      text += "\\r";
-    } else if (character == '\n') {
-      text += "\\n";
-    } else if (character == '\a') {
-      text += "\\a";
-    } else if (character >= ' ' && character <= '~') {
-      text += character;
-    } else {
-      text += "\\x" + hexadecimal(static_cast<unsigned char>(character), 2).substr(2);
-    }
-  }
-  return "'" + text + (bytes.size() > sample_length ? "...'" : "'");
-}
-
 void SlcanClient::start(Microseconds now) {
   drop_frames();
   state_ = State::starting;
@@ -44,8 +25,10 @@ void SlcanClient::start(Microseconds now) {
   refusals_ = 0;
   sign_deadline_ = never;
   has_confirmed_frames_ = false;
+  has_received_ = false;
   start_deadline_ = now + settings_.start_timeout;
-  line_.clear();
+  lines_.reset();
+  confirms_with_end_ = false;
   rubbish_.clear();
   output_.clear();
   has_begun_line_ = false;
@@ -78,6 +61,9 @@ void SlcanClient::begin_step(Microseconds now, Step step) {
     case Step::bit_rate:
       command_ = "S8";
       break;
+    case Step::time_stamps:
+      command_ = "Z0";
+      break;
     case Step::open:
       command_ = settings_.is_listen_only ? "L" : "O";
       break;
@@ -97,29 +83,55 @@ void SlcanClient::input(Microseconds now, std::string_view characters) {
     if (state_ == State::starting && sample_.size() <= sample_length) {
       sample_ += character;
     }
-    if (character == slcan_end || character == slcan_reject) {
-      handle_line(now, character == slcan_reject);
-      line_.clear();
-    } else if (line_.size() < max_line && !(character == '\n' && line_.empty())) {
-      line_ += character;
+    if (const auto event = lines_.push(character); event != SlcanAdapterLines::Event::none) {
+      line_ = lines_.line();
+      handle_line(now, event == SlcanAdapterLines::Event::rejected);
     }
   }
 }
 
 void SlcanClient::handle_line(Microseconds now, bool ends_with_bel) {
+  take_bare_confirmations(now, ends_with_bel);
   if (ends_with_bel) {
-    statistics_.malformed += line_.empty() ? 0U : 1U;
+    note_malformed();
     handle_answer(now, Answer::rejected);
   } else if (line_.empty() || line_ == "z" || line_ == "Z") {
+    confirms_with_end_ = confirms_with_end_ || !pending_.empty();
     handle_answer(now, Answer::accepted);
   } else if (!handle_report(now)) {
     handle_answer(now, Answer::text);
   }
 }
 
+/// Takes the confirmations of an adapter that ends them with nothing: each z stands before another answer or a frame.
+/// An adapter that confirms with the end of a line can report a frame of this computer as z with the frame.
+void SlcanClient::take_bare_confirmations(Microseconds now, bool ends_with_bel) {
+  while (state_ == State::open && is_acknowledging_ && !confirms_with_end_ && begins_with_z(line_) &&
+         (line_.size() > 1 || ends_with_bel)) {
+    if (reports_pending_frame()) {
+      return;
+    }
+    lines_.end_lines_after_z();
+    handle_answer(now, Answer::accepted);
+    line_.erase(0, 1);
+  }
+}
+
+/// Whether the line is a report of the frame that was sent first and is not confirmed.
+bool SlcanClient::reports_pending_frame() {
+  const auto frame = lines_.read_frame(std::string_view(line_).substr(1));
+  return frame && !pending_.empty() && *frame == slcan_frame(pending_.front());
+}
+
 /// Handles a line that answers no command: a frame, a state, errors.
 bool SlcanClient::handle_report(Microseconds now) {
-  if (const auto frame = parse_slcan_frame(line_)) {
+  if (begins_with_z(line_) && lines_.read_frame(std::string_view(line_).substr(1))) {
+    if (!confirms_with_end_ && reports_pending_frame()) {
+      handle_answer(now, Answer::accepted);
+    }
+    return true;
+  }
+  if (const auto frame = lines_.read_frame(line_)) {
     has_proof_ = true;
     if (step_ == Step::proof && state_ == State::starting) {
       become_open(now);
@@ -127,6 +139,7 @@ bool SlcanClient::handle_report(Microseconds now) {
     if (state_ != State::open) {
       return true;
     }
+    has_received_ = true;
     if (frame->is_for_protocol()) {
       listener_.received(now, frame->can_frame());
     } else {
@@ -193,6 +206,13 @@ void SlcanClient::handle_start_answer(Microseconds now, Answer answer) {
       adapter_ += is_text ? ", " + line_ : std::string();
       begin_step(now, Step::bit_rate);
       return;
+    case Step::time_stamps:
+      if (is_text && !is_printable(line_)) {
+        note_rubbish();
+      } else {
+        begin_step(now, Step::open);  // an adapter without the command rejects it
+      }
+      return;
     case Step::bit_rate:
     case Step::open:
     case Step::proof:
@@ -204,7 +224,7 @@ void SlcanClient::handle_start_answer(Microseconds now, Answer answer) {
         is_acknowledging_ = true;
         has_proof_ = true;
         if (step_ == Step::bit_rate) {
-          begin_step(now, Step::open);
+          begin_step(now, Step::time_stamps);
         } else {
           end_round(now);
         }
@@ -227,6 +247,13 @@ void SlcanClient::note_rubbish() {
   if (rubbish_.empty()) {
     rubbish_ = line_ == command_ ? "the line returns what is sent to it (" + command_ + ")"
                                  : "received " + printable_bytes(line_) + " after " + command_;
+  }
+}
+
+void SlcanClient::note_malformed() {
+  if (!line_.empty()) {
+    ++statistics_.malformed;
+    statistics_.malformed_line = printable_bytes(line_);
   }
 }
 
@@ -271,6 +298,9 @@ void SlcanClient::poll(Microseconds now) {
       begin_step(now, Step::bit_rate);
       break;
     case Step::bit_rate:
+      begin_step(now, Step::time_stamps);
+      break;
+    case Step::time_stamps:
       begin_step(now, Step::open);
       break;
     case Step::open:
@@ -289,7 +319,11 @@ Microseconds SlcanClient::next_deadline() const {
   if (state_ != State::open || pending_.empty()) {
     return never;
   }
-  return sign_deadline_ != never ? sign_deadline_ : last_answer_ + settings_.frame_timeout;
+  if (sign_deadline_ != never) {
+    return sign_deadline_;
+  }
+  return last_answer_ +
+         (has_confirmed_frames_ || has_received_ ? settings_.confirmation_timeout : settings_.frame_timeout);
 }
 
 std::string SlcanClient::start_failure() const {
@@ -365,13 +399,16 @@ void SlcanClient::handle_frame_answer(Microseconds now, Answer answer) {
   if (answer == Answer::text) {
     const bool is_late_answer = std::string_view("VNF").find(line_[0]) != std::string_view::npos;
     if (sign_deadline_ != never) {
-      // The adapter is there, but answers are lost, or it confirms commands only.
+      // The adapter has read all lines before V, but answers are lost, or it confirms commands only.
       sign_deadline_ = never;
+      is_acknowledging_ = has_confirmed_frames_;
+      while (has_confirmed_frames_ && !pending_.empty()) {
+        confirm(now);
+      }
       statistics_.unconfirmed += pending_.size();
       pending_.clear();
-      is_acknowledging_ = has_confirmed_frames_;
     } else if (!is_late_answer && line_ != adapter_) {
-      ++statistics_.malformed;
+      note_malformed();
     }
     return;
   }
@@ -380,21 +417,26 @@ void SlcanClient::handle_frame_answer(Microseconds now, Answer answer) {
   if (pending_.empty()) {
     return;  // a second answer, or a late answer to a command of the start
   }
-  const CanFrame frame = pending_.front();
-  pending_.pop_front();
   has_confirmed_frames_ = true;
   if (answer == Answer::rejected) {
+    pending_.pop_front();
     ++statistics_.refused;
   } else {
-    ++statistics_.transmitted;
-    listener_.transmitted(now, frame);
+    confirm(now);
   }
+}
+
+void SlcanClient::confirm(Microseconds now) {
+  const CanFrame frame = pending_.front();
+  pending_.pop_front();
+  ++statistics_.transmitted;
+  listener_.transmitted(now, frame);
 }
 
 void SlcanClient::ask_for_a_sign(Microseconds now) {
   output_ += 'V';
   output_ += slcan_end;
-  sign_deadline_ = now + 2 * settings_.answer_timeout;
+  sign_deadline_ = std::max(now, last_answer_ + settings_.frame_timeout) + 2 * settings_.answer_timeout;
 }
 
 void SlcanClient::stop() {

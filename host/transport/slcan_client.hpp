@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "host/transport/slcan_adapter_lines.hpp"
 #include "host/transport/transport.hpp"
 #include "shared/can/slcan.hpp"
 
@@ -26,7 +27,7 @@ class SlcanClientListener {
 ///
 /// Adapters speak three dialects. LAWICEL's CANUSB and our modules answer each command and frame. CANable's slcan
 /// firmware answers V only, with some text. Others answer nothing; the first frame from the bus shows that such an
-/// adapter is there. So start() sends C, V, N, S8 and O, each when the one before was answered or its time is over
+/// adapter is there. So start() sends C, V, N, S8, Z0 and O, each when the one before was answered or its time is over
 /// (some adapters lose all but one command of a packet), and begins again, because some adapters need two seconds
 /// after the line was opened. A channel with an acknowledging adapter carries `window` frames that are not confirmed
 /// yet.
@@ -35,8 +36,12 @@ class SlcanClient {
   struct Settings {
     Microseconds answer_timeout = 300'000;   ///< duration of the wait for the answer to one command
     Microseconds start_timeout = 4'000'000;  ///< duration of all attempts to open the channel
-    Microseconds frame_timeout =
-        1'000'000;  ///< V is sent after this duration without an answer, while frames wait for one
+    /// V is sent after this duration without an answer, while frames wait for one. Without an answer to V the channel
+    /// is lost.
+    Microseconds frame_timeout = 1'000'000;
+    /// The same if frames have been confirmed or received, so that the bus carries frames: on a bad line confirmations
+    /// are lost, and fill the window.
+    Microseconds confirmation_timeout = 200'000;
     std::size_t window = 32;
     std::size_t max_queue = 1'024;  ///< frames that wait for the window
     bool is_listen_only = false;
@@ -76,20 +81,24 @@ class SlcanClient {
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
  private:
-  enum class Step : std::uint8_t { close, close_again, version, serial_number, bit_rate, open, proof };
+  enum class Step : std::uint8_t { close, close_again, version, serial_number, bit_rate, time_stamps, open, proof };
   enum class Answer : std::uint8_t { accepted, rejected, text };
 
   void begin_round(Microseconds now);
   void begin_step(Microseconds now, Step step);
   void handle_line(Microseconds now, bool ends_with_bel);
+  void take_bare_confirmations(Microseconds now, bool ends_with_bel);
+  [[nodiscard]] bool reports_pending_frame();
   [[nodiscard]] bool handle_report(Microseconds now);
   void handle_answer(Microseconds now, Answer answer);
   void handle_start_answer(Microseconds now, Answer answer);
   void refuse(Microseconds now);
   void note_rubbish();
+  void note_malformed();
   void end_round(Microseconds now);
   void become_open(Microseconds now);
   void handle_frame_answer(Microseconds now, Answer answer);
+  void confirm(Microseconds now);
   void ask_for_a_sign(Microseconds now);
   void fill_output(Microseconds now);
   void drop_frames();
@@ -106,7 +115,8 @@ class SlcanClient {
   std::string adapter_;
   Statistics statistics_;
 
-  std::string line_;  ///< characters of the present line
+  SlcanAdapterLines lines_;
+  std::string line_;  ///< the last line, or what is left of it
   std::string output_;
   bool has_begun_line_ = false;  ///< a part of an output line was taken
   std::deque<CanFrame> queue_;
@@ -121,11 +131,10 @@ class SlcanClient {
   std::string rubbish_;                 ///< the first line that is no answer, and the command before it
   bool is_acknowledging_ = false;
   bool has_confirmed_frames_ = false;
-  bool has_proof_ = false;  ///< something in this round shows that slcan is spoken
+  bool has_received_ = false;       ///< a frame from the bus
+  bool confirms_with_end_ = false;  ///< a frame was confirmed with CR, or with z and CR
+  bool has_proof_ = false;          ///< something in this round shows that slcan is spoken
   unsigned refusals_ = 0;
 };
-
-/// Text in quotes and shortened, in which characters that are not printable ASCII appear as \r, \a, \n or \xNN.
-[[nodiscard]] std::string printable_bytes(std::string_view bytes);
 
 }  // namespace proleg::host

@@ -48,7 +48,7 @@ struct BusState {
   friend bool operator==(const BusState&, const BusState&) = default;
 };
 
-/// Numbers since the transport was opened; losses of the connection do not reset them.
+/// What has happened since the transport was opened; losses of the connection do not reset it.
 struct Statistics {
   std::uint64_t received = 0;     ///< frames given to the listener
   std::uint64_t transmitted = 0;  ///< frames that the adapter or the controller took
@@ -58,6 +58,7 @@ struct Statistics {
   std::uint64_t dropped_in = 0;   ///< received frames that the kernel dropped because this process was too slow
   std::uint64_t foreign = 0;      ///< extended and remote frames, which are ignored
   std::uint64_t malformed = 0;    ///< lines from an adapter that are not slcan
+  std::string malformed_line;     ///< the last of them, in quotes, as a person can read it; empty if there was none
   std::uint64_t connections = 0;  ///< number of connections: the first, and one for each reconnection
 };
 

@@ -3,6 +3,7 @@
 namespace proleg {
 namespace {
 
+constexpr std::string_view frame_letters = "trTR";
 constexpr std::size_t standard_digits = 3;
 constexpr std::size_t extended_digits = 8;
 constexpr std::size_t timestamp_digits = 4;
@@ -72,8 +73,7 @@ SlcanFrame slcan_frame(const CanFrame& frame, std::optional<std::uint16_t> times
 }
 
 std::optional<SlcanFrame> parse_slcan_frame(std::string_view line) {
-  constexpr std::string_view kinds = "trTR";
-  const std::size_t kind = line.empty() ? std::string_view::npos : kinds.find(line.front());
+  const std::size_t kind = line.empty() ? std::string_view::npos : frame_letters.find(line.front());
   if (kind == std::string_view::npos) {
     return std::nullopt;
   }
@@ -106,10 +106,20 @@ std::optional<SlcanFrame> parse_slcan_frame(std::string_view line) {
   return frame;
 }
 
+std::size_t slcan_frame_size(std::string_view line) {
+  const std::size_t kind = line.empty() ? std::string_view::npos : frame_letters.find(line.front());
+  if (kind == std::string_view::npos) {
+    return 0;
+  }
+  const std::size_t head = 1 + (kind >= 2 ? extended_digits : standard_digits) + 1;
+  const std::optional<unsigned> length = line.size() < head ? std::nullopt : digit_value(line[head - 1]);
+  return length ? head + (kind % 2 == 1 ? 0U : 2U * *length) : 0U;
+}
+
 SlcanText format_slcan_frame(const SlcanFrame& frame) {
   SlcanText text;
   const std::size_t letter = (frame.is_extended ? 2U : 0U) + (frame.is_remote ? 1U : 0U);
-  text.append("trTR"[letter]);
+  text.append(frame_letters[letter]);
   append_digits(text, frame.identifier, frame.is_extended ? extended_digits : standard_digits, 16);
   append_digits(text, frame.length, 1, 10);
   for (std::size_t i = 0; !frame.is_remote && i < frame.length && i < frame.data.size(); ++i) {

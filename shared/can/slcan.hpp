@@ -74,6 +74,9 @@ class SlcanText {
 /// Reads a line that begins with t, T, r or R, with or without a time stamp. Hexadecimal digits may have either case.
 /// Nothing if a digit is missing, superfluous or wrong, or a number is out of range.
 [[nodiscard]] std::optional<SlcanFrame> parse_slcan_frame(std::string_view line);
+/// Number of characters from the begin of a frame's line to the last data byte: adapters append digits to it. 0 if the
+/// line does not begin as that of a frame. The characters may be missing.
+[[nodiscard]] std::size_t slcan_frame_size(std::string_view line);
 /// Writes the line of a frame, with upper-case digits.
 [[nodiscard]] SlcanText format_slcan_frame(const SlcanFrame& frame);
 

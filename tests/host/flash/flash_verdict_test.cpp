@@ -85,6 +85,15 @@ TEST(FlashVerdict, ABootloaderWithoutAProgramGetsTheImage) {
   EXPECT_EQ(verdict.text, "no program -> 0.2.0 (02020202)");
 }
 
+TEST(FlashVerdict, AModuleOfWhichFramesWereLostNeedsAnotherTryAndNoProbe) {
+  FlashCandidate module = module_with(std::nullopt);
+  module.program.missing_words = 7;
+  const FlashVerdict verdict = judge_image(header(2), module);
+  EXPECT_EQ(verdict.action, FlashAction::refuse);
+  EXPECT_NE(verdict.text.find("7 words of the header"), std::string::npos);
+  EXPECT_EQ(verdict.text.find("--bare"), std::string::npos);
+}
+
 TEST(FlashVerdict, AModuleThatCannotBeFlashedOverTheBusIsNamedWithTheWayThatIsLeft) {
   FlashCandidate silent = module_with(std::nullopt);
   silent.program.has_answered = false;

@@ -323,6 +323,17 @@ TEST(RobotUpdate, AHostThatIsKilledAnywhereLeavesModulesThatTheNextRunFlashes) {
   }
 }
 
+TEST(RobotUpdate, ReadsTheWholeHeaderAsLongAsSomeOfItArrives) {
+  FlashedRobot robot;
+  robot.bus.lose(0.25, 1);
+  for (unsigned i = 0; i < 20 * robot.size(); ++i) {
+    const ModuleProgram program = robot.ask(i % robot.size());
+    EXPECT_TRUE(program.image) << i << ": " << program.missing_words << " words are missing";
+  }
+  robot.bus.lose(1.0, 1);
+  EXPECT_FALSE(robot.ask(0).has_answered);
+}
+
 TEST(RobotUpdate, ReadsTheWholeHeaderOfWhatRuns) {
   FlashedRobot robot;
   for (const double loss : {0.0, 0.1}) {

@@ -70,6 +70,18 @@ TEST(BusScan, FindsAllOfThemAlthoughATenthOfTheFramesIsLost) {
   }
 }
 
+TEST(BusScan, MissesNoNodeOnABusThatLosesATwentiethOfTheFrames) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LiveBus bus(scenario);
+  bus.run_for(100'000);
+  bus.lose(0.05, 1);
+  for (unsigned i = 0; i < 20; ++i) {
+    BusScan scan(bus);
+    ASSERT_TRUE(finish(bus, scan, 20 * second));
+    EXPECT_EQ(scan.nodes().size(), 5U) << i;
+  }
+}
+
 /// Hands the first answers of a node out late, as a busy computer does.
 class LateAtFirst final : public host::BusUser {
  public:

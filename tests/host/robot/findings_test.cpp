@@ -76,6 +76,27 @@ TEST(BusFindings, ADeadBusHasOneFinding) {
   EXPECT_EQ(findings(seen, "tcp:localhost:1").front().to_do.find("ip link"), std::string::npos);
 }
 
+TEST(BusFindings, LinesThatAreNotUnderstoodAreShownInsteadOfADeadBus) {
+  BusObservations seen = healthy();
+  seen.nodes.clear();
+  seen.own.statistics = {};
+  seen.own.statistics.malformed = 1;
+  seen.own.statistics.malformed_line = "'t1812AABB123'";
+  const auto found = findings(seen, "serial:/dev/ttyUSB0@115200");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().code, "damaged_lines");
+  EXPECT_NE(found.front().what.find("'t1812AABB123'"), std::string::npos);
+  EXPECT_NE(found.front().to_do.find("baud rate"), std::string::npos);
+}
+
+TEST(BusFindings, SomeLinesAtTheOpeningMayBeTheRestOfOtherOutput) {
+  BusObservations seen = healthy();
+  seen.own.statistics.malformed = 2;
+  EXPECT_EQ(first_code(seen), "none");
+  seen.own.statistics.malformed = 3;
+  EXPECT_EQ(first_code(seen), "damaged_lines");
+}
+
 TEST(BusFindings, ALostConnectionHidesAllElse) {
   BusObservations seen = healthy();
   seen.own.state.is_connected = false;

@@ -99,7 +99,7 @@ TEST_F(SlcanClientTest, OpensAnAdapterThatAnswersEverything) {
   client.start(now);
   run(lawicel, 0);
   EXPECT_EQ(client.state(), SlcanClient::State::open);
-  EXPECT_EQ(lines, (std::vector<std::string>{"C", "V", "N", "S8", "O"}));
+  EXPECT_EQ(lines, (std::vector<std::string>{"C", "V", "N", "S8", "Z0", "O"})) << "Z0 is rejected";
   EXPECT_EQ(client.adapter(), "V1013, NA123");
   EXPECT_TRUE(client.is_acknowledging());
 }
@@ -186,7 +186,9 @@ TEST_F(SlcanClientTest, SaysThatNothingAnswers) {
 
 TEST_F(SlcanClientTest, SaysWhatItReceivedAndWhatItExpected) {
   EXPECT_EQ(error_of([](const std::string&) { return "\xFE\x01\x80\xFE"; }),
-            "received '\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE', expected "
+            "received "
+            "'\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE', "
+            "expected "
             "slcan: CR, BEL or a line such as t1230");
   EXPECT_EQ(error_of([](const std::string&) { return "ERROR\r\n"; }),
             "received 'ERROR' after S8, expected slcan: CR, BEL or a line such as t1230");
@@ -277,6 +279,53 @@ TEST_F(SlcanClientTest, PassesFramesAndReportsAndIgnoresForeignFrames) {
   EXPECT_TRUE(errors.contains(CanErrorKind::acknowledgement));
 }
 
+TEST_F(SlcanClientTest, ShowsTheLastLineThatItDidNotUnderstand) {
+  open(lawicel);
+  client.input(now, "garbage\rt08011F123456\r");
+  EXPECT_EQ(client.statistics().malformed, 2U);
+  EXPECT_EQ(client.statistics().malformed_line, "'t08011F123456'");
+}
+
+TEST_F(SlcanClientTest, AnAdapterMayReportFramesThatItHasConfirmed) {
+  const Script script = [](const std::string& line) { return line[0] == 't' ? "\rz" + line + "\r" : lawicel(line); };
+  open(script);
+  for (unsigned number = 0; number < 40; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  run(script);
+  EXPECT_EQ(frames_transmitted, frames(40));
+  EXPECT_TRUE(frames_received.empty());
+  EXPECT_EQ(client.statistics().malformed, 0U);
+}
+
+TEST_F(SlcanClientTest, AnAdapterMayConfirmAFrameWithTheReportOnly) {
+  const Script script = [](const std::string& line) { return line[0] == 't' ? "Z" + line + "\r" : lawicel(line); };
+  open(script);
+  for (unsigned number = 0; number < 40; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  run(script, 0);
+  EXPECT_EQ(frames_transmitted, frames(40));
+  EXPECT_TRUE(frames_received.empty());
+}
+
+TEST_F(SlcanClientTest, AnAdapterMayConfirmFramesWithoutTheEndOfALine) {
+  const Script script = [](const std::string& line) { return line[0] == 't' ? "z" : lawicel(line); };
+  open(script);
+  ASSERT_TRUE(client.send(frame(1)));
+  ASSERT_TRUE(client.send(frame(2)));
+  exchange(script);
+  client.input(now, "t58100\r");  // a frame from the bus ends the line zz
+  EXPECT_EQ(frames_received, (std::vector<CanFrame>{{0x581, 0, {}}}));
+  EXPECT_EQ(frames_transmitted, (std::vector<CanFrame>{frame(1), frame(2)}));
+  for (unsigned number = 0; number < 1'000; ++number) {
+    ASSERT_TRUE(client.send(frame(3)));
+  }
+  run(script, 0);
+  EXPECT_EQ(client.statistics().transmitted, 1'002U) << "without another frame from the bus";
+  EXPECT_EQ(client.statistics().malformed, 0U);
+}
+
 TEST_F(SlcanClientTest, AnAdapterThatDiesIsFound) {
   open(lawicel);
   ASSERT_TRUE(client.send(frame(1)));
@@ -295,6 +344,25 @@ TEST_F(SlcanClientTest, AnAnswerThatIsLostEndsNothing) {
   EXPECT_EQ(client.state(), SlcanClient::State::open);
   EXPECT_EQ(client.statistics().transmitted + client.statistics().unconfirmed, 2U);
   EXPECT_TRUE(client.is_acknowledging());
+}
+
+TEST_F(SlcanClientTest, ConfirmationsThatAreLostAreMadeUpForInAFifthOfASecond) {
+  open(lawicel);
+  unsigned count = 0;
+  const Script forgetful = [&count](const std::string& line) {
+    return line[0] == 't' && ++count % 20 == 0 ? "" : lawicel(line);
+  };
+  for (unsigned number = 0; number < 1'000; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  const Microseconds start = now;
+  for (exchange(forgetful); client.next_deadline() != never; exchange(forgetful)) {
+    now = client.next_deadline();
+    client.poll(now);
+  }
+  EXPECT_EQ(frames_transmitted, frames(1'000))
+      << "50 confirmations fill the window once, and 18 of them wait at the end";
+  EXPECT_LE(now - start, 400'000U);
 }
 
 TEST_F(SlcanClientTest, AnAdapterMayConfirmCommandsOnly) {

@@ -7,6 +7,7 @@ Usage: robot_on_the_table_test.py SOURCE_FOLDER PROGRAM_FOLDER
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import socket
@@ -103,6 +104,47 @@ class Listener:
     def frames(self):
         """As in a candump log, without the '#': '18300...'."""
         return [line[1:4] + line[5:] for line in self.text.decode("ascii").split("\r") if line.startswith("t")]
+
+
+class CutLine:
+    """A line to a bus that is cut when a program has sent a command several times."""
+
+    def __init__(self, bus, command, count):
+        host, port = bus.removeprefix("tcp:").split(":")
+        self.bus = (host, int(port))
+        self.command, self.count = command, count
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.address = f"tcp:127.0.0.1:{self.server.getsockname()[1]}"
+        self.thread = threading.Thread(target=self.serve, daemon=True)
+        self.thread.start()
+
+    def serve(self):
+        program = self.server.accept()[0]
+        self.server.close()  # the program finds no other line
+        with program, socket.create_connection(self.bus) as bus:
+            back = threading.Thread(target=self.copy, args=(bus, program), daemon=True)
+            back.start()
+            sent = b""
+            while sent.count(self.command) < self.count and (part := program.recv(4096)):
+                sent += part
+                bus.sendall(part)
+            program.shutdown(socket.SHUT_RDWR)
+            bus.shutdown(socket.SHUT_RDWR)
+            back.join(LONGEST)
+
+    @staticmethod
+    def copy(source, target):
+        try:
+            while part := source.recv(4096):
+                target.sendall(part)
+        except OSError:
+            pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.thread.join(LONGEST)
 
 
 def proleg(name, *arguments, text=""):
@@ -396,6 +438,33 @@ class RobotOnTheTable(unittest.TestCase):
                 self.assertEqual(assign.returncode, 0, assign.stderr)
                 serials = {joint["node"]: joint["serial"] for joint in json.loads(assign.stdout)["joints"]}
                 self.assertEqual(serials, {**nodes, 2: nodes[3], 3: nodes[2]})
+
+    def test_assign_that_is_cut_while_node_ids_are_stored_prints_the_command_that_goes_on(self):
+        right = {}
+        with Bus() as bus:
+            right = {node["serial"]: node["node"] for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
+        for cut in (1, 2, 3):
+            with Bus("--shuffle", "7") as bus, CutLine(bus.tcp, b"t7E5817", cut) as line:
+                before = {node["serial"]: node["node"]
+                          for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
+                places = ",".join(f"{before[serial]}=J{6 - node}" for serial, node in right.items())
+                assign = proleg("assign", SOURCE / SCENARIO, "--bus", line.address, "--places", places)
+                self.assertEqual(assign.returncode, 1, assign.stdout)
+                for serial in right:
+                    self.assertIn(f"the module with the serial number 0x{serial:08X} (J", assign.stderr)
+                command = shlex.split(assign.stderr.splitlines()[-1].split("this goes on: proleg ")[1])
+                command[command.index("--bus") + 1] = bus.tcp
+                if cut == 2:
+                    # The node ids that a scan shows are accepted, too, although the reset changes them.
+                    command[command.index("--places") + 1] = places
+                elif cut == 1:
+                    drive = start_drive(bus.tcp, "--seconds", "1").communicate(timeout=LONGEST)[1]
+                    self.assertIn("proleg assign", drive)
+                again = proleg(*command)
+                self.assertEqual(again.returncode, 0, again.stderr)
+                after = {node["serial"]: node["node"]
+                         for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
+                self.assertEqual(after, right)
 
     def test_assign_changes_nothing_if_it_is_not_told_the_places(self):
         with Bus("--shuffle", "7") as bus:

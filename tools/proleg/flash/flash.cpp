@@ -261,9 +261,10 @@ void Flashing::print_result() const {
   std::printf("%-22s %-18s %-10s %s\n", "module", "version", "SHA-256", "state");
   for (const Module& module : modules_) {
     const host::ModuleProgram* const program = module.program();
-    const std::string version = program == nullptr ? "not known"
-                                : program->image   ? host::version_text(*program->image)
-                                                   : "none";
+    const std::string version = program != nullptr && program->image ? host::version_text(*program->image)
+                                : program != nullptr && program->has_answered && program->missing_words == 0
+                                    ? "none"
+                                    : "not known";
     const std::string hash = program != nullptr && program->image ? digits_of_hash(*program->image) : "-";
     const std::string state = module.verdict.action == FlashAction::refuse ? "refused: " + module.verdict.text
                               : module.result ? describe(module.result->outcome, module.result->detail)

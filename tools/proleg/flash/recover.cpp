@@ -63,8 +63,10 @@ std::string node_text(const host::FlashCandidate& module) {
 }
 
 std::string program_text(const RecoveredModule& module) {
-  const auto& image = module.now.program.image;
-  return image ? host::version_text(*image) : module.now.program.has_answered ? "none" : "unknown";
+  const host::ModuleProgram& program = module.now.program;
+  return program.image                                        ? host::version_text(*program.image)
+         : program.has_answered && program.missing_words == 0 ? "none"
+                                                              : "unknown";
 }
 
 /// What was found, and what follows.

@@ -398,7 +398,11 @@ void Recovery::renumber_duplicates(std::uint8_t node) {
     changes.push_back(
         {address_of(module.now), keeps ? node : free[used++].node, module.now.program.is(flag::runs_program)});
   }
-  tools::renumber(bus_, changes, "proleg recover", node);
+  try {
+    tools::renumber(bus_, changes, node);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string(error.what()) + "; run proleg recover again");
+  }
 }
 
 void Recovery::restart(const std::vector<RecoveredModule*>& modules) {

@@ -14,6 +14,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
+#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/robot/assign_steps.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
@@ -81,6 +82,7 @@ class Assignment {
   }
 
   int run() {
+    find_named_nodes();
     reset_all(bus_);
     numbered_ = number_fresh_modules(bus_, nodes_, serials_);
     find();
@@ -90,25 +92,47 @@ class Assignment {
     } else {
       take_places();
     }
-    const auto steps = host::plan_node_ids(modules_, nodes_, others_);
+    auto steps = host::plan_node_ids(modules_, nodes_, others_);
     if (!steps) {
       throw std::runtime_error("two modules have one joint by their serial numbers, or no node id is free");
     }
-    if (!steps->empty()) {
-      show_changes(*steps);
+    steps_ = std::move(*steps);
+    if (!steps_.empty()) {
+      show_changes();
       if (settings_.asks && !dialogue_.ask_to_agree("Give the modules these node ids?")) {
         throw std::runtime_error("ended by the user");
       }
       has_renumbered_ = true;
-      renumber(bus_, *steps, "proleg assign");
+      renumber(bus_, steps_);
       verify();
     }
-    print_result(!steps->empty());
+    print_result(!steps_.empty());
     return joints_without_module().empty() ? exit_success : exit_failed;
   }
 
   /// Whether modules may have stored node ids for their places.
   [[nodiscard]] bool has_renumbered() const { return has_renumbered_; }
+  /// Shows the node id that each module has in its flash after a failure. Returns the rest of the command that goes on.
+  [[nodiscard]] std::string show_places_to_go_on() const {
+    const auto unfinished = std::ranges::find(steps_, false, &canopen::RenumberedModule::has_stored);
+    std::string places;
+    for (const host::PlacedModule& module : modules_) {
+      unsigned node = module.node;
+      for (const canopen::RenumberedModule& step : steps_) {
+        node = step.address == module.address && step.has_stored ? unsigned{step.node} : node;
+      }
+      const bool is_uncertain = unfinished != steps_.end() && unfinished->address == module.address;
+      const std::string serial = hexadecimal(module.address.back(), 8);
+      AssignDialogue::say("the module with the serial number " + serial + " (" +
+                          (module.joint ? joint_name(*module.joint) : "no joint of this robot") + ") has the node id " +
+                          std::to_string(node) +
+                          (is_uncertain ? ", or " + std::to_string(unfinished->node) + " already" : "") + "\n");
+      if (module.joint) {
+        places += (places.empty() ? "" : ",") + serial + "=" + joint_name(*module.joint);
+      }
+    }
+    return " --places " + shell_argument(places);
+  }
   /// What was changed before that.
   [[nodiscard]] std::string changes() const {
     return numbered_ == 0 ? "no node id was changed"
@@ -131,6 +155,38 @@ class Assignment {
       }
     }
     return names;
+  }
+
+  /// Finds the modules that --places names by the node ids that a scan shows: after a run that was cut some modules
+  /// have others since the reset.
+  void find_named_nodes() {
+    if (std::ranges::none_of(settings_.places, [](const Place& place) { return place.node.has_value(); })) {
+      return;
+    }
+    try {
+      named_ = find_modules_to_number(bus_).modules;
+    } catch (const std::runtime_error&) {
+      if (interrupted() || !bus_.connection().state().is_connected) {
+        throw;  // else the reset may bring modules back
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<host::PlacedModule>::iterator module_at(const Place& place) {
+    if (!place.node) {
+      return std::ranges::find_if(modules_, [&place](const auto& one) { return one.address.back() == place.serial; });
+    }
+    const auto named = std::ranges::find(named_, *place.node, &host::PlacedModule::node);
+    return named != named_.end() ? std::ranges::find(modules_, named->address, &host::PlacedModule::address)
+                                 : std::ranges::find(modules_, *place.node, &host::PlacedModule::node);
+  }
+
+  [[nodiscard]] std::string present_modules() const {
+    std::vector<std::string> present;
+    for (const host::PlacedModule& module : modules_) {
+      present.push_back(hexadecimal(module.address.back(), 8) + " (node " + std::to_string(module.node) + ")");
+    }
+    return listed(present);
   }
 
   void find() {
@@ -159,10 +215,10 @@ class Assignment {
   /// Modules that --places does not name keep their places, unless a named one takes it.
   void take_places() {
     for (const Place& place : settings_.places) {
-      const auto module = std::ranges::find(modules_, place.node, &host::PlacedModule::node);
+      const auto module = module_at(place);
       if (module == modules_.end()) {
-        throw std::runtime_error("--places: no module with the node id " + std::to_string(place.node) +
-                                 " is on the bus");
+        throw std::runtime_error("--places: no module with " + place.module_name() + " is on the bus, but " +
+                                 present_modules());
       }
       const host::PlacedModule* other = module_of(place.joint);
       if ((other != nullptr && other != &*module) || (module->joint && *module->joint != place.joint)) {
@@ -201,11 +257,11 @@ class Assignment {
     }
   }
 
-  void show_changes(const std::vector<canopen::RenumberedModule>& steps) {
+  void show_changes() {
     for (const host::PlacedModule& module : modules_) {
       // A module that is listed twice has the last node id.
       std::optional<unsigned> node;
-      for (const canopen::RenumberedModule& step : steps) {
+      for (const canopen::RenumberedModule& step : steps_) {
         node = step.address == module.address ? std::optional(unsigned{step.node}) : node;
       }
       if (node) {
@@ -223,12 +279,12 @@ class Assignment {
       const auto now = std::ranges::find(found, module.address, &host::PlacedModule::address);
       if (now == found.end()) {
         throw std::runtime_error("the module with the serial number " + hexadecimal(module.address.back(), 8) +
-                                 " does not answer with its new node id; run proleg assign again");
+                                 " does not answer with its new node id");
       }
       module.node = now->node;
       if (module.joint && module.node != nodes_[*module.joint]) {
         throw std::runtime_error("the module of " + joint_name(*module.joint) + " still has the node id " +
-                                 std::to_string(module.node) + "; run proleg assign again");
+                                 std::to_string(module.node));
       }
     }
   }
@@ -268,6 +324,8 @@ class Assignment {
   std::vector<std::uint8_t> nodes_;     ///< by joint, as the robot's file says
   std::vector<std::uint32_t> serials_;  ///< by joint
   std::vector<host::PlacedModule> modules_;
+  std::vector<host::PlacedModule> named_;  ///< modules before the reset, if --places names node ids
+  std::vector<canopen::RenumberedModule> steps_;
   std::vector<std::uint8_t> others_;  ///< nodes that are no modules
   unsigned numbered_ = 0;             ///< modules that had no node id
   bool has_renumbered_ = false;
@@ -293,7 +351,10 @@ int assign(const AssignOptions& options) {
     return assignment.run();
   } catch (const std::exception& error) {
     if (assignment.has_renumbered()) {
-      throw;
+      throw std::runtime_error(std::string(error.what()) + "; this goes on: proleg assign " +
+                               shell_argument(options.file) +
+                               (options.bus.bus ? " --bus " + shell_argument(*options.bus.bus) : "") +
+                               assignment.show_places_to_go_on() + algorithm_options());
     }
     throw std::runtime_error(std::string(error.what()) + "; " + assignment.changes());
   }
@@ -311,10 +372,11 @@ int main(int argc, char** argv) {
   command_line.add_option("FILE", options.file, "a scenario (*.simulation.xml) with the robot").required();
   add_bus_option(command_line, options.bus);
   command_line
-      .add_option("--places", options.places,
-                  "which joint each module moves, by its present node id: 3=J1,1=J2. Then nothing moves and nothing is "
-                  "asked")
-      .value_name("NODE=JOINT,...");
+      .add_option(
+          "--places", options.places,
+          "which joint each module moves, by its present node id or its serial number: 3=J1,0x1A2B3C4D=J2. Then "
+          "nothing moves and nothing is asked")
+      .value_name("MODULE=JOINT,...");
   command_line.add_option("--amplitude", options.amplitude, "how far a joint moves to each side, 1 to 30 degrees (5)")
       .value_name("DEGREES");
   command_line.add_flag("--yes", options.yes, "do not ask before the node ids are changed");

@@ -191,6 +191,24 @@ std::optional<unsigned> joint_of(const sim::RobotModel& robot, std::string_view 
   return only_joint(robot, [&](const std::string& name) { return number_of(name) == word; });
 }
 
+std::string Place::module_name() const {
+  return node ? "the node id " + std::to_string(*node) : "the serial number " + hexadecimal(serial, 8);
+}
+
+namespace {
+
+/// A node id, or a serial number as `proleg scan` shows it; nothing else.
+std::optional<Place> parse_module(std::string_view word) {
+  if (word.starts_with("0x") || word.starts_with("0X")) {
+    const auto serial = parse_whole<std::uint32_t>(word.substr(2), 16);
+    return serial ? std::optional(Place{std::nullopt, *serial, 0}) : std::nullopt;
+  }
+  const auto node = parse_whole<std::uint8_t>(word);
+  return node ? std::optional(Place{*node, 0, 0}) : std::nullopt;
+}
+
+}  // namespace
+
 std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view words) {
   std::vector<Place> places;
   for (std::size_t begin = 0; begin <= words.size();) {
@@ -198,21 +216,22 @@ std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view w
     const std::string_view word = trimmed(words.substr(begin, end - begin));
     begin = end + 1;
     const std::size_t equals = std::min(word.find('='), word.size());
-    const auto node = parse_whole<std::uint8_t>(word.substr(0, equals));
+    auto place = parse_module(word.substr(0, equals));
     const auto joint = equals < word.size() ? joint_of(robot, word.substr(equals + 1)) : std::nullopt;
-    if (!node || !joint) {
+    if (!place || !joint) {
       throw InputError("--places", 0, in_quotes(word),
-                       "NODE=JOINT, such as 3=J1; the joints are " + listed(sim::joint_names(robot)));
+                       "NODE=JOINT or SERIAL=JOINT, such as 3=J1 or 0x1A2B3C4D=J1; the joints are " +
+                           listed(sim::joint_names(robot)));
     }
     for (const Place& other : places) {
-      if (other.node == *node || other.joint == *joint) {
-        throw InputError(
-            "--places", 0,
-            in_quotes(word) + " after node " + std::to_string(other.node) + " for " + robot.joints[other.joint].name,
-            "each module and each joint once");
+      if ((other.node == place->node && other.serial == place->serial) || other.joint == *joint) {
+        throw InputError("--places", 0,
+                         in_quotes(word) + " after " + other.module_name() + " for " + robot.joints[other.joint].name,
+                         "each module and each joint once");
       }
     }
-    places.push_back({*node, *joint});
+    place->joint = *joint;
+    places.push_back(*place);
   }
   return places;
 }

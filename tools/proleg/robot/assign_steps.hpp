@@ -65,11 +65,14 @@ class MovingJoint {
 
 /// A module and its joint, as the user says.
 struct Place {
-  std::uint8_t node;
-  unsigned joint;
+  std::optional<std::uint8_t> node;  ///< nothing: the serial number names the module
+  std::uint32_t serial = 0;
+  unsigned joint = 0;
+
+  [[nodiscard]] std::string module_name() const;
 };
 
-/// "3=J1,1=J2". Throws InputError, which names --places; also if a module or a joint is named twice.
+/// "3=J1,0x1A2B3C4D=J2". Throws InputError, which names --places; also if a module or a joint is named twice.
 [[nodiscard]] std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view words);
 
 /// The questions of proleg assign. They are on standard error, answers come by standard input, from a person or from a

@@ -146,6 +146,12 @@ std::string GaitRun::why_ended() const {
       problem.code == ProblemCode::no_answer) {
     text += "; " + bus_.diagnosis();
   }
+  if (problem.code == ProblemCode::unexpected_node || problem.code == ProblemCode::wrong_serial) {
+    text += "; 'proleg assign " + scenario_.path +
+            "' gives the modules of this robot their node ids; unplug a module of another robot";
+  } else if (problem.code == ProblemCode::duplicate_node) {
+    text += "; 'proleg recover' gives one of two modules with one node id another one";
+  }
   return text;
 }
 

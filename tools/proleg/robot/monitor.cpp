@@ -151,7 +151,8 @@ int run(const MonitorOptions& options) {
     const host::BusMonitor::Traffic traffic = monitor.take_traffic(now);
     options.json ? print_json(monitor, traffic, now) : print_table(monitor, traffic, now, redraws);
   }
-  if (!connection.state().is_connected) {
+  const host::Statistics numbers = connection.statistics();
+  if (!connection.state().is_connected || (numbers.received == 0 && numbers.malformed > 0)) {
     std::cerr << "proleg monitor: " << connection.diagnosis() << '\n';
     return exit_failed;
   }

@@ -80,9 +80,7 @@ unsigned number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> node
   }
 }
 
-void renumber(BusAccess& bus, std::span<const canopen::RenumberedModule> changes, const std::string& command,
-              std::uint8_t reset_node) {
-  std::vector<canopen::RenumberedModule> modules(changes.begin(), changes.end());
+void renumber(BusAccess& bus, std::span<canopen::RenumberedModule> modules, std::uint8_t reset_node) {
   canopen::LssRenumberingOptions options;
   options.reset_node = reset_node;
   LssRenumbering renumbering(bus.connection(), modules, options);
@@ -91,7 +89,7 @@ void renumber(BusAccess& bus, std::span<const canopen::RenumberedModule> changes
     throw std::runtime_error(problem_of(serial_text(modules[renumbering.problem_module()].address),
                                         renumbering.problem(), renumbering.problem_detail()) +
                              "; " + std::to_string(stored) + " of " + std::to_string(modules.size()) +
-                             " modules have stored their new node ids. Run " + command + " again");
+                             " node ids were stored");
   }
 }
 

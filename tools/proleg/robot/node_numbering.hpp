@@ -17,9 +17,8 @@ namespace proleg::tools {
 unsigned number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes,
                               std::span<const std::uint32_t> serials, std::span<const std::uint8_t> taken = {});
 
-/// The modules store their new node ids and boot with them. command: to be run again if that fails. reset_node: as
-/// LssRenumberingOptions has it.
-void renumber(BusAccess& bus, std::span<const canopen::RenumberedModule> changes, const std::string& command,
-              std::uint8_t reset_node = 0);
+/// The modules store their new node ids and boot with them. What they have done is in `modules`, also after an
+/// exception. reset_node: as LssRenumberingOptions has it.
+void renumber(BusAccess& bus, std::span<canopen::RenumberedModule> modules, std::uint8_t reset_node = 0);
 
 }  // namespace proleg::tools

@@ -92,7 +92,8 @@ class Run {
   void take(std::size_t count) {
     for (const char character : client_.take(now_, count)) {
       if (character == '\r') {
-        const bool is_command = line_ == "C" || line_ == "V" || line_ == "N" || line_ == "S8" || line_ == "O";
+        const bool is_command =
+            line_ == "C" || line_ == "V" || line_ == "N" || line_ == "S8" || line_ == "Z0" || line_ == "O";
         require(is_command || parse_slcan_frame(line_), "the output has whole lines");
         line_.clear();
       } else {

@@ -136,6 +136,7 @@ Finding explain(const ConnectionFacts& facts) {
               "Unplug the adapter and plug it in again. If that does not help, it needs another program, or another "
               "adapter is needed: the bus has 1 Mbit/s.",
               {}};
+    case TransportProblem::no_listener:
     case TransportProblem::other:
       break;
   }

@@ -28,6 +28,7 @@ class Link {
   [[nodiscard]] virtual Opened open() = 0;
   /// One line about a connection that cannot be made. error: error of the system.
   [[nodiscard]] virtual std::string connect_failure(int error) const;
+  [[nodiscard]] virtual TransportProblem connect_problem(int /*error*/) const { return TransportProblem::other; }
   /// One line about a connection that has ended. error: error of the system; 0: the other end closed it.
   [[nodiscard]] virtual std::string end_text(int error);
   /// What the user should check if no adapter answers.

@@ -12,6 +12,8 @@ namespace {
 
 constexpr Microseconds first_pause = 100'000;
 constexpr Microseconds longest_pause = 5'000'000;
+/// The program that serves the bus may have been started in the same moment: `proleg bus FILE --tcp PORT &`.
+constexpr Microseconds start_of_a_program = 2'000'000;
 
 class SlcanTransport final : public Transport, private ByteStreamOwner, private SlcanClientListener {
  public:
@@ -33,6 +35,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
 
   /// Opens the bus. Returns when the channel is open. Throws TransportError.
   void open() {
+    const Microseconds patience_ends = now() + start_of_a_program;
     for (std::size_t attempt = 0; phase_ != Phase::open; ++attempt) {
       connect();
       while (phase_ == Phase::connecting || phase_ == Phase::starting) {
@@ -42,7 +45,14 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
         }
         has_changed_phase_ = false;
       }
-      if (phase_ != Phase::open && attempt + 1 >= link_->alternatives()) {
+      if (phase_ == Phase::open || attempt + 1 < link_->alternatives()) {
+        continue;
+      }
+      if (problem_ == TransportProblem::no_listener && now() < patience_ends) {
+        const bool ends_early = false;
+        host::run_until(context_, now() + first_pause, ends_early);
+        has_changed_phase_ = false;
+      } else {
         throw TransportError(address_ + ": " + state_.reason, problem_);
       }
     }
@@ -124,7 +134,11 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
     return output;
   }
   void ended(int error) override {
-    lose(phase_ == Phase::connecting ? link_->connect_failure(error) : link_->end_text(error));
+    if (phase_ == Phase::connecting) {
+      lose(link_->connect_failure(error), link_->connect_problem(error));
+    } else {
+      lose(link_->end_text(error));
+    }
   }
 
   void handle_time() {

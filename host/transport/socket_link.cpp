@@ -35,9 +35,13 @@ class TcpLink final : public Link {
     notice_dead_peers(socket.number());
     const int result = connect(socket.number(), reinterpret_cast<const sockaddr*>(&address.bytes), address.size);
     if (result != 0 && errno != EINPROGRESS) {
-      throw TransportError(connect_failure(errno));
+      const int error = errno;
+      throw TransportError(connect_failure(error), connect_problem(error));
     }
     return {std::move(socket), result != 0};
+  }
+  [[nodiscard]] TransportProblem connect_problem(int error) const override {
+    return error == ECONNREFUSED ? TransportProblem::no_listener : TransportProblem::other;
   }
   [[nodiscard]] std::string connect_failure(int error) const override {
     const std::string text = system_text(error);

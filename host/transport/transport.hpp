@@ -23,6 +23,7 @@ enum class TransportProblem : std::uint8_t {
   in_use,       ///< another program has it open
   no_answer,    ///< nothing was received from the adapter
   not_slcan,    ///< bytes were received that no slcan adapter sends
+  no_listener,  ///< the host is on, and no program of it listens at the port
   no_bit_rate,  ///< the adapter refuses 1 Mbit/s, or to open its channel
 };
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "host/transport/event_loop.hpp"
 #include "host/transport/open_transport.hpp"
 #include "test_bus.hpp"
 #include "tests/support/message_of.hpp"
@@ -176,6 +177,28 @@ TEST_F(BusServerTest, ATransportReturnsToAServerThatReturns) {
   EXPECT_EQ(again.add_tcp("127.0.0.1", port), port);
   ASSERT_TRUE(wait_for(context, [&] { return transport->state().is_connected; }));
   EXPECT_EQ(transport->statistics().connections, 2U);
+}
+
+TEST_F(BusServerTest, ATransportWaitsForAServerThatStartsInTheSameMoment) {
+  auto other = std::make_unique<BusServer>(context, bus);
+  const std::uint16_t port = other->add_tcp("127.0.0.1", 0);
+  other.reset();
+  BusServer late(context, bus);
+  Timer timer(context, [&] { EXPECT_EQ(late.add_tcp("127.0.0.1", port), port); });
+  timer.set(steady_now() + 1'000'000);
+  const auto transport = open("tcp:127.0.0.1:" + std::to_string(port), first_log);
+  EXPECT_TRUE(transport->state().is_connected);
+}
+
+TEST_F(BusServerTest, ATransportGivesUpAServerThatDoesNotStart) {
+  auto other = std::make_unique<BusServer>(context, bus);
+  const std::uint16_t port = other->add_tcp("127.0.0.1", 0);
+  other.reset();
+  const Microseconds start = steady_now();
+  const std::string word = "tcp:127.0.0.1:" + std::to_string(port);
+  EXPECT_NE(message_of<TransportError>([&] { static_cast<void>(open(word, first_log)); }).find("no program listens"),
+            std::string::npos);
+  EXPECT_GE(steady_now(), start + 2'000'000);
 }
 
 TEST_F(BusServerTest, SaysThatADescriptorHasClosed) {

@@ -100,7 +100,7 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
       throw InputError(path, line, in_quotes(*text), "TICK SENDER RECEIVER [CHANNEL], channel 1 or 2");
     }
     Loss loss{*tick, parse_joint(fields[1], robot, path, line),
-              static_cast<std::uint8_t>(has_channel && fields[3] == "2" ? 1 : 0), 0};
+              static_cast<std::uint8_t>(has_channel && fields[3] == "2" ? 1 : 0), 0, line};
     if (fields[2] != "*") {
       loss.receiver = parse_joint(fields[2], robot, path, line);
       if (loss.receiver == loss.sender) {
@@ -124,7 +124,9 @@ auto order(const Loss& loss) { return std::tuple(loss.tick, loss.sender, loss.ch
 
 }  // namespace
 
-Losses::Losses(std::vector<Loss> list) : list_(std::move(list)) { std::ranges::sort(list_, {}, order); }
+Losses::Losses(std::vector<Loss> list, std::string source) : list_(std::move(list)), source_(std::move(source)) {
+  std::ranges::sort(list_, {}, order);
+}
 
 JointMask Losses::receivers_without(std::uint32_t tick, unsigned sender, unsigned channel) const {
   JointMask receivers;
@@ -151,10 +153,10 @@ void Losses::require_effect(std::uint32_t ticks, const KernelConfiguration& kern
   }
   for (const Loss& loss : list_) {
     if (loss.tick >= ticks) {
-      throw InputError("--losses", 0, "a loss at tick " + std::to_string(loss.tick), expected);
+      throw InputError(source_, loss.line, "a loss at tick " + std::to_string(loss.tick), expected);
     }
     if (loss.channel == 1 && !kernel.second_channel_senders().contains(loss.sender)) {
-      throw InputError("--losses", 0, "a loss on channel 2 at tick " + std::to_string(loss.tick),
+      throw InputError(source_, loss.line, "a loss on channel 2 at tick " + std::to_string(loss.tick),
                        "a sender with two broadcasting algorithms");
     }
   }
@@ -168,7 +170,7 @@ Losses read_losses(const std::string& argument, const RobotModel& robot) {
   if (starts_with_seed) {
     return parse_random(argument, colon);
   }
-  return Losses(read_list(argument, robot));
+  return Losses(read_list(argument, robot), argument);
 }
 
 }  // namespace proleg::sim

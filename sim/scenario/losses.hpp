@@ -19,6 +19,7 @@ struct Loss {
   std::uint8_t sender;   ///< joint
   std::uint8_t channel;  ///< 0, or 1 for the frame of the joint's second broadcasting slot
   std::uint8_t receiver;
+  int line = 0;  ///< of the file that lists it, from 1 on; 0: there is none
 };
 
 /// Each frame is lost for each receiver with the same probability. The result does not depend on the number of joints,
@@ -34,7 +35,8 @@ class Losses {
  public:
   /// No losses.
   Losses() = default;
-  explicit Losses(std::vector<Loss> list);
+  /// source: what errors name, such as the file of the list.
+  explicit Losses(std::vector<Loss> list, std::string source = "--losses");
   explicit Losses(const RandomLosses& random) : random_(random) {}
 
   [[nodiscard]] bool any() const { return !list_.empty() || random_.threshold != 0; }
@@ -48,6 +50,7 @@ class Losses {
 
  private:
   std::vector<Loss> list_;  ///< sorted
+  std::string source_ = "--losses";
   RandomLosses random_;
 };
 

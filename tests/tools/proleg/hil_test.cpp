@@ -116,6 +116,14 @@ TEST_F(Hil, FaultsThatDoNotExistAreRefused) {
   expect_refused({"hil", scenario_file, "--seconds", "1", "--faults", "1"}, {"a run of 1s, expected at least 2.5s"});
   expect_refused({"faults", scenario_file, "--schedule", "x"}, {"'x'"});
   expect_refused({"faults", "--schedule", "1"}, {"no scenario"});
+  expect_refused({"faults", "none.txt"}, {"'none.txt' without --schedule"});
+  const std::string kept = file("kept").string();
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--record", kept}, {"--can-log", kept}, {"--trace", "3=" + kept}}) {
+    std::vector<std::string> command{"hil", scenario_file, "--faults", "1:2", "--modules", "3=mcu"};
+    command.insert(command.end(), words.begin(), words.end());
+    expect_refused(command, {words[0], "SEED:COUNT"});
+  }
 }
 
 TEST_F(Hil, ReadsLossesFromAFile) {
@@ -206,6 +214,10 @@ TEST_F(Hil, BadOptionsAreRefused) {
     expect_refused({command, file_name, "--losses", "/"}, {"'/': found a folder"});
     expect_refused({command, file_name, "--losses", file("none").string()}, {"none': found no such file"});
   }
+  std::ofstream(file("losses.txt")) << "# channel 2\n30 J5 J4 2\n";
+  expect_refused({"simulate", file_name, "--losses", file("losses.txt").string()},
+                 {"losses.txt:2: found a loss on channel 2 at tick 30"});
+  std::filesystem::remove(file("losses.txt"));
   EXPECT_TRUE(left_behind().empty());
 }
 

@@ -234,13 +234,15 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
     return nullptr;
   }
   std::error_code missing;
-  if (std::filesystem::file_size(*options.record, missing) > 0 && !missing) {
-    std::cerr << "proleg " << program.substr(0, program.find(' ')) << ": replaces " << one_line(*options.record)
-              << '\n';
-  }
+  const bool replaces = std::filesystem::file_size(*options.record, missing) > 0 && !missing;
   try {
     // The path follows a link, so that the recording replaces the file that the link names.
-    return std::make_unique<sim::Recorder>(follow_links(*options.record), scenario, program, build_id);
+    auto recorder = std::make_unique<sim::Recorder>(follow_links(*options.record), scenario, program, build_id);
+    if (replaces) {
+      std::cerr << "proleg " << program.substr(0, program.find(' ')) << ": replaces " << one_line(*options.record)
+                << '\n';
+    }
+    return recorder;
   } catch (const FileError& error) {
     throw BadInput(error.what());
   }

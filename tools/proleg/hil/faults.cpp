@@ -66,6 +66,9 @@ int faults(const FaultsOptions& options) {
     }
     const sim::RandomFaults settings{*seed, run_us, options.chips};
     std::cout << sim::faults_text(sim::random_faults(settings, run.scenario), run.scenario.robot);
+  } else if (!options.file.empty()) {
+    throw InputError("FILE", 0, in_quotes(options.file) + " without --schedule",
+                     "proleg faults FILE --schedule SEED; without FILE the command lists what can fail");
   } else {
     print_kinds(std::cout);
   }

@@ -129,6 +129,22 @@ struct HilFiles {
   std::unique_ptr<sim::CandumpLog> log;
 };
 
+/// A campaign has many runs, and writes a file of none.
+void refuse_files_of_one_run(const HilOptions& options) {
+  const struct {
+    const char* name;
+    bool is_given;
+  } of_one_run[]{{"--record", options.record.has_value()},
+                 {"--can-log", options.can_log.has_value()},
+                 {"--trace", !options.traces.empty()}};
+  for (const auto& option : of_one_run) {
+    if (option.is_given) {
+      throw InputError(option.name, 0, "--faults SEED:COUNT, too",
+                       "one run: 'proleg faults FILE --schedule SEED' prints the schedule of a seed for --faults");
+    }
+  }
+}
+
 void check_files(const HilOptions& options, const HilModules& modules) {
   std::vector<PlannedOutput> outputs = planned_recording(options);
   if (options.can_log) {
@@ -199,6 +215,7 @@ int hil(const HilOptions& options) {
   HilModules modules(options, run.scenario);
   FaultPlan plan = read_fault_plan(options, run, modules.any_virtual());
   if (plan.runs) {
+    refuse_files_of_one_run(options);
     modules.flash("proleg hil");
     catch_interrupts();
     return run_fault_campaign(options, run, modules, plan);

@@ -63,7 +63,11 @@ class Drive {
       return;
     }
     const std::string reason = interrupted() ? "interrupted" : gait_.why_ended();
+    const bool is_bad_input = gait_.has_bad_setup();
     static_cast<void>(stop());
+    if (is_bad_input) {
+      throw BadInput(run_.scenario.path + ": " + reason);
+    }
     throw std::runtime_error(reason);
   }
 

@@ -155,6 +155,12 @@ std::string GaitRun::why_ended() const {
   return text;
 }
 
+bool GaitRun::has_bad_setup() const {
+  using canopen::ProblemCode;
+  const ProblemCode code = drive_.master().problem().code;
+  return state() == MasterState::failed && (code == ProblemCode::bad_setup || code == ProblemCode::bus_too_small);
+}
+
 std::string GaitRun::text_of(const host::GaitWatch::Loss& loss) const {
   using Reason = host::GaitWatch::Reason;
   const std::string what = loss.reason == Reason::drive ? std::string(host::drive_text(loss.statusword))

@@ -85,6 +85,8 @@ class GaitRun {
   [[nodiscard]] bool has_ended() const;
   /// The reason of the end in one line.
   [[nodiscard]] std::string why_ended() const;
+  /// Whether it has ended because the robot of the scenario cannot be driven, whatever is on the bus.
+  [[nodiscard]] bool has_bad_setup() const;
 
   /// What the modules have reported since the last call, in lines. is_verbose: also the end of an error.
   void report_events(bool is_verbose, const std::function<void(const std::string& line)>& report);

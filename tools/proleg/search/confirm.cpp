@@ -41,7 +41,8 @@ Json json_of(const optimize::GaitConfirmation& confirmation) {
   }
   Json findings = Json::empty_array();
   for (const optimize::ConfirmationFinding& finding : confirmation.findings) {
-    findings.append({{"name", finding.name}, {"good", finding.was_asked ? Json(finding.is_good) : Json()}, {"text", finding.text}});
+    findings.append(
+        {{"name", finding.name}, {"good", finding.was_asked ? Json(finding.is_good) : Json()}, {"text", finding.text}});
   }
   return {{"nothing_speaks_against", confirmation.is_real()},
           {"runs", runs},

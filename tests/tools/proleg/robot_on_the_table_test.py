@@ -223,6 +223,7 @@ class RobotOnTheTable(unittest.TestCase):
             scan = proleg_json("scan", "--bus", bus.pty, "--json")
             self.assertEqual([node["node"] for node in scan["nodes"]], [1, 2, 3, 4, 5])
             self.assertTrue(all(node["joint_module"] for node in scan["nodes"]))
+            self.assertEqual(proleg("scan", "--bus", bus.pty).stdout.count("not driven"), 5, "no host has set them up")
             info = proleg("info", "3", "--bus", bus.tcp).stdout
             for line in ("Proleg joint module", "(no power)", "Max motor speed = 720 deg/s", "none: a host configures"):
                 self.assertIn(line, info)

@@ -75,7 +75,9 @@ void print_table(const host::BusMonitor& monitor, const host::BusMonitor::Traffi
     const auto current = node.measured ? std::optional<double>(node.measured->current_ma) : std::nullopt;
     const auto temperature = node.measured ? std::optional<double>(node.measured->temperature_c) : std::nullopt;
     std::printf("%-5u %-16s %-18s %10s %10s %8s %9s %6s  %s\n", unsigned{node.node},
-                node.state ? std::string(host::state_text(*node.state)).c_str() : "no heartbeat",
+                node.state        ? std::string(host::state_text(*node.state)).c_str()
+                : node.statusword ? "not driven"
+                                  : "no heartbeat",
                 node.statusword ? std::string(host::drive_text(*node.statusword)).c_str() : "-",
                 fixed_text(node.setpoint ? std::optional(degrees(*node.setpoint)) : std::nullopt, " deg").c_str(),
                 fixed_text(measured_degrees(node), " deg").c_str(), contacts_text(node).c_str(),

@@ -66,7 +66,10 @@ void print_table(const host::BusScan& scan, const std::string& bus) {
                 "name");
   }
   for (const host::ScannedNode& node : nodes) {
-    const std::string state(node.state ? host::state_text(*node.state) : "no heartbeat");
+    // A module sends heartbeats when a host has set it up; other devices always do.
+    const std::string state(node.state       ? host::state_text(*node.state)
+                            : node.is_module ? "not driven"
+                                             : "no heartbeat");
     if (!node.has_answered) {
       std::printf("%-5u %-6s %-16s does not answer\n", unsigned{node.node}, "-", state.c_str());
       continue;

@@ -313,6 +313,11 @@ SettingName parse_setting_name(const std::string& text) {
 ParsedSetting parse_setting(const Scenario& scenario, const std::string& text) {
   const SettingWord word = take_apart(text);
   const SettingTarget target = target_of(scenario, word);
+  if (target.joints.empty()) {
+    throw InputError(shortened(text), 0,
+                     "actuation module " + std::to_string(target.slot + 1) + ", which drives no joint",
+                     "one that drives the joints that are to change");
+  }
   const Declaration& declaration = scenario.kernel.slots[target.slot].algorithm->declaration();
 
   Setting setting;

@@ -9,8 +9,11 @@
 #include <sstream>
 
 #include "memory_files.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -195,6 +198,13 @@ TEST(Plausibility, AModuleThatDrivesNoJointIsNamed) {
   MemoryFiles files = caterpillar_files();
   files.replace("uniform.actuation.xml", "11111", "00000");
   expect_warning(files, "uniform.actuation.xml:", ": <actuationModule> has no effect: it drives no joint");
+  Scenario scenario = files.scenario();
+  for (const char* word : {"amplitude=30", "amplitude=30@5", "1.current_phase=90"}) {
+    EXPECT_NE(message_of<InputError>([&] { apply_setting(scenario, word); }).find("1, which drives no joint, expected"),
+              std::string::npos)
+        << word;
+  }
+  EXPECT_TRUE(scenario.changes.empty());
 }
 
 TEST(Plausibility, AnActuationForAnotherRobotIsNamed) {

@@ -19,8 +19,8 @@ struct ModuleProgram {
   std::uint32_t serial = 0;  ///< object 0x1018:4
   bool has_answered = false;
   broadcast::StatusAnswer status{};  ///< valid if the module has answered
-  std::optional<image::Header>
-      image;  ///< nothing: there is no image, its header is damaged, or words of it are missing
+  /// Nothing: there is no image, its header is damaged, or words of it are missing.
+  std::optional<image::Header> image;
   /// Number of words of the header that the module was asked for and that were not received.
   unsigned missing_words = 0;
 

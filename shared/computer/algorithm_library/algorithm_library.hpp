@@ -13,9 +13,9 @@ namespace proleg {
 
 /// Loads a library and checks it, in a child first: a damaged library can end the program that loads it. No function of
 /// it is called before its interface has been read; the code that a library runs when it is loaded is guarded, too. The
-/// library stays loaded until the program ends. Throws InputError
-/// if the file is missing, is no library for this computer, has no interface or one of another version, core or layout,
-/// has a wrong declaration, or fails during these calls.
+/// library stays loaded until the program ends. Throws InputError if the file is missing, is no library for this
+/// computer, has no interface or one of another version, core or layout, has a wrong declaration, or fails during these
+/// calls.
 [[nodiscard]] std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path);
 
 /// Checks an interface and makes its algorithm. file: for messages. Throws InputError.

@@ -46,7 +46,7 @@ SignalState::SignalState() {
 
 void SignalState::restore() const {
   for (int signal = 1; signal < NSIG; ++signal) {
-    sigaction(signal, &actions_[static_cast<std::size_t>(signal)], nullptr);  // some cannot be set, by nobody
+    sigaction(signal, &actions_[static_cast<std::size_t>(signal)], nullptr);  // fails for SIGKILL and SIGSTOP
   }
   pthread_sigmask(SIG_SETMASK, &mask_, nullptr);
 }

@@ -169,13 +169,18 @@ TEST_F(CommandLine, ASweepOverAMeasureThatNoRunDefinesFails) {
   EXPECT_FALSE(fs::exists(file("out/sweep.svg")));
 }
 
+/// Waits until a sweep has its folder, from when on an interruption ends it, or has ended without.
+void wait_for_folder(pid_t sweep, const fs::path& folder) {
+  while (!fs::exists(folder) && waitpid(sweep, nullptr, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDoneOrNothing) {
   const std::string out = file("out").string();
   const pid_t child = start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:100000", "--seconds",
                              "0.05", "--workers", "1", "--out", out});
-  while (!fs::exists(out) && waitpid(child, nullptr, WNOHANG) == 0) {  // from then on an interruption ends the sweep
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  wait_for_folder(child, out);
   kill(child, SIGINT);
   const Finished finished = finish(child);
   EXPECT_EQ(finished.status, 1);
@@ -191,9 +196,7 @@ TEST_F(CommandLine, ASweepThatIsInterruptedBeforeItsFirstRunEndsLeavesNothing) {
   const std::string out = file("out").string();
   const pid_t child =
       start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:2", "--seconds", "3600", "--out", out});
-  while (!fs::exists(out) && waitpid(child, nullptr, WNOHANG) == 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  wait_for_folder(child, out);
   kill(child, SIGINT);
   const Finished finished = finish(child);
   EXPECT_EQ(finished.status, 1);
@@ -206,9 +209,7 @@ TEST_F(CommandLine, TwoSweepsAtOnceDoNotWriteIntoOneFolder) {
   const std::string out = file("out").string();
   const pid_t first = start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:100000", "--seconds",
                              "0.05", "--workers", "1", "--out", out});
-  while (!fs::exists(out) && waitpid(first, nullptr, WNOHANG) == 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  wait_for_folder(first, out);
   const auto second = proleg({"sweep", scenario("coupled"), "--over", "seed=1:2", "--seconds", "0.05", "--out", out});
   EXPECT_EQ(second.status, 2);
   EXPECT_NE(second.err.find(out + ": found a folder into which another program writes its results"), std::string::npos)

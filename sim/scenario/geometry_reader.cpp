@@ -27,6 +27,34 @@ constexpr std::array<std::string_view, 5> visual_tags{"diffuseColor", "ambientCo
 /// Range of red, green and blue in a colour.
 constexpr Range colour_parts{0.0, 1.0, ""};
 
+/// The tags that give the size of a box, sphere or cylinder; none for another type.
+std::span<const std::string_view> size_tags(std::string_view type) {
+  static constexpr std::array<std::string_view, 1> of_box{"extents"};
+  static constexpr std::array<std::string_view, 2> of_cylinder{"radius", "height"};
+  if (type == "box") {
+    return of_box;
+  }
+  const std::span<const std::string_view> round = of_cylinder;
+  return round.first(type == "cylinder" ? 2 : type == "sphere" ? 1 : 0);
+}
+
+/// Shape and size of a box (<extents>: half sides), a sphere (<radius>) or a cylinder (<radius>, <height>; axis along
+/// y).
+Geometry read_solid(const XmlElement& element, std::string_view type) {
+  Geometry result;
+  if (type == "box") {
+    result.shape = Shape::box;
+    result.extents = read_vector(element.required_child("extents"), lengths);
+    return result;
+  }
+  result.shape = type == "sphere" ? Shape::sphere : Shape::cylinder;
+  result.extents.x() = read_number(element.required_child("radius"), lengths);
+  if (result.shape == Shape::cylinder) {
+    result.extents.y() = read_number(element.required_child("height"), lengths) / 2.0;
+  }
+  return result;
+}
+
 double volume(const Geometry& geometry) {
   const Eigen::Vector3d& size = geometry.extents;
   switch (geometry.shape) {
@@ -244,15 +272,18 @@ MassProperties read_custom(const XmlElement& element, const std::vector<Geometry
   return result;
 }
 
-MassProperties read_box(const XmlElement& element) {
-  element.allow({"type"}, {"total", "density", "extents", "com"});
+/// The mass of a box, sphere or cylinder, whose size the <Mass> has.
+MassProperties read_solid_mass(const XmlElement& element, std::string_view type) {
+  constexpr std::array<std::string_view, 1> attributes{"type"};
+  constexpr std::array<std::string_view, 3> tags{"total", "density", "com"};
+  element.allow(attributes, joined({size_tags(type), tags}));
+  const Geometry solid = read_solid(element, type);
   MassProperties result;
-  const Eigen::Vector3d half_sides = read_vector(element.required_child("extents"), lengths);
-  result.mass = read_total(element, 8.0 * half_sides.prod());
+  result.mass = read_total(element, volume(solid));
   if (const auto com = element.child("com")) {
     result.center = read_vector(*com, coordinates);
   }
-  result.inertia = result.mass * box_inertia(half_sides);
+  result.inertia = result.mass * shape_inertia(solid);
   return result;
 }
 
@@ -281,32 +312,21 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
   ReadGeometry result;
   Geometry& geometry = result.solid.emplace();
   const std::string type = lower_case(element.required_attribute("type"));
-  const auto allow_tags = [&element, &type](std::initializer_list<std::string_view> size_tags) {
+  const auto allow_tags = [&element, &type](std::span<const std::string_view> sizes) {
     constexpr std::array<std::string_view, 4> attributes{"type", "name", "render", "open"};  // a mesh may be open
     const std::size_t count = attributes.size() - (type == "trimesh" ? 0 : 1);
     constexpr std::array<std::string_view, 2> friction{"friction", "frictionAcross"};
-    const std::span<const std::string_view> sizes(size_tags.begin(), size_tags.size());
     element.allow(std::span(attributes).first(count), joined({sizes, pose_tags, friction, visual_tags}));
     check_visual_values(element);
   };
-  if (type == "box") {
-    allow_tags({"extents"});
-    geometry.shape = Shape::box;
-    geometry.extents = read_vector(element.required_child("extents"), lengths);
-  } else if (type == "sphere") {
-    allow_tags({"radius"});
-    geometry.shape = Shape::sphere;
-    geometry.extents.x() = read_number(element.required_child("radius"), lengths);
-  } else if (type == "cylinder") {
-    allow_tags({"radius", "height"});
-    geometry.shape = Shape::cylinder;
-    geometry.extents.x() = read_number(element.required_child("radius"), lengths);
-    geometry.extents.y() = read_number(element.required_child("height"), lengths) / 2.0;
+  if (const auto sizes = size_tags(type); !sizes.empty()) {
+    allow_tags(sizes);
+    geometry = read_solid(element, type);
   } else if (type == "trimesh") {
-    allow_tags({"data", "collision", "vertices", "triangles"});
+    allow_tags(std::array<std::string_view, 4>{"data", "collision", "vertices", "triangles"});
     read_trimesh(element, kind, sources, remarks, result);
   } else if (type == "heightfield") {
-    allow_tags({"extents", "columns", "rows", "heights", "data"});
+    allow_tags(std::array<std::string_view, 5>{"extents", "columns", "rows", "heights", "data"});
     if (kind != BodyKind::fixed) {
       element.refuse("a height field in a body that moves", "one in a body of type 'static' of an environment");
     }
@@ -354,12 +374,13 @@ MassProperties read_mass(const XmlElement& element, const std::vector<Geometry>&
   MassProperties result;
   if (type == "custom") {
     result = read_custom(element, geometries);
-  } else if (type == "box") {
-    result = read_box(element);
+  } else if (!size_tags(type).empty()) {
+    result = read_solid_mass(element, type);
   } else if (type == "mimicgeom") {
     result = read_mimic(element, geometries);
   } else {
-    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'custom', 'box' or 'mimicgeom'");
+    element.refuse("type " + in_quotes(type) + " in " + element.label(),
+                   "'custom', 'box', 'sphere', 'cylinder' or 'mimicgeom'");
   }
   if (!is_positive_definite(result.inertia)) {
     element.refuse("an inertia that is not positive definite in " + element.label(),

@@ -1,161 +1,16 @@
 #include "sim/scenario/kinbody_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "shared/fixed/decimal.hpp"
-#include "shared/gait/joint_mask.hpp"
 #include "sim/scenario/geometry_reader.hpp"
+#include "sim/scenario/joint_reader.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
 namespace {
-
-/// The contents of a <Joint>, with names as in the file.
-struct JointDescription {
-  Joint joint;  ///< anchor and axis in the frame of `offset_from`
-  std::array<std::string, 2> bodies;
-  std::optional<std::string> offset_from;
-  AngleLimits kernel_limits;
-};
-
-constexpr Range torques{1e-9, 1e6, "Nm"};
-constexpr Range speeds{1e-9, 1e6, "rad/s"};
-constexpr Range limits_in_degrees{-360.0, 360.0, "degrees"};
-constexpr Range limits_in_radians{-6.2832, 6.2832, "rad"};
-constexpr Range planner_values{0.0, 1e9, ""};
-constexpr double min_axis = 1e-6;
-
-std::int32_t kernel_limit(double radians) {
-  const double raw = std::round(radians * (2.0 / std::numbers::pi) * quarter_turn);
-  return static_cast<std::int32_t>(
-      std::clamp(raw, -static_cast<double>(quarter_turn), static_cast<double>(quarter_turn)));
-}
-
-/// Raw value of a limit in degrees, from its text, so that floating point adds no rounding. A text with too many digits
-/// has that rounding.
-std::int32_t kernel_limit(std::string_view degrees, double radians) {
-  const DecimalResult result = parse_decimal(degrees, Unit::degree);
-  return result.error == DecimalError::none ? std::clamp(result.raw, -quarter_turn, quarter_turn)
-                                            : kernel_limit(radians);
-}
-
-void read_limits(const XmlElement& element, JointDescription& description) {
-  const std::optional<XmlElement> degrees = element.child("limitsdeg");
-  const std::optional<XmlElement> radians = element.child("limits");
-  if (degrees.has_value() == radians.has_value()) {
-    element.refuse(
-        (degrees ? "both <limitsdeg> and <limits> in " : "neither <limitsdeg> nor <limits> in ") + element.label(),
-        "one of them");
-  }
-  const XmlElement& limits = degrees ? *degrees : *radians;
-  const std::vector<double> numbers = read_numbers(limits, 2, degrees ? limits_in_degrees : limits_in_radians);
-  if (numbers[0] > numbers[1]) {
-    limits.refuse(in_quotes(limits.text()) + " in " + limits.label(), "the lower limit first");
-  }
-  if (numbers[0] > 0.0 || numbers[1] < 0.0) {
-    limits.refuse(in_quotes(limits.text()) + " in " + limits.label() + " of joint " + in_quotes(description.joint.name),
-                  "limits that include 0, because every joint starts at angle 0");
-  }
-  Joint& joint = description.joint;
-  AngleLimits& kernel = description.kernel_limits;
-  if (degrees) {
-    constexpr double radians_per_degree = std::numbers::pi / 180.0;
-    joint.lower_limit = numbers[0] * radians_per_degree;
-    joint.upper_limit = numbers[1] * radians_per_degree;
-    const std::string text = limits.text();
-    kernel = {kernel_limit(words(text)[0], joint.lower_limit), kernel_limit(words(text)[1], joint.upper_limit)};
-  } else {
-    joint.lower_limit = numbers[0];
-    joint.upper_limit = numbers[1];
-    kernel = {kernel_limit(numbers[0]), kernel_limit(numbers[1])};
-  }
-}
-
-/// Refuses the kinds of joints of OpenRAVE that Proleg does not have.
-void check_switches(const XmlElement& element) {
-  if (element.attribute("enable") && !read_switch_attribute(element, "enable")) {
-    element.refuse("a passive joint, enable='false' in " + element.label(),
-                   "joints that a servo moves, without this attribute or with enable='true'; to fix two bodies to each "
-                   "other, write one <Body> with the geometries of both");
-  }
-  if (element.attribute("circular") && read_switch_attribute(element, "circular")) {
-    element.refuse("a joint that turns without end, circular='true' in " + element.label(),
-                   "joints with limits, without this attribute or with circular='false'");
-  }
-}
-
-/// Properties of a joint that only OpenRAVE's planners use. They have no effect.
-void check_planner_tags(const XmlElement& element, std::vector<std::string>& remarks) {
-  for (const auto& [tag, reason] : {std::pair("maxaccel", "a servo has limits of torque and speed only"),
-                                    std::pair("resolution", "no planner divides the angle into steps"),
-                                    std::pair("weight", "no planner weighs the joints")}) {
-    if (const auto child = element.child(tag)) {
-      static_cast<void>(read_number(*child, planner_values));
-      remark_no_effect(remarks, *child, reason);
-    }
-  }
-}
-
-/// Reads a <Joint type="hinge">: two <body>, <axis>, <anchor> (0 0 0 by default), <offsetfrom>, <limitsdeg> or <limits>
-/// (radians), <maxtorque> (Nm), <maxvel> (rad/s). The model keeps limits beyond +-90 degrees; the kernel gets +-90
-/// degrees, and a remark says so.
-JointDescription read_joint(const XmlElement& element, std::vector<std::string>& remarks) {
-  element.allow({"name", "type", "enable", "circular"}, {"body", "offsetfrom", "anchor", "axis", "limitsdeg", "limits",
-                                                         "maxtorque", "maxvel", "maxaccel", "resolution", "weight"});
-  JointDescription description;
-  Joint& joint = description.joint;
-  joint.name = checked_name(element, element.required_attribute("name"));
-  if (const std::string type = element.required_attribute("type"); lower_case(type) != "hinge") {
-    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'hinge'");
-  }
-
-  check_switches(element);
-
-  std::size_t bodies = 0;
-  for (const XmlElement& child : element.children()) {
-    if (!child.is("body")) {
-      continue;
-    }
-    if (bodies < description.bodies.size()) {
-      description.bodies[bodies] = checked_name(child, child.text());
-    }
-    ++bodies;
-  }
-  if (bodies != 2 || description.bodies[0] == description.bodies[1]) {
-    element.refuse(bodies != 2
-                       ? std::to_string(bodies) + " <body> in joint " + in_quotes(joint.name)
-                       : "body " + in_quotes(description.bodies[0]) + " twice in joint " + in_quotes(joint.name),
-                   "two bodies");
-  }
-  if (const auto offset = element.child("offsetfrom")) {
-    description.offset_from = checked_name(*offset, offset->text());
-  }
-  if (const auto anchor = element.child("anchor")) {
-    joint.anchor = read_vector(*anchor, coordinates);
-  }
-  const XmlElement axis = element.required_child("axis");
-  joint.axis = read_vector(axis, directions);
-  if (joint.axis.norm() < min_axis) {
-    axis.refuse(in_quotes(axis.text()) + " in " + axis.label(), "a direction that is not 0");
-  }
-  read_limits(element, description);
-  joint.max_torque = read_number(element.required_child("maxtorque"), torques);
-  joint.max_speed = read_number(element.required_child("maxvel"), speeds);
-
-  constexpr double right_angle = std::numbers::pi / 2.0;
-  if (joint.lower_limit < -right_angle * (1.0 + 1e-12) || joint.upper_limit > right_angle * (1.0 + 1e-12)) {
-    remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": joint " +
-                               in_quotes(joint.name) +
-                               " has limits beyond +-90 degrees; it moves within +-90 degrees"));
-  }
-  check_planner_tags(element, remarks);
-  return description;
-}
 
 constexpr int max_kinbody_depth = 32;
 constexpr std::size_t max_static_bodies = 10'000;
@@ -164,7 +19,8 @@ constexpr std::size_t max_static_bodies = 10'000;
 struct Scope {
   Pose pose;
   std::string prefix;
-  std::string name;  ///< of the innermost KinBody that has one
+  std::string name;                ///< of the innermost KinBody that has one
+  std::optional<XmlElement> mass;  ///< <Mass> of the innermost KinBody, for its bodies without one
   int depth = 0;
 };
 
@@ -201,14 +57,18 @@ class KinBodyReader {
       read(document->root("KinBody"), scope, {});
       return;
     }
-    constexpr std::array<std::string_view, 3> robot_tags{"Body", "KinBody", "Joint"};
-    constexpr std::array<std::string_view, 2> tags_of_environments{"Body", "KinBody"};
+    constexpr std::array<std::string_view, 5> robot_tags{"Body", "KinBody", "Joint", "Mass", "adjacent"};
+    constexpr std::array<std::string_view, 3> tags_of_environments{"Body", "KinBody", "Mass"};
     const std::span<const std::string_view> tags =
         use_ == KinBodyUse::robot ? std::span<const std::string_view>(robot_tags) : tags_of_environments;
-    constexpr std::array<std::string_view, 1> visual_tags{"visible"};
-    element.allow(attributes, joined({tags, pose_tags, extra_tags, visual_tags}));
+    constexpr std::array<std::string_view, 1> view_tags{"visible"};
+    element.allow(attributes, joined({tags, pose_tags, extra_tags, view_tags}));
     if (const auto visible = element.child("visible")) {
       static_cast<void>(read_switch(*visible));
+    }
+    scope.mass = element.child("Mass");
+    if (scope.mass) {
+      check_mass_of_all(*scope.mass);
     }
     for (const XmlElement& child : element.children()) {
       if (child.is("KinBody")) {
@@ -217,6 +77,8 @@ class KinBodyReader {
         read_body(child, scope);
       } else if (child.is("Joint")) {
         read_joint_element(child, scope);
+      } else if (child.is("adjacent")) {
+        read_adjacent(child, scope);
       }
     }
   }
@@ -234,11 +96,34 @@ class KinBodyReader {
       }
       contents_.joints.push_back(std::move(pending.entry));
     }
+    for (const AdjacentBodies& adjacent : contents_.adjacent) {
+      for (const std::string& body : adjacent.bodies) {
+        static_cast<void>(find_body(body, adjacent.origin, "<adjacent>"));
+      }
+    }
     return std::move(contents_);
   }
 
  private:
   static constexpr std::array<std::string_view, 4> attributes{"name", "prefix", "file", "type"};
+
+  /// The <Mass> of a KinBody can only have what depends on each body.
+  static void check_mass_of_all(const XmlElement& mass) {
+    if (lower_case(mass.required_attribute("type")) != "mimicgeom" || !mass.child("density")) {
+      mass.refuse("a " + mass.label() + " of a KinBody that is not type='mimicgeom' with a <density>",
+                  "that, or a <Mass> in each <Body>");
+    }
+  }
+
+  void read_adjacent(const XmlElement& element, const Scope& scope) {
+    const std::string text = element.text();
+    const std::vector<std::string_view> names = words(text);
+    if (names.size() != 2) {
+      element.refuse(in_quotes(text) + " in " + element.label(), "the names of two bodies");
+    }
+    contents_.adjacent.push_back({{element.document().name(), element.line()},
+                                  {scope.prefix + std::string(names[0]), scope.prefix + std::string(names[1])}});
+  }
 
   void read_body(const XmlElement& element, const Scope& scope) {
     constexpr std::array<std::string_view, 2> body_attributes{"name", "type"};
@@ -272,7 +157,7 @@ class KinBodyReader {
         }
       }
     }
-    read_body_mass(element, entry);
+    read_body_mass(element, scope, entry);
     if (use_ == KinBodyUse::robot) {
       const auto same = std::ranges::find(contents_.bodies, entry.link.name, name_of_body);
       if (same != contents_.bodies.end()) {
@@ -297,14 +182,15 @@ class KinBodyReader {
     return type == "static";
   }
 
-  void read_body_mass(const XmlElement& element, BodyEntry& entry) {
+  void read_body_mass(const XmlElement& element, const Scope& scope, BodyEntry& entry) {
     if (entry.is_fixed) {
       if (const auto mass = element.child("Mass")) {
         remark_no_effect(*remarks_, *mass, "a static body does not move");
       }
       return;
     }
-    entry.link.mass = read_mass(element.required_child("Mass"), entry.link.geometries);
+    const bool has_own = element.child("Mass").has_value() || !scope.mass;
+    entry.link.mass = read_mass(has_own ? element.required_child("Mass") : *scope.mass, entry.link.geometries);
   }
 
   void read_joint_element(const XmlElement& element, const Scope& scope) {

@@ -35,10 +35,17 @@ struct JointEntry {
   AngleLimits kernel_limits;
 };
 
+/// Two bodies that must not touch each other.
+struct AdjacentBodies {
+  Origin origin;
+  std::array<std::string, 2> bodies;
+};
+
 /// The contents of a file, in its order.
 struct KinBodyContents {
   std::vector<BodyEntry> bodies;
   std::vector<JointEntry> joints;
+  std::vector<AdjacentBodies> adjacent;
 };
 
 enum class KinBodyUse : std::uint8_t {
@@ -48,10 +55,11 @@ enum class KinBodyUse : std::uint8_t {
 
 /// Reads a <KinBody>, or a <Robot>, which may hold the same. extra_tags: tags that the caller reads itself.
 ///
-/// Nested KinBodies have their pose (<translation>, <rotationaxis>, <quat>) in the frame of the outer one. A `prefix`
+/// Nested KinBodies have their pose (read_pose) in the frame of the outer one. A `prefix`
 /// precedes the names of all bodies and joints inside; the names of bodies in a joint get the prefixes of that joint.
 /// <offsetfrom> names the body in whose frame the anchor and axis of a joint, or the pose of a body, are given; without
-/// it the frame is that of the KinBody. The result has poses, anchors and axes in the outermost frame.
+/// it the frame is that of the KinBody. A <Mass type="mimicgeom"> with a <density> in a KinBody counts for its bodies
+/// that have no <Mass>. The result has poses, anchors and axes in the outermost frame.
 [[nodiscard]] KinBodyContents read_kinbody(const XmlElement& element, KinBodyUse use, SourceSet& sources,
                                            std::vector<std::string>& remarks,
                                            std::span<const std::string_view> extra_tags = {});

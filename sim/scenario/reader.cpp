@@ -141,6 +141,9 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   const auto environment_file = open("environment");
   scenario.environment = read_environment(*environment_file, sources, scenario.remarks, scenario.warnings);
   apply_overrides(overrides, scenario.environment);
+  if (scenario.environment.self_collision) {
+    std::ranges::move(robot.contact_warnings, std::back_inserter(scenario.warnings));
+  }
   lift_onto_ground(scenario.robot, scenario.environment, scenario.remarks);
   std::ranges::move(check_start(scenario.robot.links, scenario.environment, environment_file->name()),
                     std::back_inserter(scenario.warnings));

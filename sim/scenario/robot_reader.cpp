@@ -1,6 +1,7 @@
 #include "sim/scenario/robot_reader.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
@@ -121,6 +122,21 @@ ServoModel read_servo(const XmlElement& element, double step_s) {
   return servo;
 }
 
+/// The pairs of <adjacent> that are no neighbours: they must not touch each other, and do.
+std::vector<std::string> contact_warnings(const KinBodyContents& contents, const std::vector<Link>& links) {
+  const auto place_of = [&](const std::string& body) { return std::ranges::find(links, body, &Link::name); };
+  std::vector<std::string> warnings;
+  for (const AdjacentBodies& adjacent : contents.adjacent) {
+    const auto& [first, second] = adjacent.bodies;
+    if (std::abs(place_of(first) - place_of(second)) > 1) {
+      warnings.push_back(one_line(adjacent.origin.file + ":" + std::to_string(adjacent.origin.line) +
+                                  ": <adjacent> has no effect: no joint joins " + in_quotes(first) + " and " +
+                                  in_quotes(second) + ", so they touch each other"));
+    }
+  }
+  return warnings;
+}
+
 }  // namespace
 
 std::optional<RobotControlEntry> read_robot_control(const XmlElement& robot, const RobotModel& model) {
@@ -202,6 +218,7 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
     robot.model.servo = read_servo(*servo, step_s);
   }
   robot.warnings = check_robot(chain);
+  robot.contact_warnings = contact_warnings(contents, chain.links);
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);

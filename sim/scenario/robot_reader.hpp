@@ -43,6 +43,8 @@ struct RobotDescription {
   std::vector<ModulePlace> modules;                ///< kernel order
   std::optional<RobotControlEntry> robot_control;  ///< the plug-in of a robot without modules
   std::vector<std::string> warnings;               ///< what is probably not meant
+  /// Warnings that hold if links touch each other (EnvironmentModel::self_collision).
+  std::vector<std::string> contact_warnings;
 };
 
 /// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our

@@ -75,6 +75,18 @@ std::size_t checked_choice(const XmlElement& element, const LocatedText& located
   return static_cast<std::size_t>(found - words.begin());
 }
 
+/// Of nine numbers, row by row. Files have them with three digits or more.
+Eigen::Quaterniond read_rotation_matrix(const XmlElement& element) {
+  const std::vector<double> numbers = read_numbers(element, 9, directions);
+  const Eigen::Matrix3d matrix = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+  constexpr double tolerance = 0.01;
+  if (!(matrix * matrix.transpose()).isIdentity(tolerance) || matrix.determinant() < 0.0) {
+    element.refuse(in_quotes(element.text()) + " in " + element.label(),
+                   "a rotation, row by row: rows of length 1 that are perpendicular to each other, with determinant 1");
+  }
+  return Eigen::Quaterniond(matrix).normalized();
+}
+
 /// Whether a name has U+202A to U+202E or U+2066 to U+2069.
 bool turns_direction(std::string_view name) {
   for (std::size_t i = 0; i + 2 < name.size(); ++i) {
@@ -207,6 +219,8 @@ Pose read_pose(const XmlElement& element) {
         child.refuse(in_quotes(child.text()) + " in " + child.label(), "a quaternion w x y z that is not 0");
       }
       pose.orientation = rotation.normalized() * pose.orientation;
+    } else if (child.is("rotationmat")) {
+      pose.orientation = read_rotation_matrix(child) * pose.orientation;
     }
   }
   pose.orientation.normalize();

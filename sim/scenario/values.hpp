@@ -74,11 +74,11 @@ inline constexpr Range turns{-360.0, 360.0, "degrees"};
 [[nodiscard]] std::string checked_name(const XmlElement& element, std::string name);
 
 /// The tags that read_pose reads.
-inline constexpr std::array<std::string_view, 3> pose_tags{"translation", "rotationaxis", "quat"};
+inline constexpr std::array<std::string_view, 4> pose_tags{"translation", "rotationaxis", "quat", "rotationmat"};
 
-/// The pose given by the <translation>, <rotationaxis> (x y z degrees) and <quat> (w x y z) of an element. As in
-/// OpenRAVE, translations add up, each rotation is applied after those before it, and rotations do not turn
-/// translations.
+/// The pose given by the <translation>, <rotationaxis> (x y z degrees), <quat> (w x y z) and <rotationmat> (nine
+/// numbers row by row) of an element. As in OpenRAVE, translations add up, each rotation is applied after those before
+/// it, and rotations do not turn translations.
 [[nodiscard]] Pose read_pose(const XmlElement& element);
 
 /// The lists joined, for XmlElement::allow.

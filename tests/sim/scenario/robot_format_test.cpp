@@ -84,6 +84,16 @@ TEST(RobotFormat, AQuaternionIsWrittenWithTheRealPartFirst) {
       << "1 0 0 1 is a quarter turn about z";
 }
 
+TEST(RobotFormat, ARotationMatrixIsWrittenRowByRow) {
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<translation>0 0.2 0</translation>",
+                "<translation>0 0.2 0</translation><RotationMat>0.866 -0.5 0 0.5 0.866 0 0 0 1</RotationMat>");
+  const Pose pose = link_of(files.scenario(), "Head").pose;
+  // By 30 degrees about z; three digits are as many as people write.
+  EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(0.8660254, 0.5, 0), 1e-4));
+  EXPECT_NEAR(pose.orientation.norm(), 1.0, 1e-15);
+}
+
 TEST(RobotFormat, RepeatedTranslationsAddUpAndRepeatedRotationsFollowEachOther) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<translation>0 0.2 0</translation>",
@@ -182,6 +192,28 @@ TEST(RobotFormat, LimitsBeyondARightAngleStayInTheModelButNotInTheKernel) {
   EXPECT_NE(scenario.remarks[0].find("'J1' has limits beyond +-90 degrees"), std::string::npos);
 }
 
+TEST(RobotFormat, TheOlderStopsAreDegreesAboutTheOppositeAxis) {
+  // As in OpenRAVE, which asks its users to write <limitsdeg> instead and to negate the axis.
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<limitsdeg>-45 90</limitsdeg>", "<lostop>-45</lostop><histop>90</histop>");
+  const Scenario scenario = files.scenario();
+  const Joint& joint = joint_of(scenario, "J1");
+  EXPECT_EQ(joint.axis, -Eigen::Vector3d::UnitX());
+  EXPECT_DOUBLE_EQ(joint.lower_limit, -std::numbers::pi / 4);
+  EXPECT_EQ(scenario.joint_limits[1].lower, -(1 << 29));
+  EXPECT_EQ(scenario.joint_limits[1].upper, 1 << 30);
+}
+
+TEST(RobotFormat, LimitsAndSpeedsHaveOneValueInEveryWriting) {
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<limits>-0.5 0.75</limits>", "<limitsrad>-0.5 0.75</limitsrad>")
+      .replace("robot.xml", "<maxvel>5</maxvel>", "<maxveldeg>180</maxveldeg><hardmaxvel>9</hardmaxvel>");
+  const Scenario scenario = files.scenario();
+  EXPECT_EQ(joint_of(scenario, "J2").lower_limit, -0.5);
+  EXPECT_EQ(joint_of(scenario, "J2").upper_limit, 0.75);
+  EXPECT_DOUBLE_EQ(joint_of(scenario, "J2").max_speed, std::numbers::pi);
+}
+
 TEST(RobotFormat, LimitsMayHaveAnyNumberOfDigitsAndAPlus) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<limitsdeg>-45 90</limitsdeg>",
@@ -200,6 +232,47 @@ TEST(RobotFormat, AMassOfItsOwnBoxHasThatBoxesInertia) {
   EXPECT_EQ(mass.center, Eigen::Vector3d(1, 2, 3));
   // m/12 (b^2 + c^2) with full sides 1, 2, 4.
   EXPECT_TRUE(mass.inertia.isApprox(Eigen::Vector3d(20, 17, 5).asDiagonal().toDenseMatrix() * (8000.0 / 12)));
+}
+
+TEST(RobotFormat, AMassOfItsOwnSphereOrCylinderHasThatSolidsInertia) {
+  MemoryFiles files = small_scenario();
+  files
+      .replace("robot.xml", "<Mass type=\"mimicgeom\">\n        <density>",
+               "<Mass type=\"sphere\"><radius>0.5</radius>\n        <density>")
+      .replace("robot.xml", "<Mass type=\"mimicgeom\">\n        <total>",
+               "<Mass type=\"cylinder\"><radius>0.2</radius><height>0.6</height><com>0 1 0</com>\n        <total>");
+  const Scenario scenario = files.scenario();
+  const MassProperties sphere = link_of(scenario, "Head").mass;
+  EXPECT_DOUBLE_EQ(sphere.mass, 1000.0 * std::numbers::pi / 6);  // diameter 1
+  EXPECT_TRUE(sphere.inertia.isApprox(Eigen::Matrix3d::Identity() * (0.4 * sphere.mass * 0.25)));
+  const MassProperties cylinder = link_of(scenario, "Middle").mass;
+  EXPECT_EQ(cylinder.mass, 0.3);
+  EXPECT_EQ(cylinder.center, Eigen::Vector3d(0, 1, 0));
+  const double across = 0.3 * (3 * 0.04 + 0.36) / 12;
+  EXPECT_TRUE(cylinder.inertia.isApprox(Eigen::Vector3d(across, 0.006, across).asDiagonal().toDenseMatrix()));
+}
+
+TEST(RobotFormat, TheDensityOfAKinBodyCountsForItsBodiesWithoutAMass) {
+  MemoryFiles files = small_scenario();
+  const double head = link_of(files.scenario(), "Head").mass.mass;
+  files.replace("robot.xml", "<Mass type=\"mimicgeom\">\n        <density>1000</density>\n      </Mass>", "")
+      .replace("robot.xml", "<KinBody name=\"body\">",
+               "<KinBody name=\"body\"><Mass type=\"mimicgeom\"><density>500</density></Mass>");
+  const Scenario scenario = files.scenario();
+  EXPECT_DOUBLE_EQ(link_of(scenario, "Head").mass.mass, head / 2);
+  EXPECT_EQ(link_of(scenario, "Middle").mass.mass, 0.3);
+  EXPECT_EQ(link_of(scenario, "TailEnd").mass.mass, 0.1) << "of the file's own KinBody";
+}
+
+TEST(RobotFormat, AdjacentBodiesThatNoJointJoinsAreWarnedOfIfLinksTouchEachOther) {
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<KinBody name=\"body\">",
+                "<KinBody name=\"body\"><adjacent>Middle Head</adjacent><adjacent>Head TailEnd</adjacent>");
+  EXPECT_EQ(files.scenario().warnings,
+            std::vector<std::string>{"robot.xml:6: <adjacent> has no effect: no joint joins 'Head' and 'TailEnd', so "
+                                     "they touch each other"});
+  files.replace("environment.xml", "<selfcollision>1", "<selfcollision>0");
+  EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
 }
 
 TEST(RobotFormat, AMimickedSphereHasTheMassOfItsDensity) {

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstring>
+#include <fstream>
+#include <system_error>
 
 namespace proleg {
 namespace {
@@ -52,13 +54,62 @@ bool lacks_frames(sqlite3* connection, const OpenFile& log) {
   return (code != SQLITE_OK && code != SQLITE_BUSY) || log.size() < frames * min_frame;
 }
 
+bool has_write_ahead_log(const std::filesystem::path& file) {
+  std::array<char, 20> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  return head[18] == 2 || head[19] == 2;  // the versions for writing and reading (fileformat.html 1.3.3)
+}
+
+/// How a file is read.
+enum class Reading : std::uint8_t {
+  shared,     ///< with the locks and the index of the log that a program which writes the file has made
+  immutable,  ///< without locks and without a log
+  alone,      ///< without locks, with a log and with an index of it in memory
+};
+
+/// The way that leaves the folder as it is. SQLite by itself creates the index of a log, and a log if there is none.
+Reading way_of_reading(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::error_code error;
+  if (!has_write_ahead_log(file)) {
+    return Reading::shared;
+  }
+  const auto log_size = std::filesystem::file_size(name + "-wal", error);
+  if (error) {
+    return Reading::immutable;  // a program that writes has a log
+  }
+  if (std::filesystem::exists(name + "-shm", error)) {
+    return Reading::shared;
+  }
+  return log_size == 0 ? Reading::immutable : Reading::alone;
+}
+
+/// https://www.sqlite.org/uri.html
+std::string uri_of(const std::filesystem::path& file) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string uri = "file:";
+  for (const char c : file.string()) {
+    if (c == '%' || c == '?' || c == '#') {
+      const auto byte = static_cast<unsigned char>(c);
+      uri += {'%', digits[byte / 16U], digits[byte % 16U]};
+    } else {
+      uri += c;
+    }
+  }
+  return uri + "?immutable=1";
+}
+
 }  // namespace
 
 Database::Database(const std::filesystem::path& path, int flags) {
   // SQLite interprets names like ":memory:" and "file:..."; an absolute path is always a file.
   const std::filesystem::path file = std::filesystem::absolute(path);
+  const Reading reading = (flags & SQLITE_OPEN_READONLY) != 0 ? way_of_reading(file) : Reading::shared;
+  const bool is_immutable = reading == Reading::immutable;
   const int code =
-      sqlite3_open_v2(file.c_str(), &handle_, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+      sqlite3_open_v2(is_immutable ? uri_of(file).c_str() : file.c_str(), &handle_,
+                      flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | (is_immutable ? SQLITE_OPEN_URI : 0),
+                      reading == Reading::alone ? "unix-none" : nullptr);
   if (code != SQLITE_OK) {
     try {
       fail(code);
@@ -68,6 +119,10 @@ Database::Database(const std::filesystem::path& path, int flags) {
     }
   }
   sqlite3_busy_timeout(handle_, max_wait_ms);
+  if (reading == Reading::alone) {
+    execute("PRAGMA locking_mode = EXCLUSIVE");  // with it the index of the log is in memory
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  }
 }
 
 Database::~Database() { sqlite3_close(handle_); }

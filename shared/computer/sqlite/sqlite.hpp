@@ -25,7 +25,8 @@ class SqliteError : public std::runtime_error {
 /// A connection, for one thread. It waits up to 10 s for the lock of another program.
 class Database {
  public:
-  /// flags: SQLITE_OPEN_READONLY, or SQLITE_OPEN_READWRITE with or without SQLITE_OPEN_CREATE.
+  /// flags: SQLITE_OPEN_READONLY, or SQLITE_OPEN_READWRITE with or without SQLITE_OPEN_CREATE. What is opened for
+  /// reading leaves the folder as it is: the file and its log do not change, and no file is created beside them.
   Database(const std::filesystem::path& path, int flags);
   ~Database();
   Database(const Database&) = delete;

@@ -6,8 +6,10 @@
 #include <thread>
 #include <vector>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/record/recording.hpp"
 #include "small_run.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -88,10 +90,31 @@ TEST_F(KilledRecorder, LosesAtMostTheLastSecond) {
 
 TEST_F(KilledRecorder, IsNotChangedByReading) {
   const std::uint32_t last = Recording(path_).last_tick();
-  const auto size = std::filesystem::file_size(path_);
-  EXPECT_EQ(Recording(path_).last_tick(), last);
-  EXPECT_EQ(std::filesystem::file_size(path_), size);
-  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"run.sqlite", "run.sqlite-shm", "run.sqlite-wal"}));
+  for (const bool has_log : {true, false}) {
+    for (const bool has_index : {true, false}) {
+      const TemporaryFolder folder;
+      const std::filesystem::path copy = folder / "a #1 100%?.proleg";
+      std::filesystem::copy_file(path_, copy);
+      if (has_log) {
+        std::filesystem::copy_file(path_.string() + "-wal", copy.string() + "-wal");
+      }
+      if (has_index) {
+        std::filesystem::copy_file(path_.string() + "-shm", copy.string() + "-shm");
+      }
+      const std::vector<std::string> names = folder.names();
+      const std::string file = file_contents(copy);
+      const std::string log = has_log ? file_contents(copy.string() + "-wal") : "";
+      try {
+        EXPECT_EQ(Recording(copy).last_tick(), last);
+        EXPECT_TRUE(has_log);
+      } catch (const InputError& error) {
+        EXPECT_FALSE(has_log) << error.what();  // all ticks are in the log of such a short run
+      }
+      EXPECT_EQ(folder.names(), names);
+      EXPECT_EQ(file_contents(copy), file);
+      EXPECT_EQ(has_log ? file_contents(copy.string() + "-wal") : "", log);
+    }
+  }
 }
 
 TEST_F(KilledRecorder, LeavesARecordingThatCanBeReplaced) {

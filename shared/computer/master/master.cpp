@@ -86,6 +86,7 @@ void Master::receive(Microseconds now, const CanFrame& frame) {
   if (frame.identifier == identifier::sync) {
     if (const std::optional<std::uint8_t> counter = decode_sync(frame)) {
       ticks_.sync(*counter);
+      ticks_until_ = now + silence_us;
       on_tick_passed();
     }
   } else if (const std::optional<TickMessage> message = decode_tick(frame)) {

@@ -308,6 +308,7 @@ class Master final : private SdoWork {
   Microseconds heartbeat_at_ = never;
   Microseconds silence_at_ = never;  ///< time of the next check of heartbeats
   Microseconds sync_lost_at_ = never;
+  Microseconds ticks_until_ = 0;  ///< without another SYNC there are no ticks from this time on
 
   JointMask joints_;                ///< joints of the mission
   JointMask ramping_in_ = {};       ///< joints that are not yet at the start of the gait

@@ -147,7 +147,8 @@ void Master::enter(Phase phase) {
       timeout_us = stop_timeout_us;
       break;
   }
-  const bool leaves_room_for_ticks = is_running() || (mission_ == Mission::stop && options_.ramps_down);
+  const bool leaves_room_for_ticks =
+      is_running() || (mission_ == Mission::stop && options_.ramps_down && now_ < ticks_until_);
   sdo_clients_.begin(served, timeout_us,
                      leaves_room_for_ticks     ? pause_us
                      : phase == Phase::ramp_in ? ramp_in_pause_us

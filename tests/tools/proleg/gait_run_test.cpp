@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
 #include "sim/hardware_loop/master_input.hpp"
@@ -120,6 +125,52 @@ TEST_F(LiveChangesTest, ATickBehindTheEndOfTheRunIsRefused) {
   LiveChanges changes(scenario, {});
   EXPECT_FALSE(changes.add("amplitude=30@9999", 500, run_end));
   EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@10000", 500, run_end)), InputError);
+}
+
+/// A bus whose connection can be lost; nothing is received from it.
+class LosableBus final : public host::Transport {
+ public:
+  [[nodiscard]] Microseconds now() const override { return now_; }
+  [[nodiscard]] bool send(const CanFrame& /*frame*/) override { return state_.is_connected; }
+  void run_until(Microseconds deadline) override { now_ = std::max(now_, deadline); }
+  [[nodiscard]] const host::BusState& state() const override { return state_; }
+  [[nodiscard]] host::Statistics statistics() const override { return {}; }
+  [[nodiscard]] std::string description() const override { return "a bus that can be lost"; }
+
+  void set_connected(bool is_connected) { state_.is_connected = is_connected; }
+
+ private:
+  Microseconds now_ = 0;
+  host::BusState state_{.is_connected = true};
+};
+
+/// Seconds after which a stop ends, of which nothing is heard. connection: of each second, whether there is one.
+int seconds_to_stop(const std::vector<bool>& connection) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LosableBus* transport = nullptr;
+  host::BusConnection bus([&](host::TransportListener& /*listener*/) {
+    auto made = std::make_unique<LosableBus>();
+    transport = made.get();
+    return made;
+  });
+  GaitRun gait(scenario, bus, {.end_tick = run_end});
+  gait.stop();
+  for (std::size_t second = 0; second < connection.size(); ++second) {
+    transport->set_connected(connection[second]);
+    if (gait.has_stopped()) {
+      return static_cast<int>(second);
+    }
+    bus.run_until(bus.now() + 1'000'000, [] { return false; });
+  }
+  return -1;
+}
+
+TEST(GaitRun, AStopEndsSoonAfterTheConnectionIsLost) {
+  EXPECT_EQ(seconds_to_stop(std::vector<bool>(30, true)), 20);
+  EXPECT_EQ(seconds_to_stop(std::vector<bool>(30, false)), 2);
+  std::vector<bool> lost_later(30, false);
+  std::fill_n(lost_later.begin(), 5, true);
+  EXPECT_EQ(seconds_to_stop(lost_later), 7);
 }
 
 }  // namespace

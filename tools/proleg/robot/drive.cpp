@@ -93,14 +93,12 @@ class Drive {
   /// Ramps down and takes the power from the servos. Whether all modules have confirmed it.
   bool stop() {
     gait_.stop();
-    bool is_stopped = false;
-    // The master gives up by itself: silent modules cost it a second for every eight of them.
-    for (const Microseconds end = bus_.now() + GaitRun::stop_time_us; !is_stopped && bus_.now() < end;) {
-      is_stopped = bus_.run_until(std::min(end, bus_.now() + look_period_us), [this] {
+    for (bool has_stopped = false; !has_stopped;) {
+      bus_.run_until(bus_.now() + look_period_us, [this, &has_stopped] {
         report_events();
-        return gait_.state() == canopen::MasterState::stopped;
+        return has_stopped = gait_.has_stopped();
       });
-      try_to_take_ticks(is_stopped);
+      try_to_take_ticks(has_stopped);
     }
     gait_.compare_setpoints();
     return gait_.are_all_off();
@@ -258,10 +256,11 @@ int drive(const DriveOptions& options) {
     robot.follow();
   } catch (const std::exception& error) {
     failure = error.what();
-    // The stop takes many seconds if no module answers.
+    // The stop takes some seconds if no module answers.
     std::cerr << "proleg drive: the robot stops: " << *failure << '\n';
   }
-  if (!robot.stop() && !failure) {
+  const bool is_off = robot.stop();
+  if (!is_off && !failure) {
     failure = "not all modules have confirmed that their servos have no power: switch the robot off";
   }
   const GaitCheck& check = robot.check();
@@ -283,7 +282,7 @@ int drive(const DriveOptions& options) {
   }
   print_result(options, result, check, seconds, mirrored ? &*mirrored : nullptr);
   if (failure) {
-    throw std::runtime_error(*failure + "; modules without a host stop by themselves within 1.5 s" +
+    throw std::runtime_error(*failure + (is_off ? "" : "; modules without a host stop by themselves within 1.5 s") +
                              kept_in_recording(options));
   }
   if (result.dropped_changes > 0) {

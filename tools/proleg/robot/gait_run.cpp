@@ -256,6 +256,18 @@ void GaitRun::stop() {
   // What the modules send while they stop is not part of the gait.
   end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
   drive_.master().stop(bus_.now());
+  // The master gives up by itself: eight silent modules cost it 0.6 s, or five times that if others still tick.
+  constexpr Microseconds at_most = 20'000'000;
+  stops_by_ = bus_.now() + at_most;
+}
+
+bool GaitRun::has_stopped() {
+  if (!bus_.state().is_connected) {
+    // The modules have stopped by themselves by then. Before, the adapter may come back.
+    constexpr Microseconds without_connection = 2'000'000;
+    stops_by_ = std::min(stops_by_, bus_.now() + without_connection);
+  }
+  return state() == MasterState::stopped || bus_.now() >= stops_by_;
 }
 
 void GaitRun::compare_setpoints() {

@@ -115,9 +115,10 @@ class GaitRun {
   /// Whether the master has nothing to change but what waits for its tick.
   [[nodiscard]] bool has_made_changes() { return drive_.master().changes_made() == changes_.span().size(); }
 
-  /// Ramps down and takes the power from the servos. Then state() is `stopped`, at the latest after stop_time_us.
+  /// Begins to ramp down and to take the power from the servos.
   void stop();
-  static constexpr Microseconds stop_time_us = 20'000'000;
+  /// Whether that is done, or its time is over: 20 s, 2 s without a connection.
+  [[nodiscard]] bool has_stopped();
   /// Since stop(): whether all modules have confirmed that their servos have no power.
   [[nodiscard]] bool are_all_off() const { return are_all_off_ && state() == canopen::MasterState::stopped; }
   /// Compares all bits of the set-points. To be called after stop().
@@ -157,6 +158,7 @@ class GaitRun {
   std::vector<std::uint8_t> rejoined_;
   bool is_following_ = true;  ///< no observer has failed
   bool are_all_off_ = true;   ///< since stop()
+  Microseconds stops_by_ = 0;
   std::uint32_t end_tick_;
 };
 

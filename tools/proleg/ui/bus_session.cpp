@@ -92,8 +92,8 @@ void BusSession::let_robot_rest(const std::string& by) {
   if (robot_) {
     stop_robot(by);
   }
-  const Clock::time_point begin = Clock::now();
-  while (robot_ && Clock::now() < begin + std::chrono::microseconds(GaitRun::stop_time_us)) {
+  constexpr std::chrono::seconds at_most{25};  // longer than GaitRun::has_stopped() waits
+  for (const auto end = Clock::now() + at_most; robot_ && Clock::now() < end;) {
     bus_.run_for(5'000);
     poll_robot();
   }

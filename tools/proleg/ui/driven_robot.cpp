@@ -113,7 +113,7 @@ void DrivenRobot::poll() {
   }
   switch (state_) {
     case State::stopping:
-      if (gait_.state() == canopen::MasterState::stopped || bus_.now() >= stops_at_) {
+      if (gait_.has_stopped()) {
         gait_.compare_setpoints();
         end_recording();
         state_ = State::stopped;
@@ -269,7 +269,6 @@ void DrivenRobot::stop() {
   }
   end_recording();
   gait_.stop();
-  stops_at_ = bus_.now() + GaitRun::stop_time_us;
   state_ = State::stopping;
 }
 

@@ -150,7 +150,6 @@ class DrivenRobot {
   bool is_in_gait_mode_ = true;   ///< the modules' drives are
   unsigned ticks_of_joining_ = 0;
   bool mode_failed_ = false;
-  Microseconds stops_at_ = never;  ///< at the latest
   std::optional<std::string> failure_;
   std::vector<sim::ServoPulse> pulses_;
   std::vector<std::int32_t> commands_;

@@ -552,6 +552,20 @@ TEST(MasterStop, EveryJointGetsTheQuickStopAtOnceAlsoIfNoModuleAnswers) {
   EXPECT_EQ(stopped.size(), joints);
 }
 
+TEST(MasterStop, TakesAFewSecondsIfNothingComesFromTheRobot) {
+  ScriptedRobot robot(20);
+  robot.options.ramps_down = true;
+  robot.start();
+  ASSERT_TRUE(robot.run_until_running());
+  for (const auto& module : robot.modules) {
+    module->power_off();
+  }
+  ASSERT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::failed; }, 1'000'000));
+  robot.master().stop(robot.now());
+  // Twice three rounds of eight joints, three times 100 ms each; 1.2 s for the ramp; 0.3 s for the SYNC producer.
+  EXPECT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::stopped; }, 3'400'000));
+}
+
 TEST(MasterStop, EndsWhenEverItIsAskedForAndWhoeverIsGone) {
   constexpr unsigned seed = 33;
   SCOPED_TRACE("seed " + std::to_string(seed));

@@ -141,7 +141,7 @@ class LosableBus final : public host::Transport {
 
  private:
   Microseconds now_ = 0;
-  host::BusState state_{.is_connected = true};
+  host::BusState state_;
 };
 
 /// Seconds after which a stop ends, of which nothing is heard. connection: of each second, whether there is one.

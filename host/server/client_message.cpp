@@ -56,8 +56,8 @@ std::string viewer_name(const json& message) {
   for (std::size_t position = 0; position < name.size(); ++characters) {
     position += utf8_character_size(std::string_view(name).substr(position));  // the parser accepts only UTF-8
   }
-  if (characters == 0 || characters > max_name_characters || one_line(name) != name) {
-    reject("another name", "1 to 60 printable characters");
+  if (characters == 0 || characters > max_name_characters || !is_visible_line(name)) {
+    reject("the name " + in_quotes(one_line(name)), "1 to 60 characters that a person sees, in one line");
   }
   return name;
 }

@@ -140,6 +140,18 @@ std::string shortened(std::string_view text, std::size_t max_characters) {
   return std::string(text.substr(0, end)) + (end < text.size() ? "..." : "");
 }
 
+bool is_visible_line(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view character = text.substr(0, utf8_character_size(text));
+    if (character.empty() || breaks_a_line(character) ||
+        (character.size() > 1 && is_invisible(code_point_of(character)))) {
+      return false;
+    }
+    text.remove_prefix(character.size());
+  }
+  return true;
+}
+
 std::string in_quotes(std::string_view text) {
   const std::string shown = shortened(text);
   std::string result = "'";

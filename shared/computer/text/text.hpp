@@ -32,6 +32,10 @@ namespace proleg {
 /// or a zero-width one, are shown by their numbers: <U+00A0>.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// Whether one_line() and in_quotes() show the whole text as it is: one line of valid UTF-8 of which a person sees
+/// every character, blanks included. Names that people compare should be such texts.
+[[nodiscard]] bool is_visible_line(std::string_view text);
+
 /// The text with ASCII letters in lower case. XML tags and attributes are compared in this form.
 [[nodiscard]] std::string lower_case(std::string_view text);
 

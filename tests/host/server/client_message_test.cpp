@@ -90,9 +90,13 @@ TEST(ClientMessage, HasANameOfUpToSixtyCharacters) {
   }
   EXPECT_EQ(parsed<Hello>(with_name(sixty)).name, sixty) << "characters, not bytes";
   for (const std::string& name :
-       {std::string(), sixty + "x", std::string("a\\nb"), std::string("\\u0000"), std::string("\\u2028")}) {
-    EXPECT_EQ(error_of(with_name(name)), "message: found another name, expected 1 to 60 printable characters") << name;
+       {std::string(), sixty + "x", std::string("a\\nb"), std::string("\\u0000"), std::string("\\u2028"),
+        std::string("\\u202emoor"), std::string("\\u200b"), std::string("a\\ufeff")}) {
+    const std::string error = error_of(with_name(name));
+    EXPECT_EQ(error.substr(0, 25), "message: found the name '") << name;
+    EXPECT_NE(error.find("', expected 1 to 60 characters that a person sees, in one line"), std::string::npos) << error;
   }
+  EXPECT_NE(error_of(with_name("\\u202emoor")).find("'<U+202E>moor'"), std::string::npos);
 }
 
 TEST(ClientMessage, HasAtMostSixteenLevels) {

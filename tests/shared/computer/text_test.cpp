@@ -60,6 +60,15 @@ TEST(Text, InQuotesEveryCharacterIsSeen) {
   EXPECT_EQ(in_quotes("\xC3\xA4 \xE2\x82\xAC \xF0\x9F\x90\x9B"), "'\xC3\xA4 \xE2\x82\xAC \xF0\x9F\x90\x9B'");
 }
 
+TEST(Text, AVisibleLineHasNoCharacterThatNobodySees) {
+  EXPECT_TRUE(is_visible_line(""));
+  EXPECT_TRUE(is_visible_line("J 1 \xC3\xA4 \xE2\x82\xAC \xF0\x9F\x90\x9B"));
+  for (const char* text : {"a\tb", "a\nb", "a\x7F", "a\xC2\x85", "a\xC2\xA0", "a\xE2\x80\xAE", "a\xE2\x80\xA8",
+                           "\xE2\x81\xA6", "\xE2\x80\x8B", "\xEF\xBB\xBF", "\xC3", "\xFF"}) {
+    EXPECT_FALSE(is_visible_line(text)) << in_quotes(text);
+  }
+}
+
 TEST(Text, LinesOfEveryEditorAreEqual) {
   const auto lines_of = [](std::string_view text) {
     std::vector<std::string> all;

@@ -152,8 +152,9 @@ fs::path RecordingFolder::find(const std::string& name) const {
 
 std::filesystem::path new_recording(const std::filesystem::path& folder, const std::string& name) {
   const std::filesystem::path file(name);
-  if (file.empty() || file.filename() != file || file.extension() != ".proleg") {
-    throw InputError("file", 0, in_quotes(shortened(name)), "a name without a folder that ends in .proleg");
+  if (file.empty() || file.filename() != file || file.extension() != ".proleg" || !is_visible_line(name)) {
+    throw InputError("file", 0, in_quotes(one_line(name)),
+                     "a name of visible characters without a folder that ends in .proleg");
   }
   std::filesystem::path path = folder / file;
   if (std::filesystem::exists(std::filesystem::symlink_status(path))) {

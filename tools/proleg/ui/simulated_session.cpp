@@ -332,10 +332,9 @@ json SimulatedSession::save_as(const json& arguments) {
   }
   const auto name = argument<std::string>(arguments, "folder", "the name of a new folder");
   const std::filesystem::path folder(name.value_or(""));
-  const bool is_plain =
-      one_line(in_quotes(name.value_or(""))) == '\'' + name.value_or("") + '\'';  // short, and all of it visible
+  const bool is_plain = is_visible_line(folder.string()) && shortened(folder.string()) == folder.string();
   if (folder.empty() || folder.filename() != folder || name->front() == '.' || !is_plain) {
-    throw InputError("folder", 0, in_quotes(shortened(name.value_or(""))),
+    throw InputError("folder", 0, in_quotes(one_line(folder.string())),
                      "a short name without a path, for a new folder");
   }
   live_->save_as(options_.recordings / folder);

@@ -111,5 +111,19 @@ TEST(RecordingFolder, NeedsAFolder) {
   EXPECT_THROW(RecordingFolder(files / "file"), InputError);
 }
 
+TEST(NewRecording, HasANameThatAPersonSees) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(new_recording(folder.path(), "gait 1 \u00e4.proleg"), folder / "gait 1 \u00e4.proleg");
+  for (const char* name : {"", "gait.txt", "../gait.proleg", "a\nb.proleg", "\u202egelorp.proleg", "a\u200b.proleg"}) {
+    try {
+      static_cast<void>(new_recording(folder.path(), name));
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      EXPECT_EQ(std::string(error.what()).find("\u202e"), std::string::npos) << "the message shows the character";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace proleg::tools

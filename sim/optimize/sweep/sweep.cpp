@@ -28,8 +28,6 @@ Candidate without_seed(const Sweep& sweep, Candidate combination) {
   return combination;
 }
 
-std::string comment_on(const Sweep& sweep) { return "# " + one_line(command_of(sweep)) + "\n"; }
-
 }  // namespace
 
 std::vector<TrialResult> run_combinations(const Sweep& sweep, std::span<const Task> tasks) {
@@ -46,25 +44,33 @@ std::vector<TrialResult> run_combinations(const Sweep& sweep, std::span<const Ta
   return run_scenarios(scenarios, watch);
 }
 
-std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
-                                const std::function<void(std::uint64_t)>& observe) {
+std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, std::vector<SweepRun> runs,
+                                const std::function<bool()>& stop,
+                                const std::function<void(std::span<const SweepRun>)>& observe) {
   constexpr std::chrono::milliseconds patience{500};
-  std::vector<SweepRun> runs;
   const std::uint64_t size = sweep.size();
-  std::uint64_t started = 0;
+  std::vector<bool> is_done(size);
+  for (const SweepRun& run : runs) {
+    is_done[run.number] = true;
+  }
+  std::uint64_t left = size - runs.size();  // not yet started
+  std::uint64_t next = 0;
   while (runs.size() < size && !stop()) {
-    const std::size_t share = share_of_worker(sweep.scenario, size - started, workers);
-    while (started < size && workers.idle() > 0) {
+    const std::size_t share = share_of_worker(sweep.scenario, left, workers);
+    while (left > 0 && workers.idle() > 0) {
       std::vector<TicketedTask> batch;
-      for (; batch.size() < share && started < size; ++started) {
-        batch.push_back({started, {0, started, 0, sweep.combination(started), {}}});
+      for (; batch.size() < share && left > 0; ++next) {
+        if (!is_done[next]) {
+          batch.push_back({next, {0, next, 0, sweep.combination(next), {}}});
+          --left;
+        }
       }
       workers.start(batch);
     }
     if (std::optional<Workers::Done> done = workers.wait(patience)) {
       runs.push_back({done->ticket, std::move(done->result)});
     }
-    observe(runs.size());
+    observe(runs);
   }
   std::ranges::sort(runs, {}, &SweepRun::number);
   return runs;
@@ -136,61 +142,6 @@ std::string command_of(const Sweep& sweep) {
     text += " --over " + quantity.argument;
   }
   return text + " " + fixed_options(sweep);
-}
-
-std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs) {
-  TableLine line;
-  for (const SweptQuantity& quantity : sweep.quantities) {
-    line.add(with_unit(one_line(quantity.name), quantity.unit));
-  }
-  for (const sim::MeasureDeclaration& measure : sim::measures()) {
-    line.add(with_unit(measure.name, measure.unit));
-  }
-  line.add("limited_joints");
-  line.add("failure");
-  std::string table = comment_on(sweep) + line.finish();
-  for (const SweepRun& run : runs) {
-    const Candidate combination = sweep.combination(run.number);
-    for (std::size_t i = 0; i < combination.size(); ++i) {
-      line.add(sweep.quantities[i].values[combination[i]]);
-    }
-    for (const double value : run.result.measures.all()) {
-      line.add(value);
-    }
-    line.add(run.result.failure.empty() ? std::to_string(run.result.limited_joints) : std::string());
-    line.add(one_line(run.result.failure));
-    table += line.finish();
-  }
-  return table;
-}
-
-std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure) {
-  const sim::MeasureDeclaration& declaration = sim::declaration_of(measure);
-  TableLine line;
-  for (const SweptQuantity& quantity : sweep.quantities) {
-    if (quantity.kind != SweptQuantity::Kind::seed) {
-      line.add(with_unit(one_line(quantity.name), quantity.unit));
-    }
-  }
-  line.add("runs");
-  for (const char* figure : {"mean", "standard deviation", "minimum", "maximum"}) {
-    line.add(with_unit(std::string(figure) + " of " + std::string(declaration.name), declaration.unit));
-  }
-  std::string table = comment_on(sweep) + line.finish();
-  for (const SweepGroup& group : groups) {
-    for (std::size_t i = 0; i < group.combination.size(); ++i) {
-      if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {
-        line.add(sweep.quantities[i].values[group.combination[i]]);
-      }
-    }
-    line.add(group.values.size());
-    line.add(group.mean());
-    line.add(group.deviation());
-    line.add(group.values.empty() ? group.mean() : std::ranges::min(group.values));
-    line.add(group.values.empty() ? group.mean() : std::ranges::max(group.values));
-    table += line.finish();
-  }
-  return table;
 }
 
 }  // namespace proleg::optimize

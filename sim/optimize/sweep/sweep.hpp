@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/measure/measure.hpp"
@@ -59,11 +60,12 @@ struct SweepRun {
   TrialResult result;
 };
 
-/// Gives all combinations to the workers, whose function must be run_combinations. Returns the results in the order of
-/// the combinations; only the finished ones if `stop` becomes true. observe: called with the number of results after
-/// each result.
-[[nodiscard]] std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
-                                              const std::function<void(std::uint64_t)>& observe);
+/// Gives all combinations but those of `runs` to the workers, whose function must be run_combinations. Returns all
+/// results in the order of the combinations; only the finished ones if `stop` becomes true. observe: called with the
+/// results so far after each result, which is the last of them, and after half a second without one.
+[[nodiscard]] std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, std::vector<SweepRun> runs,
+                                              const std::function<bool()>& stop,
+                                              const std::function<void(std::span<const SweepRun>)>& observe);
 
 /// The runs that differ only in their seed.
 struct SweepGroup {
@@ -77,9 +79,17 @@ struct SweepGroup {
 [[nodiscard]] std::vector<SweepGroup> group_runs(const Sweep& sweep, std::span<const SweepRun> runs,
                                                  sim::Measure measure);
 
-/// A comment with the command; then a line for each run: the swept values, all measures, the number of joints whose
-/// servos cannot follow, and why the run failed.
-[[nodiscard]] std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs);
+/// The head of the table of all runs: comments with the command, and with a hash of the scenario's files and of the
+/// program (result_key: tools/proleg/common/build_id.hpp); the names of the columns.
+[[nodiscard]] std::string sweep_head(const Sweep& sweep, const std::string& result_key);
+/// A line of that table: the swept values, all measures, the number of joints whose servos cannot follow, and why the
+/// run failed.
+[[nodiscard]] std::string sweep_line(const Sweep& sweep, const SweepRun& run);
+/// The runs of a table of this sweep, with lines in any order. A last line without its end is left out. name: of the
+/// file, for errors. Throws InputError if it is that of another command, of other files or of another program, or is
+/// damaged.
+[[nodiscard]] std::vector<SweepRun> read_sweep_table(const Sweep& sweep, const std::string& result_key,
+                                                     const std::string& name, std::string_view text);
 /// A comment with the command; then a line for each group: the swept values without the seed, number of values, mean,
 /// standard deviation, minimum, maximum.
 [[nodiscard]] std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);

@@ -192,6 +192,44 @@ TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDoneOrNothing) {
   }
 }
 
+TEST_F(CommandLine, ASweepThatWasKilledGoesOnAndHasTheTablesOfOneThatWasNot) {
+  const std::vector<std::string> command{"sweep", scenario("coupled"), "--over", "seed=1:400", "--seconds",
+                                         "0.2",   "--workers",         "1"};
+  const auto with = [&](const char* option, const fs::path& folder) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {option, folder.string()});
+    return words;
+  };
+  ASSERT_EQ(proleg(with("--out", file("whole"))).status, 0);
+
+  std::vector<std::string> words = with("--out", file("killed"));
+  words.insert(words.begin(), PROLEG_PROGRAM);
+  const pid_t child = start(words);
+  const fs::path table = file("killed/sweep.tsv");
+  while ((!fs::exists(table) || cells(read_file(table)).size() < 4) && waitpid(child, nullptr, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_LT(cells(read_file(table)).size(), 401U) << "it was not killed in the run";
+  std::ofstream(table, std::ios::app) << "17\t0.";  // a line that was being written
+
+  const auto repeated = proleg(with("--out", file("killed")));
+  EXPECT_EQ(repeated.status, 2);
+  EXPECT_NE(repeated.err.find("--resume " + file("killed").string()), std::string::npos) << repeated.err;
+  std::vector<std::string> other = with("--resume", file("killed"));
+  other[3] = "seed=1:401";
+  EXPECT_EQ(proleg(other).status, 2);
+
+  const auto resumed = proleg(with("--resume", file("killed")));
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_NE(resumed.out.find(" runs were there already"), std::string::npos) << resumed.out;
+  for (const char* name : {"sweep.tsv", "summary.tsv"}) {
+    EXPECT_EQ(read_file(file("killed") / name), read_file(file("whole") / name)) << name;
+  }
+  EXPECT_NE(proleg(with("--resume", file("nothing"))).err.find("there is nothing to resume"), std::string::npos);
+}
+
 TEST_F(CommandLine, ASweepThatIsInterruptedBeforeItsFirstRunEndsLeavesNothing) {
   const std::string out = file("out").string();
   const pid_t child =

@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -42,6 +47,7 @@ struct SweepOptions {
   std::string measure = "distance";
   std::optional<std::string> workers;
   std::optional<std::string> out;
+  std::optional<std::string> resume;
   bool json = false;
 };
 
@@ -53,6 +59,7 @@ struct SweepResult {
   const SweepRun* first_failure = nullptr;  ///< first failed run, in the order of the combinations
   std::uint64_t limited = 0;                ///< runs whose servos cannot follow the gait
   const SweepRun* worst_limited = nullptr;  ///< run with the largest difference between an angle and that of its pulse
+  std::uint64_t resumed = 0;                ///< runs of the interrupted sweep
   std::uint32_t workers = 0;
   double wall_s = 0.0;
 };
@@ -66,15 +73,72 @@ sim::Measure read_measure(const std::string& name) {
 
 constexpr std::array<std::string_view, 3> result_files{"sweep.tsv", "summary.tsv", "sweep.svg"};
 
-/// The folder of the results; none of the files may exist in it.
+/// The table of all runs. It gets a line when a run ends, so a process that is killed loses no other run.
+class GrowingTable {
+ public:
+  /// The file is created with the first run; it exists already if there are runs.
+  GrowingTable(const Sweep& sweep, std::filesystem::path path, std::size_t runs)
+      : sweep_(sweep), path_(std::move(path)), written_(runs) {}
+
+  /// runs: all, the new ones last.
+  void add(std::span<const SweepRun> runs) {
+    for (; written_ < runs.size(); ++written_) {
+      append((written_ == 0 ? optimize::sweep_head(sweep_, result_key) : std::string()) +
+             optimize::sweep_line(sweep_, runs[written_]));
+    }
+  }
+
+ private:
+  void append(const std::string& text) const {
+    std::ofstream stream(path_, std::ios::binary | std::ios::app);
+    if (!(stream << text << std::flush)) {
+      throw FileError(path_, std::string("cannot be written: ") + std::strerror(errno) +
+                                 "; all runs until now are kept, `--resume` goes on");
+    }
+  }
+
+  const Sweep& sweep_;
+  std::filesystem::path path_;
+  std::size_t written_;
+};
+
+/// The folder of the results.
 std::filesystem::path result_folder(const SweepOptions& options) {
-  if (options.out && options.out->empty()) {
-    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  const char* const option = options.resume ? "--resume" : "--out";
+  if (options.resume && options.out && *options.out != *options.resume) {
+    throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
+                   ", expected one of them: a resumed sweep stays in its folder");
   }
   const std::string file = std::filesystem::path(options.scenario.file).filename().string();
-  std::filesystem::path folder = options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
-  check_result_folder(folder, result_files);
+  std::filesystem::path folder =
+      options.resume ? *options.resume : options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
+  if (folder.empty()) {
+    throw InputError(option, 0, "an empty name", "the name of a folder");
+  }
+  check_result_folder(folder, {});
   return folder;
+}
+
+/// Refuses the files of an earlier sweep.
+void require_no_results(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / result_files[0])) {
+    throw BadInput((folder / result_files[0]).string() +
+                   ": found an existing file, expected none; --out FOLDER names another folder, --resume " +
+                   folder.string() + " continues a sweep that was interrupted");
+  }
+  check_result_folder(folder, result_files);
+}
+
+/// The runs of the sweep that is resumed. Removes the line that was being written.
+std::vector<SweepRun> interrupted_runs(const Sweep& sweep, const std::filesystem::path& table) {
+  if (const auto found = found_instead_of_file(table)) {
+    throw InputError(table.string(), 0, *found, "the table of an interrupted sweep; there is nothing to resume");
+  }
+  std::ifstream stream(table, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::vector<SweepRun> runs = optimize::read_sweep_table(sweep, result_key, table.string(), text);
+  std::filesystem::resize_file(table, text.rfind('\n') + 1);
+  return runs;
 }
 
 /// Warns if several seeds give equal runs because the gait has no noise.
@@ -118,7 +182,7 @@ void count_runs(SweepResult& result) {
   }
 }
 
-SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
+SweepResult run(const Sweep& sweep, std::uint32_t worker_count, std::vector<SweepRun> earlier, GrowingTable& table) {
   optimize::Experiment experiment;  // the workers take their time limit from it
   experiment.scenario.duration_s = sweep.scenario.duration_s;
   optimize::LocalWorkers workers(
@@ -127,16 +191,18 @@ SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
         return optimize::run_combinations(sweep, tasks);
       });
   CountProgress progress("runs", sweep.size());
-  const auto show = [&](std::uint64_t done) {
+  const auto show = [&](std::span<const SweepRun> runs) {
+    table.add(runs);
     for (const std::string& message : workers.messages()) {
       progress.erase();
       print_warning("proleg sweep", message);
     }
-    progress.show(done);
+    progress.show(runs.size());
   };
   SweepResult result;
+  result.resumed = earlier.size();
   const auto start = std::chrono::steady_clock::now();
-  result.runs = optimize::run_sweep(sweep, workers, interrupted, show);
+  result.runs = optimize::run_sweep(sweep, workers, std::move(earlier), interrupted, show);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.workers = workers.count();
   count_runs(result);
@@ -148,7 +214,11 @@ void write_results(const Sweep& sweep, sim::Measure measure, const std::filesyst
     result.files.push_back(folder / name);
     write_file(result.files.back(), text);
   };
-  write("sweep.tsv", optimize::sweep_table(sweep, result.runs));
+  std::string table = optimize::sweep_head(sweep, result_key);
+  for (const SweepRun& run : result.runs) {
+    table += optimize::sweep_line(sweep, run);
+  }
+  write("sweep.tsv", table);
   write("summary.tsv", optimize::sweep_summary(sweep, result.groups, measure));
   if (const std::string picture = optimize::draw_sweep(sweep, result.groups, measure); !picture.empty()) {
     write("sweep.svg", picture);
@@ -200,6 +270,9 @@ void print_table(const Sweep& sweep, sim::Measure measure, const SweepResult& re
   std::printf("%-10s %zu of %llu, %llu of them failed; engine %s, %u workers, %.1f s\n", "runs", result.runs.size(),
               static_cast<unsigned long long>(sweep.size()), static_cast<unsigned long long>(result.failed),
               std::string(sim::name_of(sweep.scenario.environment.engine)).c_str(), result.workers, result.wall_s);
+  if (result.resumed > 0) {
+    std::printf("%-10s %llu runs were there already\n", "resumed", static_cast<unsigned long long>(result.resumed));
+  }
   if (result.failed > 0) {
     std::printf("%-10s the first at %s\n", "failed", first_failure(sweep, result).c_str());
   }
@@ -228,6 +301,7 @@ void print_json(const SweepOptions& options, const Sweep& sweep, const std::file
                     {"measure", options.measure},
                     {"combinations", sweep.size()},
                     {"runs", result.runs.size()},
+                    {"resumed", result.resumed},
                     {"failed", result.failed},
                     {"first_failure", result.failed > 0 ? Json(first_failure(sweep, result)) : Json()},
                     {"servos_cannot_follow", result.limited},
@@ -273,10 +347,17 @@ int sweep(const SweepOptions& options) {
   const std::filesystem::path folder = result_folder(options);
   static_cast<void>(sim::Simulation(sweep.scenario));  // an engine without the features of the world refuses it now
   catch_interrupts();
-  const ResultFolder claim(folder, result_files);
+  const ResultFolder claim(folder, {});
+  std::vector<SweepRun> earlier;
+  if (options.resume) {
+    earlier = interrupted_runs(sweep, folder / result_files[0]);
+  } else {
+    require_no_results(folder);
+  }
+  GrowingTable table(sweep, folder / result_files[0], earlier.size());
   print_warnings("proleg sweep", sweep.scenario);
   warn_of_equal_runs(sweep);
-  SweepResult result = run(sweep, worker_count);
+  SweepResult result = run(sweep, worker_count, std::move(earlier), table);
   if (result.runs.empty()) {
     std::cerr << "proleg sweep: interrupted before the first run of " << sweep.size()
               << " ended; nothing was written\n";
@@ -295,7 +376,8 @@ int sweep(const SweepOptions& options) {
   warn_of_limited_servos(sweep, result);
   if (interrupted()) {
     std::cerr << "proleg sweep: interrupted after " << result.runs.size() << " of " << sweep.size()
-              << " runs; they are in " << (folder / "sweep.tsv").string() << '\n';
+              << " runs; they are in " << (folder / "sweep.tsv").string() << "; the same command with --resume "
+              << folder.string() << " continues it\n";
     return exit_failed;
   }
   return has_result ? exit_success : exit_failed;
@@ -323,6 +405,10 @@ int main(int argc, char** argv) {
                           "number of simulations at the same time; default: number of processors");
   command_line.add_option("--out", options.out,
                           "folder for tables and picture; default: the name of FILE up to its first dot, and _sweep");
+  command_line
+      .add_option("--resume", options.resume,
+                  "continue the sweep whose sweep.tsv is in this folder; the other options must be the same")
+      .value_name("FOLDER");
   command_line.add_flag("--json", options.json, "print one JSON object");
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return sweep(options); });

@@ -186,7 +186,7 @@ TEST(Sweep, ResultsAreInTheOrderOfTheCombinations) {
   const Sweep sweep = sweep_over({"amplitude=1:3", "seed=1:4"});
   BackwardWorkers workers;
   const std::vector<SweepRun> runs = run_sweep(
-      sweep, workers, [] { return false; }, [](std::uint64_t) {});
+      sweep, workers, {}, [] { return false; }, [](std::span<const SweepRun>) {});
   ASSERT_EQ(runs.size(), 12U);
   for (std::uint64_t i = 0; i < runs.size(); ++i) {
     EXPECT_EQ(runs[i].number, i);
@@ -197,11 +197,22 @@ TEST(Sweep, ResultsAreInTheOrderOfTheCombinations) {
 TEST(Sweep, AnInterruptionLeavesWhatIsDone) {
   const Sweep sweep = sweep_over({"amplitude=1:3", "seed=1:4"});
   BackwardWorkers workers;
-  std::uint64_t done = 0;
+  std::vector<SweepRun> done;
   const std::vector<SweepRun> runs = run_sweep(
-      sweep, workers, [&] { return done == 5; }, [&](std::uint64_t count) { done = count; });
+      sweep, workers, {}, [&] { return done.size() == 5; },
+      [&](std::span<const SweepRun> so_far) { done.assign(so_far.begin(), so_far.end()); });
   EXPECT_EQ(runs.size(), 5U);
   EXPECT_TRUE(std::ranges::is_sorted(runs, {}, &SweepRun::number));
+
+  BackwardWorkers others;
+  std::size_t calls = 0;
+  const std::vector<SweepRun> all = run_sweep(
+      sweep, others, done, [] { return false; }, [&](std::span<const SweepRun>) { ++calls; });
+  EXPECT_EQ(calls, 7U) << "no run is simulated again";
+  ASSERT_EQ(all.size(), 12U);
+  for (std::uint64_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].number, i);
+  }
 }
 
 TrialResult run_combination(const Sweep& sweep, const Candidate& combination) {
@@ -290,15 +301,59 @@ TEST(SweepTable, HasALineForEachRunWithItsValues) {
   const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=3:4"});
   std::vector<SweepRun> runs{run_with(0, 1.5), run_with(3, NAN)};
   runs[1].result.failure = "the robot\nfell";
-  const std::string table = sweep_table(sweep, runs);
+  const std::string table = sweep_head(sweep, "key") + sweep_line(sweep, runs[0]) + sweep_line(sweep, runs[1]);
   EXPECT_TRUE(
       table.starts_with("# proleg sweep top.xml --over amplitude=10:20:10 --over seed=3:4 --seconds 2\n"
-                        "amplitude (deg)\tseed\tdistance (m)\t"))
+                        "# files and program "))
       << table;
+  EXPECT_NE(table.find("\namplitude (deg)\tseed\tdistance (m)\t"), std::string::npos) << table;
   EXPECT_NE(table.find("\n10\t3\t1.5\t"), std::string::npos) << table;
   EXPECT_NE(table.find("\n20\t4\t\t"), std::string::npos) << table;
   EXPECT_TRUE(table.ends_with("\tthe robot fell\n")) << table;
-  EXPECT_EQ(std::ranges::count(table, '\n'), 4);
+  EXPECT_EQ(std::ranges::count(table, '\n'), 5);
+}
+
+TEST(SweepTable, IsReadAgainWithoutALoss) {
+  const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=3:4"});
+  std::vector<SweepRun> runs{run_with(3, NAN), run_with(0, 1.0 / 3.0), run_with(1, -1e-300)};
+  runs[0].result.failure = "the robot fell";
+  runs[1].result.limited_joints = 4;
+  std::string table = sweep_head(sweep, "key");
+  for (const SweepRun& run : runs) {
+    table += sweep_line(sweep, run);
+  }
+  const std::vector<SweepRun> read = read_sweep_table(sweep, "key", "t.tsv", table + "10\t3\t1.");
+  ASSERT_EQ(read.size(), 3U) << "a line without its end was being written";
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].number, runs[i].number);
+    EXPECT_EQ(sweep_line(sweep, read[i]), sweep_line(sweep, runs[i]));
+  }
+}
+
+TEST(SweepTable, OfAnotherSweepOrADamagedOneIsRefused) {
+  const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=3:4"});
+  const std::string head = sweep_head(sweep, "key");
+  const std::string line = sweep_line(sweep, run_with(0, 1.5));
+  const auto table_refusal = [&](const std::string& text) {
+    return message_of<InputError>([&] { static_cast<void>(read_sweep_table(sweep, "key", "t.tsv", text)); });
+  };
+  EXPECT_EQ(table_refusal(head + line), "");
+  EXPECT_EQ(table_refusal(""),
+            "t.tsv:1: found the end of the table, expected the head of a table that this command has written");
+  EXPECT_EQ(table_refusal(sweep_head(sweep_over({"amplitude=10:20:10", "seed=3:5"}), "key") + line).substr(0, 16),
+            "t.tsv:1: found '");
+  EXPECT_EQ(table_refusal(sweep_head(sweep, "other key") + line),
+            "t.tsv:2: found results of other files or of another program, expected those of the scenario and the "
+            "program of the interrupted sweep");
+  const std::string damaged = "t.tsv:5: found a line that this command has not written, expected one line for each run";
+  EXPECT_EQ(table_refusal(head + line + line), damaged) << "a run twice";
+  EXPECT_EQ(table_refusal(head + line + "10\t4\n"), damaged);
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    std::string other = line;
+    other[i] = 'x';
+    const std::string message = table_refusal(head + line + other);
+    EXPECT_TRUE(message == damaged || i + 1 == line.size()) << i;
+  }
 }
 
 /// Number of elements of that name in a group of the picture.

@@ -1,0 +1,185 @@
+// The tables of a sweep, and how one that was interrupted is read again.
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/hash/sha256.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/optimize/report/scores.hpp"
+#include "sim/optimize/sweep/sweep.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+std::string comment_on(const Sweep& sweep) { return "# " + one_line(command_of(sweep)) + "\n"; }
+
+/// SHA-256 over the files of the scenario, in their order, its algorithms and the program.
+std::string hash_of_inputs(const Sweep& sweep, const std::string& result_key) {
+  std::string text = result_key;
+  for (const sim::SourceFile& source : sweep.scenario.sources) {
+    text += sha256_hex(source.text);
+  }
+  for (const Slot& slot : sweep.scenario.kernel.slots) {
+    if (slot.algorithm != nullptr) {  // of a user: its library may have changed
+      text += " " + std::to_string(slot.algorithm->declaration().sources);
+    }
+  }
+  return sha256_hex(text);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const std::size_t end = line.find('\t');
+    cells.push_back(line.substr(0, end));
+    if (end == std::string_view::npos) {
+      return cells;
+    }
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// The number of the combination with these values.
+std::optional<std::uint64_t> find_number(const Sweep& sweep, std::span<const std::string_view> values) {
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
+    const std::vector<std::string>& known = sweep.quantities[i].values;
+    const auto found = std::ranges::find(known, values[i]);
+    if (found == known.end()) {
+      return std::nullopt;
+    }
+    number = number * known.size() + static_cast<std::uint64_t>(found - known.begin());
+  }
+  return number;
+}
+
+std::optional<SweepRun> read_line(const Sweep& sweep, std::string_view line) {
+  const std::vector<std::string_view> cells = cells_of(line);
+  const std::size_t swept = sweep.quantities.size();
+  SweepRun run;
+  const std::span<double> measures = run.result.measures.all();
+  if (cells.size() != swept + measures.size() + 2) {
+    return std::nullopt;
+  }
+  const std::optional<std::uint64_t> number = find_number(sweep, cells);
+  if (!number) {
+    return std::nullopt;
+  }
+  run.number = *number;
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    if (const std::string_view cell = cells[swept + i]; !cell.empty()) {
+      const std::optional<double> value = parse_number(cell);
+      if (!value) {
+        return std::nullopt;
+      }
+      measures[i] = *value;
+    }
+  }
+  run.result.failure = cells.back();
+  const std::string_view limited = cells[cells.size() - 2];
+  const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(limited);
+  if (run.result.failure.empty() ? !count : !limited.empty()) {
+    return std::nullopt;
+  }
+  run.result.limited_joints = count.value_or(0);
+  return run;
+}
+
+}  // namespace
+
+std::string sweep_head(const Sweep& sweep, const std::string& result_key) {
+  TableLine line;
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    line.add(with_unit(one_line(quantity.name), quantity.unit));
+  }
+  for (const sim::MeasureDeclaration& measure : sim::measures()) {
+    line.add(with_unit(measure.name, measure.unit));
+  }
+  line.add("limited_joints");
+  line.add("failure");
+  return comment_on(sweep) + "# files and program " + hash_of_inputs(sweep, result_key) + "\n" + line.finish();
+}
+
+std::string sweep_line(const Sweep& sweep, const SweepRun& run) {
+  TableLine line;
+  const Candidate combination = sweep.combination(run.number);
+  for (std::size_t i = 0; i < combination.size(); ++i) {
+    line.add(sweep.quantities[i].values[combination[i]]);
+  }
+  for (const double value : run.result.measures.all()) {
+    line.add(value);
+  }
+  line.add(run.result.failure.empty() ? std::to_string(run.result.limited_joints) : std::string());
+  line.add(one_line(run.result.failure));
+  return line.finish();
+}
+
+std::vector<SweepRun> read_sweep_table(const Sweep& sweep, const std::string& result_key, const std::string& name,
+                                       std::string_view text) {
+  const std::string head = sweep_head(sweep, result_key);
+  std::string_view expected = head;
+  std::vector<SweepRun> runs;
+  std::set<std::uint64_t> numbers;
+  for (int number = 1;; ++number) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) {
+      if (!expected.empty()) {
+        throw InputError(name, number, "the end of the table", "the head of a table that this command has written");
+      }
+      return runs;  // the rest of a line that was being written
+    }
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    if (!expected.empty()) {
+      const std::string_view wanted = expected.substr(0, expected.find('\n'));
+      expected.remove_prefix(wanted.size() + 1);
+      if (line != wanted) {
+        throw InputError(name, number, number == 2 ? "results of other files or of another program" : in_quotes(line),
+                         number == 2 ? "those of the scenario and the program of the interrupted sweep"
+                                     : in_quotes(wanted) + ": the command of the interrupted sweep");
+      }
+      continue;
+    }
+    std::optional<SweepRun> run = read_line(sweep, line);
+    if (!run || !numbers.insert(run->number).second) {
+      throw InputError(name, number, "a line that this command has not written", "one line for each run");
+    }
+    runs.push_back(std::move(*run));
+  }
+}
+
+std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure) {
+  const sim::MeasureDeclaration& declaration = sim::declaration_of(measure);
+  TableLine line;
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    if (quantity.kind != SweptQuantity::Kind::seed) {
+      line.add(with_unit(one_line(quantity.name), quantity.unit));
+    }
+  }
+  line.add("runs");
+  for (const char* figure : {"mean", "standard deviation", "minimum", "maximum"}) {
+    line.add(with_unit(std::string(figure) + " of " + std::string(declaration.name), declaration.unit));
+  }
+  std::string table = comment_on(sweep) + line.finish();
+  for (const SweepGroup& group : groups) {
+    for (std::size_t i = 0; i < group.combination.size(); ++i) {
+      if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {
+        line.add(sweep.quantities[i].values[group.combination[i]]);
+      }
+    }
+    line.add(group.values.size());
+    line.add(group.mean());
+    line.add(group.deviation());
+    line.add(group.values.empty() ? group.mean() : std::ranges::min(group.values));
+    line.add(group.values.empty() ? group.mean() : std::ranges::max(group.values));
+    table += line.finish();
+  }
+  return table;
+}
+
+}  // namespace proleg::optimize

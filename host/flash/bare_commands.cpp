@@ -20,12 +20,16 @@ std::string range_word(std::uint32_t address, std::uint32_t size) {
   return hexadecimal(address, 8) + ':' + std::to_string(size);
 }
 
-std::vector<BareStep> openocd_steps() {
-  return {{"write all",
-           {"openocd", "-f", "interface/stlink.cfg", "-f", "target/stm32f4x.cfg", "-f", bare_file::script},
-           "",
-           "",
-           false}};
+std::vector<BareStep> openocd_steps(BareProbe probe) {
+  Words command{"openocd", "-f"};
+  if (probe == BareProbe::stlink) {
+    command.emplace_back("interface/stlink.cfg");
+  } else {  // both have JTAG, too
+    command.insert(command.end(), {probe == BareProbe::jlink ? "interface/jlink.cfg" : "interface/cmsis-dap.cfg", "-c",
+                                   "transport select swd"});
+  }
+  command.insert(command.end(), {"-f", "target/stm32f4x.cfg", "-f", bare_file::script});
+  return {{"write all", std::move(command), bare_file::end, "", false}};
 }
 
 /// Makes the steps for both protocols of the ROM bootloader.
@@ -133,6 +137,7 @@ constexpr std::string_view script_opens_sector_0 = R"(  # Bit 16, nWRP of sector
   }
 )";
 
+// OpenOCD may end with status 0 although a command of a configuration file has failed.
 constexpr std::string_view script_end = R"(
 # Bits 3:2, BOR_LEV, become 0: brown-out level 3. The other user options stay.
 if {[option_bytes] & 0x0C} {
@@ -147,6 +152,9 @@ if {$word & 0x1000C} {
   refuse [format "found the option bytes 0x%08X, expected bits 16, 3 and 2 to be 0: the chip did not take them" $word]
 }
 reset run
+set file [open end.txt w]
+puts $file "all is written"
+close $file
 shutdown
 )";
 
@@ -166,16 +174,26 @@ struct Symptom {
 
 constexpr std::string_view udev_hint = "host/udev/70-proleg.rules gives them to you; the file says how to install it";
 
+constexpr std::string_view no_chip =
+    "found a probe without a chip, expected an STM32F405 behind it: check SWDIO, SWCLK, ground, and the board's supply";
+
 // The first symptom that fits counts: causes are listed before their consequences.
 constexpr Symptom openocd_symptoms[] = {
-    {"LIBUSB_ERROR_ACCESS", "found an ST-LINK without the rights to open it, expected rights: "},
-    {"LIBUSB_ERROR_BUSY", "found an ST-LINK that another program uses, expected a free one: close it"},
+    {"LIBUSB_ERROR_ACCESS", "found a probe without the rights to open it, expected rights: "},
+    {"LIBUSB_ERROR_BUSY", "found a probe that another program uses, expected a free one: close it"},
     {"Error: open failed", "found no ST-LINK, expected one on USB: plug it in, 'lsusb -d 0483:' lists it"},
+    {"No J-Link device found",
+     "found no J-Link that can be opened, expected one on USB: plug it in, 'lsusb -d 1366:' lists it; if it is there, "
+     "rights are missing: "},
+    {"Multiple devices found", "found several J-Links, expected one: pull the plugs of the others"},
+    {"unable to find a matching CMSIS-DAP",
+     "found no CMSIS-DAP probe that can be opened, expected one on USB: plug it in, 'lsusb -v' lists it as CMSIS-DAP; "
+     "if it is there, rights are missing: "},
+    {"unable to open CMSIS-DAP device", "found a probe without the rights to open it, expected rights: "},
     {"target voltage may be too low",
      "found a chip without supply voltage, expected 3.3 V: connect the board's supply"},
-    {"unable to connect to the target",
-     "found an ST-LINK without a chip, expected an STM32F405 behind it: check SWDIO, SWCLK, ground, and the board's "
-     "supply"},
+    {"unable to connect to the target", no_chip},
+    {"Error connecting DP", no_chip},
     {"stm32x device protected",
      "found a sector that is write-protected, expected at most sector 0 to be: 'flash protect' of openocd shows how"},
     {"contents differ", "found other bytes in the flash than were written, expected the same: check supply and wires"},
@@ -206,7 +224,7 @@ std::span<const Symptom> symptoms_of(BareProbe probe) {
       return dfu_symptoms;
     case BareProbe::uart:
       return uart_symptoms;
-    case BareProbe::stlink:
+    default:
       break;
   }
   return openocd_symptoms;
@@ -225,7 +243,7 @@ std::uint32_t settings_file_size(const BarePlan& plan, std::uint32_t record_size
 }
 
 std::vector<BareStep> bare_steps(const BarePlan& plan) {
-  return plan.probe == BareProbe::stlink ? openocd_steps() : RomSteps(plan).make();
+  return uses_swd(plan.probe) ? openocd_steps(plan.probe) : RomSteps(plan).make();
 }
 
 std::string bare_script(const BarePlan& plan) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What puts a bootloader and a first image on an empty STM32F405: the command lines of openocd (ST-LINK, SWD), of
+// What puts a bootloader and a first image on an empty STM32F405: the command lines of openocd (a probe at SWD), of
 // dfu-util (the chip's ROM bootloader over USB, AN3156) and of stm32flash (that bootloader over a UART, AN3155). Text
 // only, no input or output.
 //
@@ -18,10 +18,15 @@ namespace proleg::host {
 
 /// The way in which the computer reaches the chip.
 enum class BareProbe : std::uint8_t {
-  stlink,  ///< openocd
-  dfu,     ///< dfu-util; BOOT0 is high
-  uart,    ///< stm32flash; BOOT0 is high
+  stlink,     ///< openocd
+  jlink,      ///< openocd
+  cmsis_dap,  ///< openocd
+  dfu,        ///< dfu-util; BOOT0 is high
+  uart,       ///< stm32flash; BOOT0 is high
 };
+
+/// Whether the probe is at the connector SWD.
+[[nodiscard]] constexpr bool uses_swd(BareProbe probe) { return probe <= BareProbe::cmsis_dap; }
 
 /// A part of the flash that is erased as a whole.
 struct FlashPart {
@@ -36,6 +41,7 @@ inline constexpr const char* image = "image.pimg";
 inline constexpr const char* settings = "settings.bin";  ///< settings_file_size() bytes, 0xFF behind the record
 inline constexpr const char* present = "present.bin";    ///< the bytes of the chip in the place of the bootloader
 inline constexpr const char* script = "bare.tcl";
+inline constexpr const char* end = "end.txt";  ///< the last command of the script writes it
 }  // namespace bare_file
 
 struct BarePlan {
@@ -71,7 +77,7 @@ struct BareStep {
 /// Whether the steps set the option bytes. The ROM bootloader takes them, too, but as 16 bytes with the read protection
 /// among them, and RM0090 and the programs that write them do not agree on their order. A wrong byte locks the chip,
 /// with 0xCC forever, so dfu-util and stm32flash do not write them.
-[[nodiscard]] constexpr bool sets_option_bytes(BareProbe probe) { return probe == BareProbe::stlink; }
+[[nodiscard]] constexpr bool sets_option_bytes(BareProbe probe) { return uses_swd(probe); }
 
 /// A command as a person would type it into a shell.
 [[nodiscard]] std::string shell_text(const std::vector<std::string>& command);

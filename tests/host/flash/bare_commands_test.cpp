@@ -27,10 +27,10 @@ TEST(BareFailures, OfOpenocdAreExplained) {
       failure(BareProbe::stlink, "Info : clock speed 2000 kHz\nError: open failed\n\n"),
       "found no ST-LINK, expected one on USB: plug it in, 'lsusb -d 0483:' lists it; the command can be repeated");
   EXPECT_EQ(failure(BareProbe::stlink, "Error: libusb_open() failed with LIBUSB_ERROR_ACCESS\nError: open failed\n"),
-            "found an ST-LINK without the rights to open it, expected rights: host/udev/70-proleg.rules gives them to "
+            "found a probe without the rights to open it, expected rights: host/udev/70-proleg.rules gives them to "
             "you; the file says how to install it; the command can be repeated");
   EXPECT_EQ(failure(BareProbe::stlink, "Error: init mode failed (unable to connect to the target)\n"),
-            "found an ST-LINK without a chip, expected an STM32F405 behind it: check SWDIO, SWCLK, ground, and the "
+            "found a probe without a chip, expected an STM32F405 behind it: check SWDIO, SWCLK, ground, and the "
             "board's supply; the command can be repeated");
 }
 
@@ -115,6 +115,17 @@ TEST(BareCommands, OfAnStLinkRunOneScript) {
   EXPECT_EQ(texts_of(plan_of(BareProbe::stlink)),
             Words{"openocd -f interface/stlink.cfg -f target/stm32f4x.cfg -f bare.tcl"});
   EXPECT_TRUE(sets_option_bytes(BareProbe::stlink));
+}
+
+TEST(BareCommands, OfOtherProbesAtSwdSelectItSinceTheyHaveJtagToo) {
+  EXPECT_EQ(texts_of(plan_of(BareProbe::jlink)),
+            Words{"openocd -f interface/jlink.cfg -c 'transport select swd' -f target/stm32f4x.cfg -f bare.tcl"});
+  EXPECT_EQ(texts_of(plan_of(BareProbe::cmsis_dap)),
+            Words{"openocd -f interface/cmsis-dap.cfg -c 'transport select swd' -f target/stm32f4x.cfg -f bare.tcl"});
+  for (const BareProbe probe : {BareProbe::jlink, BareProbe::cmsis_dap}) {
+    EXPECT_TRUE(sets_option_bytes(probe));
+    EXPECT_EQ(bare_script(plan_with_settings(probe)), bare_script(plan_with_settings(BareProbe::stlink)));
+  }
 }
 
 TEST(BareCommands, OfDfuReadBackWhatTheyWrite) {

@@ -31,7 +31,8 @@ LONGEST = 300  # seconds that a command may take on a busy computer
 SLOT_A, SETTINGS = 0x08020000, 0x08004000
 ERASED = 0xFF
 KEPT = 0x5A
-PROBES = ("stlink", "dfu", "uart")
+PROBES = ("stlink", "dfu", "uart")  # one of each tool
+SWD_PROBES = ("stlink", "jlink", "cmsis-dap")
 # Brown-out level 3 (bits 3:2 are 0) and sector 0 protected (bit 16 is 0); all else as delivered: RM0090, section 3.9.10.
 RIGHT_OPTIONS = FACTORY_OPTIONS & ~3 & ~0x1000C
 NO_PROBE = "adapter driver hla\nhla_layout stlink\nhla_device_desc none\nhla_vid_pid 0x0000 0x0000\n"
@@ -84,6 +85,13 @@ class FlashBare(unittest.TestCase):
         wrapper = self.folder / "bin" / "stm32flash"
         wrapper.write_text(f'#!/bin/sh\nexec {shutil.which("stm32flash")} -m 8n1 "$@"\n')
         wrapper.chmod(0o755)
+        # The chip has JTAG only. A command for SWD reaches it without its selection, which openocd itself reads in
+        # test_a_missing_probe_is_named.
+        wrapper = self.folder / "bin" / "openocd"
+        wrapper.write_text("#!/bin/bash\nwords=()\nfor word; do\n  if [[ $PROLEG_JTAG && $word == 'transport select swd' ]]; then"
+                           "\n    word='transport select jtag'\n  fi\n  words+=(\"$word\")\ndone\n"
+                           f'exec {shutil.which("openocd")} "${{words[@]}}"\n')
+        wrapper.chmod(0o755)
         self.set_interface(NO_PROBE)
         self.environment = {"PATH": f'{self.folder / "bin"}:{os.environ["PATH"]}', "HOME": str(self.folder),
                             "TMPDIR": str(self.folder / "temporary"), "LD_PRELOAD": str(self.libusb),
@@ -93,8 +101,9 @@ class FlashBare(unittest.TestCase):
         self.chip = Stm32F405()
 
     def set_interface(self, script):
-        """What openocd reads as interface/stlink.cfg."""
-        (self.folder / "scripts/interface/stlink.cfg").write_text(script)
+        """What openocd reads as interface/stlink.cfg, jlink.cfg and cmsis-dap.cfg."""
+        for name in SWD_PROBES:
+            (self.folder / f"scripts/interface/{name}.cfg").write_text(script)
 
     def write(self, name, content):
         (self.folder / name).write_bytes(content)
@@ -108,11 +117,11 @@ class FlashBare(unittest.TestCase):
     def connected(self, probe):
         """Arguments and environment for a tool that reaches the chip."""
         words = ["--bare", "--probe", probe]
-        if probe == "stlink":
+        if probe in SWD_PROBES:
             with JtagChip(self.chip, self.folder) as cable:
                 self.set_interface(cable.script)
                 self.core = cable.core
-                yield words, {}
+                yield words, {"PROLEG_JTAG": "1"}
             self.set_interface(NO_PROBE)
         elif probe == "dfu":
             with DfuRom(self.chip, self.folder) as self.dfu:
@@ -141,7 +150,7 @@ class FlashBare(unittest.TestCase):
     def expect_complete(self, probe, bootloader=BOOTLOADER):
         self.expect_sector(0, bootloader)
         self.expect_sector(5, IMAGE)
-        self.assertEqual(self.chip.options, RIGHT_OPTIONS if probe == "stlink" else FACTORY_OPTIONS & ~3)
+        self.assertEqual(self.chip.options, RIGHT_OPTIONS if probe in SWD_PROBES else FACTORY_OPTIONS & ~3)
 
     def option_values(self):
         return self.chip.sectors("options")
@@ -149,7 +158,7 @@ class FlashBare(unittest.TestCase):
     # --- requirements
 
     def test_an_empty_chip_gets_bootloader_and_image_and_nothing_else(self):
-        for probe in PROBES:
+        for probe in dict.fromkeys(SWD_PROBES + PROBES):
             with self.subTest(probe=probe):
                 self.chip = Stm32F405()
                 self.expect_flashed(self.flash(probe))
@@ -202,20 +211,33 @@ class FlashBare(unittest.TestCase):
                     self.assertEqual((value ^ options) & ~3 & ~0x1000C, 0, hex(value))
                 self.assertEqual(self.chip.options, options & ~3 & ~0x1000C)
 
-    def test_only_an_st_link_sets_option_bytes_and_the_others_say_so(self):
+    def test_only_a_probe_at_swd_sets_option_bytes_and_the_others_say_so(self):
         for probe in ("dfu", "uart"):
             with self.subTest(probe=probe):
                 self.chip = Stm32F405()
                 result = self.flash(probe)
                 self.expect_flashed(result)
                 self.assertEqual(self.option_values(), [])
-                self.assertRegex(result.stdout, r"options  not set: .*--probe stlink sets them")
+                self.assertRegex(result.stdout, r"options  not set: .*--probe stlink, jlink or cmsis-dap\) sets them")
                 self.assertIn("set BOOT0 to low", result.stdout)
         self.assertEqual(self.dfu.alternates.count(0), len(self.dfu.alternates))
         self.assertEqual(set(self.uart.commands) - {0x00, 0x01, 0x02, 0x11, 0x31, 0x44}, set())
         # As these runs say.
         self.expect_flashed(self.flash("stlink"))
         self.expect_complete("stlink")
+
+    def test_the_line_of_the_documents_sets_the_brown_out_level_and_nothing_else(self):
+        text = (self.source / "docs/board.md").read_text()
+        line = re.search(r"^    (openocd .*\\\n +-c .*options_write.*)$", text, re.MULTILINE)[1]
+        for options in (FACTORY_OPTIONS, 0x0FFEAA4D):
+            with self.subTest(options=hex(options)):
+                self.chip = Stm32F405()
+                self.chip.options = options & ~3
+                with self.connected("stlink"):
+                    result = subprocess.run(["sh", "-c", line], cwd=self.folder, env=self.environment, capture_output=True,
+                                            timeout=LONGEST, text=True)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(self.chip.options, options & ~3 & ~0x0C)
 
     def test_the_second_time_bootloader_and_option_bytes_are_not_written_again(self):
         for probe in PROBES:
@@ -302,7 +324,7 @@ class FlashBare(unittest.TestCase):
                 self.expect_flashed(result)
                 self.assertEqual(self.commands(dry), self.commands(result))
                 self.assertTrue(self.commands(dry))
-                self.assertEqual("flash erase_address 0x08020000 131072" in dry.stdout, probe == "stlink")
+                self.assertEqual("flash erase_address 0x08020000 131072" in dry.stdout, probe in SWD_PROBES)
 
     # The chip shows a wrong command: without that, the other tests would prove nothing.
 
@@ -353,9 +375,25 @@ class FlashBare(unittest.TestCase):
                                         PATH=str(self.folder / "empty"))
                 self.expect_failed(result, f"'sudo apt install {name}' installs it")
 
+    def test_openocd_that_ends_well_without_having_run_the_script_is_an_error(self):
+        for script in ("shutdown\n", NO_PROBE + "proc init {} {}\nproc reset {args} { shutdown }\n"):
+            with self.subTest(script=script):
+                self.set_interface(script)
+                result = self.run_flash("--bare", "--probe", "stlink", "--bootloader", "boot.bin", "module.pimg")
+                self.expect_failed(result, "")
+                self.assertNotIn("flashed", result.stdout)
+
     def test_a_missing_probe_is_named(self):
         words = ("--bootloader", "boot.bin", "module.pimg", "--bare")
         self.expect_failed(self.run_flash(*words, "--probe", "stlink"), "found no ST-LINK")
+        # A serial number that no probe of this computer has.
+        for driver, message in (("jlink", "found no J-Link that can be opened"),
+                                ("cmsis-dap", "found no CMSIS-DAP probe that can be opened")):
+            with self.subTest(driver=driver):
+                self.set_interface(f"adapter driver {driver}\nadapter serial 000000000\n")
+                result = self.run_flash(*words, "--probe", driver)
+                self.expect_failed(result, message)
+                self.expect_failed(result, "70-proleg.rules")
         self.expect_failed(self.run_flash(*words, "--probe", "dfu"), "found no DFU device")
         self.expect_failed(self.run_flash(*words, "--probe", "dfu", PROLEG_FAKE_DFU="/missing"), "70-proleg.rules")
         self.expect_failed(self.run_flash(*words, "--probe", "uart", "--port", "/dev/missing"), "found no file", status=2)
@@ -377,8 +415,8 @@ class FlashBare(unittest.TestCase):
         self.write("slot_a.elf", elf([(SLOT_A, program(SLOT_A, 1000, seed=4))]))
         good = {"--probe": "dfu", "--bootloader": "boot.bin"}
         for image_name, options, message in (
-                ("module.pimg", {"--probe": None}, "--bare: found no --probe, expected --probe stlink, dfu or uart"),
-                ("module.pimg", {"--probe": "jlink"}, "--probe: found 'jlink', expected stlink, dfu or uart"),
+                ("module.pimg", {"--probe": None}, "--bare: found no --probe, expected --probe stlink, jlink"),
+                ("module.pimg", {"--probe": "jtag"}, "--probe: found 'jtag', expected stlink, jlink, cmsis-dap, dfu or uart"),
                 ("module.pimg", {"--probe": "uart"}, "--probe: found uart without --port"),
                 ("module.pimg", {"--port": "/dev/ttyUSB0"}, "--port: found it without --probe uart"),
                 ("module.pimg", {"--node": "0"}, "--node: found '0', expected a node id from 1 to 126"),

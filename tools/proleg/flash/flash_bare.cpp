@@ -81,18 +81,19 @@ struct Work {
 };
 
 BareProbe parse_probe(const std::optional<std::string>& word) {
-  constexpr const char* expected = "stlink, dfu or uart";
+  constexpr const char* expected = "stlink, jlink, cmsis-dap, dfu or uart";
   if (!word) {
     throw InputError("--bare", 0, "no --probe", std::string("--probe ") + expected);
   }
-  if (*word == "stlink") {
-    return BareProbe::stlink;
-  }
-  if (*word == "dfu") {
-    return BareProbe::dfu;
-  }
-  if (*word == "uart") {
-    return BareProbe::uart;
+  constexpr std::pair<std::string_view, BareProbe> probes[] = {{"stlink", BareProbe::stlink},
+                                                               {"jlink", BareProbe::jlink},
+                                                               {"cmsis-dap", BareProbe::cmsis_dap},
+                                                               {"dfu", BareProbe::dfu},
+                                                               {"uart", BareProbe::uart}};
+  for (const auto& [name, probe] : probes) {
+    if (*word == name) {
+      return probe;
+    }
   }
   throw InputError("--probe", 0, in_quotes(*word), expected);
 }
@@ -181,7 +182,7 @@ void print_files(const BareOptions& options, const Work& work) {
   if (work.plan.settings_size > 0) {
     print(host::bare_file::settings, work.settings, "the board record of node " + *options.node, work.plan.settings);
   }
-  if (work.plan.probe == BareProbe::stlink) {
+  if (uses_swd(work.plan.probe)) {
     std::cout << host::bare_file::script << ":\n";
     const std::string script = host::bare_script(work.plan);
     for (std::size_t at = 0; at < script.size();) {
@@ -240,7 +241,7 @@ void print_end(const BarePlan& plan) {
     return;
   }
   std::cout << "options  not set: brown-out level and write protection of sector 0 are as they were. The same command "
-               "with --probe stlink sets them, once for each board\n"
+               "with a probe at SWD (--probe stlink, jlink or cmsis-dap) sets them, once for each board\n"
                "to do    set BOOT0 to low and reset the board\n";
 }
 
@@ -250,8 +251,8 @@ void add_bare_options(CommandLine& command_line, BareOptions& options) {
   command_line
       .add_option(
           "--probe", options.probe,
-          "how the chip is reached, with --bare: stlink (an ST-LINK at the connector SWD, by openocd), dfu (its "
-          "USB, by dfu-util) or uart (a serial line, by stm32flash); for dfu and uart BOOT0 is high")
+          "how the chip is reached, with --bare: stlink, jlink or cmsis-dap (such a probe at the connector SWD, by "
+          "openocd), dfu (its USB, by dfu-util) or uart (a serial line, by stm32flash); for dfu and uart BOOT0 is high")
       .value_name("PROBE");
   command_line.add_option("--port", options.port, "the serial line, with --probe uart: /dev/ttyUSB0")
       .value_name("DEVICE");

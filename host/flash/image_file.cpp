@@ -65,8 +65,13 @@ constexpr const char* damaged = ": the file is damaged, copy or build it again";
   throw InputError(file, 0, found, expected);
 }
 
-/// Text that says how to make an image of a program in another format.
-std::string way_to_image(ProgramFormat format) {
+/// Text that says where the image of a program in another format is, or how to make it.
+std::string way_to_image(const std::string& file, ProgramFormat format) {
+  const std::filesystem::path beside = std::filesystem::path(file).replace_extension(".pimg");
+  std::error_code error;
+  if (beside != file && std::filesystem::is_regular_file(beside, error)) {
+    return ": " + beside.string() + " is beside it";
+  }
   switch (format) {
     case ProgramFormat::elf:
     case ProgramFormat::intel_hex:
@@ -221,7 +226,7 @@ image::Header read_image_header(const std::string& file, Bytes bytes) {
   // The format is checked before the size, because an ELF file may be larger than an image.
   const ProgramFormat format = find_format(bytes);
   if (format != ProgramFormat::image) {
-    refuse(file, std::string(name_of(format)), an_image + way_to_image(format));
+    refuse(file, std::string(name_of(format)), an_image + way_to_image(file, format));
   }
   if (bytes.size() > max_image_size) {
     refuse(file, "more than " + std::to_string(max_image_size) + " bytes", "an image, which has at most as many");

@@ -114,7 +114,8 @@ struct FlashVerdict {
 
 /// The number of a version, such as "0.1.0".
 [[nodiscard]] std::string version_number_text(const image::Version& version);
-/// The version of an image, such as "0.1.0 (5267b59d)", with a "+" behind the commit of changed sources.
+/// The version of an image, such as "0.1.0 (5267b59d)", with a "+" behind the commit of sources that have
+/// changed since, or to which users have added algorithms.
 [[nodiscard]] std::string version_text(const image::Header& image);
 /// The commit of an image, such as "5267b59d", or "unknown".
 [[nodiscard]] std::string commit_text(const image::Header& image);

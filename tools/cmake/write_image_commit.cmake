@@ -1,6 +1,7 @@
 # Writes a header with the git commit of the sources of an image, if that has changed: the last commit of the folders
-# that an image is built from, and whether they differ from it. Without git: 20 zeros.
-#   cmake -D SOURCE_DIR=... -D OUTPUT=... -P write_image_commit.cmake
+# that an image is built from, and whether they differ from it. Without git: 20 zeros. HAS_USER_ALGORITHMS: the image has
+# algorithms of users, so its sources are more than those of the commit.
+#   cmake -D SOURCE_DIR=... -D HAS_USER_ALGORITHMS=... -D OUTPUT=... -P write_image_commit.cmake
 
 set(folders shared firmware tools/cmake tools/toolchains CMakeLists.txt CMakePresets.json)
 execute_process(COMMAND git -C ${SOURCE_DIR} log -1 --format=%H -- ${folders}
@@ -13,7 +14,7 @@ if(NOT status EQUAL 0 OR NOT commit MATCHES "^[0-9a-f]+$")
 endif()
 string(REGEX REPLACE "(..)" "0x\\1, " bytes ${commit})
 set(has_changes false)
-if(changes)
+if(changes OR HAS_USER_ALGORITHMS)
   set(has_changes true)
 endif()
 set(text "#define PROLEG_IMAGE_COMMIT {${bytes}}\n#define PROLEG_IMAGE_HAS_CHANGES ${has_changes}\n")

@@ -194,8 +194,8 @@ std::string refusal(const Bytes& bytes) {
 
 class ImageFiles : public testing::Test {
  protected:
-  [[nodiscard]] std::string written(const Bytes& bytes) const {
-    const std::filesystem::path path = folder_ / "module.pimg";
+  [[nodiscard]] std::string written(const Bytes& bytes, const char* name = "module.pimg") const {
+    const std::filesystem::path path = folder_ / name;
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     return path.string();
@@ -256,6 +256,14 @@ TEST_F(ImageFiles, OfOtherFormatsAreNamedWhateverTheirSize) {
   EXPECT_EQ(refusal_of_file(written(vectors)),
             "found a raw binary, which begins with a vector table, expected an image (.pimg); 'proleg image make' puts "
             "a header in front of it");
+}
+
+TEST_F(ImageFiles, OfAProgramInAnotherFormatAreFoundBesideIt) {
+  const std::filesystem::path program = written({0x7F, 'E', 'L', 'F', 1, 1, 1, 0}, "module.elf");
+  const std::filesystem::path image = std::filesystem::path(program).replace_extension(".pimg");
+  std::ofstream(image) << "PIMG";
+  EXPECT_EQ(refusal_of_file(program),
+            "found an ELF file, expected an image (.pimg): " + image.string() + " is beside it");
 }
 
 TEST(ImageBytes, AreRefusedWithAnyPartMissing) {

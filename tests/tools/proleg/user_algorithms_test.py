@@ -617,6 +617,8 @@ class Image(unittest.TestCase):
             run = ("hil", algorithm / "robot/robot.simulation.xml", "--algorithms", algorithm / f"build/{NAME}.so",
                    "--modules", "mcu", "--seconds", "3", "--image")
             image = self.build(folder / "image", algorithm)
+            self.assertRegex(proleg("image", "info", image.with_suffix(".pimg")).stdout, r"commit .* \+ changes\n",
+                             "the version shows that the image has more than the commit")
             result = proleg(*run, image)
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn("differences       0 against the gait in memory", result.stdout)

@@ -114,6 +114,8 @@ class LocalWorkers::Implementation {
     Clock::duration looked{};  ///< value of `busy` when its processor time was read
     std::chrono::nanoseconds processor_time{};
     unsigned resting = 0;      ///< looks at which that had not grown
+    unsigned computing = 0;    ///< looks at which it had grown
+    bool is_named = false;     ///< as one whose task takes long
     unsigned idle_deaths = 0;  ///< since its last result
     bool readable = false;
   };
@@ -147,6 +149,8 @@ class LocalWorkers::Implementation {
     worker.busy = {};
     worker.looked = {};
     worker.resting = 0;
+    worker.computing = 0;
+    worker.is_named = false;
   }
 
   /// Waits until a worker has sent something; returns the number of such workers, or nothing after a signal.
@@ -193,6 +197,7 @@ class LocalWorkers::Implementation {
     for (std::size_t i = 0; i < results.size(); ++i) {
       finished_.push_back({worker.assignment->batch[i].ticket, std::move(results[i]), number});
     }
+    longest_ = std::max(longest_, worker.busy / static_cast<int>(results.size()));
     worker.assignment.reset();
     worker.idle_deaths = 0;
     assign_orphaned();
@@ -202,10 +207,25 @@ class LocalWorkers::Implementation {
     return limit_ * static_cast<int>(assignment.batch.size());
   }
 
+  /// Names and then replaces workers whose tasks take too long.
   void replace_hung() {
+    constexpr int unusual = 10;
     for (std::uint32_t i = 0; i < workers_.size(); ++i) {
-      if (workers_[i].assignment && workers_[i].busy > time_limit(*workers_[i].assignment)) {
-        replace(i, "did not answer for " + seconds_text(workers_[i].busy));
+      Worker& worker = workers_[i];
+      if (!worker.assignment) {
+        continue;
+      }
+      const Clock::duration limit = time_limit(*worker.assignment);
+      const Clock::duration usual = longest_ * static_cast<int>(worker.assignment->batch.size());
+      const Clock::duration suspicious = longest_ == Clock::duration{} ? limit / unusual : usual * unusual;
+      if (worker.busy > limit) {
+        replace(i, "did not answer for " + seconds_text(worker.busy));
+      } else if (!worker.is_named && worker.computing > 1 && worker.busy > std::max(suspicious, resting_limit_)) {
+        worker.is_named = true;
+        messages_.push_back(
+            joined({"worker ", std::to_string(i), " (process ", std::to_string(worker.process->id()),
+                    ") has computed for ", seconds_text(worker.busy), " in ", name_of(worker.assignment->batch),
+                    ", much longer than usual: an endless loop? It is replaced after ", seconds_text(limit)}));
       }
     }
   }
@@ -220,7 +240,9 @@ class LocalWorkers::Implementation {
       }
       worker.looked = worker.busy;
       const std::chrono::nanoseconds before = std::exchange(worker.processor_time, worker.process->processor_time());
-      worker.resting = worker.processor_time == before ? worker.resting + 1 : 0;
+      const bool rests = worker.processor_time == before;
+      worker.resting = rests ? worker.resting + 1 : 0;
+      worker.computing = rests ? 0 : worker.computing + 1;
       if (worker.resting == looks) {
         messages_.push_back(joined({"worker ", std::to_string(i), " (process ", std::to_string(worker.process->id()),
                                     ") has computed nothing for ", seconds_text(resting_limit_), " in ",
@@ -292,6 +314,7 @@ class LocalWorkers::Implementation {
   RunTasks run_;
   Clock::duration limit_;
   Clock::duration resting_limit_;
+  Clock::duration longest_{};  ///< that a worker needed for a task
   std::vector<Worker> workers_;
   Clock::time_point last_poll_ = Clock::now();
   std::deque<Assignment> orphaned_;  ///< tasks whose worker died, until one is idle

@@ -16,7 +16,8 @@ struct TaskLimit {
   std::chrono::milliseconds fixed{60'000};
   double per_simulated_second = 50.0;  ///< s; a simulation runs about a hundred times faster than this robot crawls
   /// A worker that uses no processor time for so long is named, and after three times as long counts as hung: it is
-  /// stopped, or waits for something that does not come.
+  /// stopped, or waits for something that does not come. One that computes is named after so long, too, if its task
+  /// takes ten times as long as any before: it may be in an endless loop.
   std::chrono::milliseconds resting{20'000};
 };
 

@@ -314,6 +314,26 @@ TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatIsStopped) {
       << messages[1];
 }
 
+TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatComputesMuchLongerThanTheOthers) {
+  LocalWorkers workers(experiment_, 1, once([] {
+                         for (volatile unsigned turns = 0;;) {
+                           turns = turns + 1;
+                         }
+                       }),
+                       {.fixed = milliseconds(3000), .per_simulated_second = 0.0, .resting = milliseconds(400)});
+  start(workers, 1, {0, 16, 0, {3, 1, 2}, {}});
+  next(workers);
+  workers.start(std::vector{TicketedTask{1, task_}});
+  EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_NE(messages[0].find(" in evaluation 17 of run 0, much longer than usual: an endless loop? It is replaced "
+                             "after 3 s"),
+            std::string::npos)
+      << messages[0];
+  EXPECT_NE(messages[1].find("did not answer"), std::string::npos) << messages[1];
+}
+
 TEST_F(LocalWorkersTest, IgnoreTheSignalsThatAreForTheirParent) {
   const RunTask asked_to_end = [](const Experiment& experiment, const Task& task) {
     raise(SIGINT);

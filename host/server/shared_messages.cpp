@@ -47,13 +47,26 @@ SharedText DocumentStore::next(KnownRevisions& known) const {
   return oldest->second.message;
 }
 
-std::string notice_message(NoticeLevel level, const std::string& text) {
-  const nlohmann::json message{{"type", "notice"}, {"level", text_of(level)}, {"text", text}};
+namespace {
+
+nlohmann::json notice_json(NoticeLevel level, const std::string& text) {
+  return {{"type", "notice"}, {"level", text_of(level)}, {"text", text}};
+}
+
+std::string text_of_json(const nlohmann::json& message) {
   return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+}  // namespace
+
+std::string notice_message(NoticeLevel level, const std::string& text) {
+  return text_of_json(notice_json(level, text));
+}
+
 void NoticeLog::add(NoticeLevel level, const std::string& text) {
-  notices_.push_back(std::make_shared<const std::string>(notice_message(level, text)));
+  nlohmann::json message = notice_json(level, text);
+  message["number"] = next_number();
+  notices_.push_back(std::make_shared<const std::string>(text_of_json(message)));
   if (notices_.size() > max_notices) {
     notices_.pop_front();
     ++first_;
@@ -62,7 +75,7 @@ void NoticeLog::add(NoticeLevel level, const std::string& text) {
 
 SharedText NoticeLog::next(std::uint64_t& number) const {
   number = std::max(number, first_);
-  if (number == first_ + notices_.size()) {
+  if (number == next_number()) {
     return nullptr;
   }
   return notices_[static_cast<std::size_t>(number++ - first_)];

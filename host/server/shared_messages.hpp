@@ -39,7 +39,7 @@ class DocumentStore {
   std::map<std::string, Document> documents_;
 };
 
-/// The message to a viewer about a notice.
+/// The message to one viewer about a notice.
 [[nodiscard]] std::string notice_message(NoticeLevel level, const std::string& text);
 
 /// The last notices, for present and later viewers.
@@ -48,6 +48,8 @@ class NoticeLog {
   static constexpr std::size_t max_notices = 200;
 
   void add(NoticeLevel level, const std::string& text);
+  /// The number of the notice that is added next. The first one has 0; the messages have their numbers.
+  [[nodiscard]] std::uint64_t next_number() const { return first_ + notices_.size(); }
   /// The first notice from this number on; `number` becomes that of the next notice. Null: there is no such notice
   /// yet.
   [[nodiscard]] SharedText next(std::uint64_t& number) const;

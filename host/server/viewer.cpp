@@ -87,11 +87,13 @@ void Viewer::close(std::uint16_t code, const std::string& reason) {
   }
 }
 
-void Viewer::welcome(const std::string& name, bool is_only_stop, const std::string& program) {
+void Viewer::welcome(const std::string& name, bool is_only_stop, const std::string& program,
+                     std::uint64_t next_notice) {
   is_welcome_ = true;
   name_ = name;
   is_only_stop_ = is_only_stop;
-  queue_reply(dumped({{"type", "welcome"}, {"protocol", 1}, {"client", client_}, {"program", program}}));
+  queue_reply(dumped(
+      {{"type", "welcome"}, {"protocol", 1}, {"client", client_}, {"program", program}, {"next_notice", next_notice}}));
 }
 
 bool Viewer::begin_operation(std::uint64_t id) {

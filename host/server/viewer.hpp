@@ -73,7 +73,8 @@ class Viewer {
   /// Ends the connection. The first reason counts.
   void close(std::uint16_t code, const std::string& reason);
 
-  void welcome(const std::string& name, bool is_only_stop, const std::string& program);
+  /// next_notice: NoticeLog::next_number().
+  void welcome(const std::string& name, bool is_only_stop, const std::string& program, std::uint64_t next_notice);
   /// Counts an operation as pending until finish_operation(). Returns false if it was refused, or the connection ends.
   [[nodiscard]] bool begin_operation(std::uint64_t id);
   /// Sends the result of an operation: bytes as a binary message, any other value as a message `result`.

@@ -76,7 +76,7 @@ void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Hello& hello) {
     viewer.close(1008,
                  "hello: found protocol " + std::to_string(hello.protocol) + ", expected " + std::to_string(protocol));
   } else {
-    viewer.welcome(hello.name, hello.is_only_stop, options_.program);
+    viewer.welcome(hello.name, hello.is_only_stop, options_.program, state_.notices.next_number());
   }
 }
 

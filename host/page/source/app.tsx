@@ -1,6 +1,7 @@
 // Start of the page: the parts that are needed at once. The others come as chunks of their own (panels/live_page.tsx).
 import '@preact/signals';
 import { render } from 'preact';
+import { openDialog } from './view/dialogs.js';
 import { listenToKeys } from './view/keyboard.js';
 import { addActions } from './view/page_actions.js';
 import { addRobotActions } from './view/robot_actions.js';
@@ -8,7 +9,7 @@ import { PageApp } from './page_app.js';
 import { Frame } from './frame.js';
 import { loadLater } from './panels/later_view.js';
 import type { PageStores } from './view/robot_view.js';
-import { viewerName } from './state/viewer_name.js';
+import { viewerName, viewerNumber } from './state/viewer_name.js';
 import { takeToken } from './wire/access_token.js';
 import './view/theme.js';
 
@@ -27,9 +28,14 @@ if (token === null) {
     root,
   );
 } else {
-  const app = new PageApp(token, viewerName(navigator.userAgent));
+  const app = new PageApp(token, viewerName(navigator.userAgent, viewerNumber(sessionStorage)));
   addActions(app);
   addRobotActions(app);
-  listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, () => app.stop.press());
+  listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, (key) => {
+    // In a simulation nothing can be hurt while a dialog is closed first.
+    const closes = key === 'Escape' && openDialog.value !== 'none' && app.state.robot.value?.kind === 'simulation';
+    if (closes) openDialog.value = 'none';
+    else app.stop.press();
+  });
   render(<Frame app={app} recordingsPage={recordingsPage} />, root);
 }

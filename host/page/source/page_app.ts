@@ -130,6 +130,9 @@ export class PageApp implements PageStores {
 
   // Clears the history after a restart while the robot is paused, because the first tick may come much later.
   private noteRun(run: number | undefined): void {
+    if (run !== undefined && this.sessionRun !== null && run !== this.sessionRun) {
+      this.state.forgetProblems();
+    }
     if (run !== undefined && this.sessionRun !== null && run !== this.sessionRun && run !== this.history.run) {
       this.history.clear();
       this.time.goLive();

@@ -13,7 +13,7 @@ TEST(NoticeLog, GivesEachNoticeOnceAndInOrder) {
   log.add(NoticeLevel::error, "two");
   std::uint64_t number = 0;
   EXPECT_EQ(nlohmann::json::parse(*log.next(number)),
-            nlohmann::json::parse(R"({"type": "notice", "level": "info", "text": "one"})"));
+            nlohmann::json::parse(R"({"type": "notice", "number": 0, "level": "info", "text": "one"})"));
   EXPECT_EQ(nlohmann::json::parse(*log.next(number))["level"], "error");
   EXPECT_EQ(log.next(number), nullptr);
   log.add(NoticeLevel::warning, "three");

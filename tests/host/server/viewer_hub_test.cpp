@@ -91,10 +91,14 @@ TEST_F(Hub, GreetsAViewerAndSendsEveryDocument) {
   hub.notice(NoticeLevel::info, "ready");
   const std::vector<json> messages = received(join("desk"));
   ASSERT_EQ(messages.size(), 4U);
-  EXPECT_EQ(messages[0], json::parse(R"({"type": "welcome", "protocol": 1, "client": 1, "program": "proleg 1"})"));
+  EXPECT_EQ(messages[0], json::parse(R"({"type": "welcome", "protocol": 1, "client": 1, "program": "proleg 1",
+                                      "next_notice": 1})"));
   EXPECT_EQ(messages[1]["name"], "control");
   EXPECT_EQ(messages[2]["name"], "robot");
   EXPECT_EQ(messages[3]["text"], "ready");
+  EXPECT_EQ(messages[3]["number"], 0);
+  hub.notice(NoticeLevel::info, "steady");
+  EXPECT_EQ(last(join("another desk"), "welcome")["next_notice"], 2);
 }
 
 /// The first number that the expression finds in a file of the source tree; 0 if it finds none.

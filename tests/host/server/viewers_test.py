@@ -8,7 +8,8 @@ EVERYTHING = ["angle", "contact", "count"]
 
 def test_a_viewer_gets_every_document_and_its_changes(server):
     with server.viewer("desk") as viewer:
-        assert viewer.welcome == {"type": "welcome", "protocol": 1, "client": 1, "program": "counting robot 1"}
+        assert viewer.welcome == {"type": "welcome", "protocol": 1, "client": 1, "program": "counting robot 1",
+                                  "next_notice": viewer.welcome["next_notice"]}
         viewer.until(lambda: {"session", "telemetry", "control"} <= viewer.documents.keys())
         revision = viewer.documents["session"]["revision"]
         assert viewer.control() == {"epoch": 0, "holder": None, "away": False, "request": None}

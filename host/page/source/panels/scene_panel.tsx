@@ -185,8 +185,8 @@ export function ScenePanel({ app }: { app: RobotView }) {
         )}
       </span>
       {level.value > 0 && (
-        <span class="detail-note" title="This computer draws slowly, so the view has less detail: the controls come first.">
-          less detail
+        <span class="detail-note" title="The controls come first.">
+          less detail: this computer draws slowly
         </span>
       )}
       {failure.value !== null && <p class="scene-failure">No 3D view: {failure.value} {remedy(failure.value)}</p>}

@@ -74,6 +74,8 @@ export class PageState {
   readonly otherHolder = computed(() => (this.isHolder.value ? null : (this.control.value?.holder?.name ?? null)));
 
   private lastNotice = 0;
+  private firstNews = 0; // number of the server's first notice that is shown
+  private nextNotice: number | null = null; // number that its next notice has
 
   // The reason why a robot on a bus cannot do this now; null: it can.
   obstacleTo(command: RobotCommand): string | null {
@@ -87,7 +89,7 @@ export class PageState {
 
   receive(message: ServerMessage): void {
     if (message.type === 'notice') {
-      this.addNotice(message.level, message.text);
+      this.receiveNotice(message);
     } else if (message.type === 'document') {
       switch (message.name) {
         case 'robot':
@@ -131,12 +133,27 @@ export class PageState {
   receiveStatus(status: ConnectionStatus): void {
     this.connection.value = status;
     if (status.state === 'open') {
-      // The server sends its notices after each welcome.
-      this.notices.value = [];
+      // The server sends all its notices after each welcome: those that this page has missed are news.
+      const isSameServer = this.nextNotice !== null && this.nextNotice <= status.nextNotice;
+      this.firstNews = isSameServer ? (this.nextNotice ?? 0) : status.nextNotice;
+      this.nextNotice = status.nextNotice;
     } else {
       this.latency.value = null;
       this.control.value = null;
     }
+  }
+
+  private receiveNotice({ number, level, text }: NoticeMessage): void {
+    if (number !== undefined) {
+      if (number < this.firstNews) return;
+      this.nextNotice = number + 1;
+    }
+    this.addNotice(level, text);
+  }
+
+  // For a new run: warnings and errors are about the one before. (What else there is goes away by itself.)
+  forgetProblems(): void {
+    this.notices.value = this.notices.value.filter((notice) => notice.level === 'info');
   }
 
   addNotice(level: Notice['level'], text: string): void {

@@ -21,14 +21,14 @@ function takesNumber(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest('[data-takes-number]') !== null;
 }
 
-export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: (() => void) | null): void {
+export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: ((key: string) => void) | null): void {
   window.addEventListener(
     'keydown',
     (event) => {
       const isText = isTextField(event.target);
       if (stop !== null && (event.key === 'Escape' || (event.key === ' ' && !isText))) {
         // A key that is held down counts as one press.
-        if (!event.repeat) stop();
+        if (!event.repeat) stop(event.key);
         event.preventDefault();
         event.stopPropagation();
         return;

@@ -32,7 +32,7 @@ export interface ConnectionPorts {
 // follow, since it may start again. refused: the server does not accept this viewer, so there are no more attempts.
 export type ConnectionStatus =
   | { state: 'connecting' }
-  | { state: 'open'; client: number; program: string }
+  | { state: 'open'; client: number; program: string; nextNotice: number }
   | { state: 'lost'; attempts: number }
   | { state: 'ended' }
   | { state: 'refused'; reason: string };
@@ -148,7 +148,7 @@ export class Connection {
       this.client = message.client;
       this.failures = 0;
       this.hasEnded = false;
-      this.events.status({ state: 'open', client: message.client, program: message.program });
+      this.events.status({ state: 'open', client: message.client, program: message.program, nextNotice: message.next_notice });
       this.repeatBeat(this.attempt);
       this.repeatPing(this.attempt);
     } else if (message.type === 'result') {

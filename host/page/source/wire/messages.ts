@@ -301,6 +301,7 @@ export interface ResultMessage {
 
 export interface NoticeMessage {
   type: 'notice';
+  number?: number; // missing if it is for this viewer alone
   level: 'info' | 'warning' | 'error';
   text: string;
 }
@@ -310,6 +311,7 @@ export interface WelcomeMessage {
   protocol: number;
   client: number;
   program: string;
+  next_notice: number; // of the first notice that is still to come
 }
 
 export interface StoppedMessage {

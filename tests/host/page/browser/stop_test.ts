@@ -50,6 +50,37 @@ describe('STOP', () => {
     await ui.viewer.button('Close').click();
   });
 
+  it('waits in a simulation until Esc has closed an open window', async () => {
+    const { page } = ui.viewer;
+    await ui.viewer.run();
+    await page.keyboard.press('?');
+    await page.getByRole('dialog').waitFor();
+    await page.keyboard.press('Escape');
+    await page.getByRole('dialog').waitFor({ state: 'detached' });
+    await ui.viewer.waitForState('running');
+    await page.keyboard.press('Escape');
+    await assertStopped();
+  });
+
+  it('leaves what it is about readable, in windows of every width', async () => {
+    const { page } = ui.viewer;
+    await ui.viewer.run();
+    await page.keyboard.press('Escape');
+    await assertStopped();
+    const size = page.viewportSize();
+    for (const width of [1600, 1400, 1366, 1280, 390]) {
+      await page.setViewportSize({ width, height: 800 });
+      const cut = await page.evaluate(() =>
+        ['.badge', '.top-bar .state', '[data-testid="control"] span']
+          .map((selector) => document.querySelector(selector))
+          .filter((element) => element !== null && element.scrollWidth > element.clientWidth)
+          .map((element) => element?.textContent),
+      );
+      assert.deepEqual(cut, [], `at ${width} px`);
+    }
+    if (size !== null) await page.setViewportSize(size);
+  });
+
   it('works while the robot is paused', async () => {
     await ui.viewer.run();
     await ui.viewer.pause();

@@ -13,7 +13,7 @@ function setUp() {
     asked.push(place);
     return Promise.resolve(isRefused ? null : { tick: 7 });
   });
-  state.receiveStatus({ state: 'open', client: 3, program: 'proleg' });
+  state.receiveStatus({ state: 'open', client: 3, program: 'proleg', nextNotice: 0 });
   state.control.value = { epoch: 1, holder: { client: 3, name: 'me' }, away: false, request: null };
   const setState = (name: SessionDocument['state'], x = 1) => {
     state.session.value = { state: name, head: [x, 2, 0.5, 1, 0, 0, 0] } as unknown as SessionDocument;

@@ -4,7 +4,7 @@ import { PageState } from '../../../../host/page/source/state/page_state.js';
 
 function connected(): PageState {
   const state = new PageState();
-  state.receiveStatus({ state: 'open', client: 3, program: 'proleg' });
+  state.receiveStatus({ state: 'open', client: 3, program: 'proleg', nextNotice: 0 });
   return state;
 }
 
@@ -76,10 +76,36 @@ describe('the state of the page', () => {
     assert.deepEqual(state.notices.value.at(-1), { number: 250, level: 'info', text: 'line 249' });
   });
 
-  it('does not show notices twice after a new welcome, which repeats them', () => {
+  const texts = (state: PageState) => state.notices.value.map((notice) => notice.text);
+  const notice = (number: number) => ({ type: 'notice', number, level: 'info', text: `notice ${number}` }) as const;
+
+  it('shows no notice of the time before the page', () => {
+    const state = new PageState();
+    state.receiveStatus({ state: 'open', client: 3, program: 'proleg', nextNotice: 2 });
+    [0, 1, 2].forEach((number) => state.receive(notice(number)));
+    assert.deepEqual(texts(state), ['notice 2']);
+    state.receive({ type: 'notice', level: 'error', text: 'for this viewer' });
+    assert.deepEqual(texts(state), ['notice 2', 'for this viewer']);
+  });
+
+  it('shows after a lost connection what it has missed, and nothing twice', () => {
     const state = connected();
-    state.receive({ type: 'notice', level: 'info', text: 'once' });
-    state.receiveStatus({ state: 'open', client: 4, program: 'proleg' });
-    assert.equal(state.notices.value.length, 0);
+    state.receive(notice(0));
+    state.receiveStatus({ state: 'lost', attempts: 1 });
+    state.receiveStatus({ state: 'open', client: 4, program: 'proleg', nextNotice: 2 });
+    [0, 1, 2].forEach((number) => state.receive(notice(number)));
+    assert.deepEqual(texts(state), ['notice 0', 'notice 1', 'notice 2']);
+    // The program was started again: its notices count from 0.
+    state.receiveStatus({ state: 'open', client: 1, program: 'proleg', nextNotice: 1 });
+    [0, 1].forEach((number) => state.receive(notice(number)));
+    assert.deepEqual(texts(state).slice(3), ['notice 1']);
+  });
+
+  it('has no problem of an earlier run', () => {
+    const state = connected();
+    state.receive({ type: 'notice', number: 0, level: 'error', text: 'the robot has fallen' });
+    state.receive({ type: 'notice', number: 1, level: 'info', text: 'recorded 5 s in run.proleg' });
+    state.forgetProblems();
+    assert.deepEqual(texts(state), ['recorded 5 s in run.proleg']);
   });
 });

@@ -34,7 +34,7 @@ function setUp() {
   const last = () => sockets[sockets.length - 1] as SocketEnd;
   const greet = () => {
     last().events.opened();
-    last().answer({ type: 'welcome', protocol: 1, client: 3, program: 'proleg 0.1.0' });
+    last().answer({ type: 'welcome', protocol: 1, client: 3, program: 'proleg 0.1.0', next_notice: 7 });
   };
   const give = (client: number | null) =>
     last().answer({
@@ -58,7 +58,7 @@ describe('a connection', () => {
     const { connection, statuses, greet } = setUp();
     connection.open();
     greet();
-    assert.deepEqual(statuses, [{ state: 'open', client: 3, program: 'proleg 0.1.0' }]);
+    assert.deepEqual(statuses, [{ state: 'open', client: 3, program: 'proleg 0.1.0', nextNotice: 7 }]);
   });
 
   it('gives operations ascending ids and hands each answer to its caller', () => {

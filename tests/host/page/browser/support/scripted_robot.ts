@@ -174,7 +174,7 @@ export class ScriptedRobot {
     switch (message['type']) {
       case 'hello':
         // Also while it is silent: a page that reconnects would wait for it forever.
-        viewer.peer.sendText(JSON.stringify({ type: 'welcome', protocol, client: viewer.client, program: 'script' }));
+        viewer.peer.sendText(JSON.stringify({ type: 'welcome', protocol, client: viewer.client, program: 'script', next_notice: 0 }));
         if (message['only'] !== 'stop') {
           this.viewers.push(viewer);
           this.sendDocuments(viewer);

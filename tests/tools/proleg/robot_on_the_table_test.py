@@ -611,6 +611,18 @@ class RobotOnTheTable(unittest.TestCase):
             table = proleg("export", mirror, "--out", "-").stdout.splitlines()
             self.assertEqual(len(table), 501)
 
+    def test_the_name_of_a_joint_may_have_a_comma(self):
+        with tempfile.TemporaryDirectory() as folder:
+            named = Path(folder) / "named"
+            shutil.copytree((SOURCE / SCENARIO).parent, named)
+            for file in named.glob("*.xml"):
+                file.write_text(file.read_text().replace('"J4"', '"J,4"').replace('"J3"', '"J"'))
+            scenario = named / Path(SCENARIO).name
+            # Only the last place is wrong, so all others have been understood.
+            result = proleg("assign", scenario, "--bus", "can0", "--places", "1=J,4,0x12AB=J,3=J5,4=J9")
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("--places: found '4=J9', expected NODE=JOINT", result.stderr)
+
     def test_bad_input_is_one_line_and_the_right_status(self):
         scenario = SOURCE / SCENARIO
         with socket.socket() as nobody:

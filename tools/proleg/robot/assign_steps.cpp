@@ -207,30 +207,51 @@ std::optional<Place> parse_module(std::string_view word) {
   return node ? std::optional(Place{*node, 0, 0}) : std::nullopt;
 }
 
+/// NODE=JOINT or SERIAL=JOINT.
+std::optional<Place> parse_place(const sim::RobotModel& robot, std::string_view word) {
+  const std::size_t equals = std::min(word.find('='), word.size());
+  std::optional<Place> place = parse_module(word.substr(0, equals));
+  const auto joint = equals < word.size() ? joint_of(robot, word.substr(equals + 1)) : std::nullopt;
+  if (!place || !joint) {
+    return std::nullopt;
+  }
+  place->joint = *joint;
+  return place;
+}
+
+/// The comma behind the place that begins here, or the end. Names of joints may have commas: the longest name counts.
+std::size_t end_of_place(const sim::RobotModel& robot, std::string_view words, std::size_t begin) {
+  std::size_t end = std::min(words.find(',', begin), words.size());
+  for (std::size_t comma = end; comma < words.size();) {
+    comma = std::min(words.find(',', comma + 1), words.size());
+    if (parse_place(robot, trimmed(words.substr(begin, comma - begin)))) {
+      end = comma;
+    }
+  }
+  return end;
+}
+
 }  // namespace
 
 std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view words) {
   std::vector<Place> places;
   for (std::size_t begin = 0; begin <= words.size();) {
-    const std::size_t end = std::min(words.find(',', begin), words.size());
+    const std::size_t end = end_of_place(robot, words, begin);
     const std::string_view word = trimmed(words.substr(begin, end - begin));
     begin = end + 1;
-    const std::size_t equals = std::min(word.find('='), word.size());
-    auto place = parse_module(word.substr(0, equals));
-    const auto joint = equals < word.size() ? joint_of(robot, word.substr(equals + 1)) : std::nullopt;
-    if (!place || !joint) {
+    auto place = parse_place(robot, word);
+    if (!place) {
       throw InputError("--places", 0, in_quotes(word),
                        "NODE=JOINT or SERIAL=JOINT, such as 3=J1 or 0x1A2B3C4D=J1; the joints are " +
                            listed(sim::joint_names(robot)));
     }
     for (const Place& other : places) {
-      if ((other.node == place->node && other.serial == place->serial) || other.joint == *joint) {
+      if ((other.node == place->node && other.serial == place->serial) || other.joint == place->joint) {
         throw InputError("--places", 0,
                          in_quotes(word) + " after " + other.module_name() + " for " + robot.joints[other.joint].name,
                          "each module and each joint once");
       }
     }
-    place->joint = *joint;
     places.push_back(*place);
   }
   return places;

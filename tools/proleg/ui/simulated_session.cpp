@@ -14,6 +14,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/values.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/document/telemetry_row.hpp"
@@ -268,11 +269,21 @@ json SimulatedSession::move(const json& arguments) {
   if (!position || position->size() != 3) {
     throw InputError("position", 0, position ? std::to_string(position->size()) + " numbers" : "none", "three numbers");
   }
+  const auto require_in = [](const char* name, double number, const sim::Range& range) {
+    if (!(number >= range.min && number <= range.max)) {
+      throw InputError(
+          name, 0, number_text(number),
+          "numbers from " + number_text(range.min) + " to " + number_text(range.max) + " " + std::string(range.unit));
+    }
+  };
   std::string place;
   for (const double coordinate : *position) {
+    require_in("position", coordinate, sim::coordinates);
     place += exact_text(coordinate) + ',';
   }
-  live_->move(place + exact_text(argument<double>(arguments, "turn", "degrees").value_or(0.0)));
+  const double turn = argument<double>(arguments, "turn", "degrees").value_or(0.0);
+  require_in("turn", turn, sim::turns);
+  live_->move(place + exact_text(turn));
   is_session_new_ = true;
   return {{"tick", live_->simulation().tick()}};
 }

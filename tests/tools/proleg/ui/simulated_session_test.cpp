@@ -361,6 +361,10 @@ TEST_F(SimulatedSessionTest, RefusesToMoveARobotThatRunsOrToABadPlace) {
   for (const json& position : {json({1, 2}), json("here"), json(), json({1e300, 0, 0}), json({5000, 0, 0})}) {
     EXPECT_FALSE(ask("move", {{"position", position}}).is_done) << position;
   }
+  EXPECT_EQ(ask("move", {{"position", {1e300, 0, 0}}}).text,
+            "position: found 1e+300, expected numbers from -10000 to 10000 m");
+  EXPECT_EQ(ask("move", {{"position", {0, 0, 0.1}}, {"turn", -361}}).text,
+            "turn: found -361, expected numbers from -360 to 360 degrees");
   EXPECT_TRUE(ask("run").is_done);
   EXPECT_EQ(ask("move", {{"position", {0, 0, 0.1}}}).text,
             "move: found a simulation that is not paused, expected a paused one");

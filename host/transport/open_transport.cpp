@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -31,6 +32,15 @@ class DescriptorLink final : public Link {
   Descriptor descriptor_;
 };
 
+/// The simulated modules have the algorithms that this program has.
+std::vector<std::string> arguments_of_bus(const std::string& file) {
+  std::vector<std::string> arguments{file};
+  for (const std::string& library : loaded_libraries()) {
+    arguments.insert(arguments.end(), {"--algorithms", library});
+  }
+  return arguments;
+}
+
 std::unique_ptr<Link> make_link(const BusAddress& address) {
   switch (address.kind) {
     case BusAddress::Kind::serial:
@@ -46,7 +56,7 @@ std::unique_ptr<Link> make_link(const BusAddress& address) {
       if (!std::filesystem::is_regular_file(address.name)) {
         throw InputError("--bus", 0, in_quotes(bus_address_text(address)), "sim:FILE with a scenario that is there");
       }
-      return make_program_link(program_folder() + "proleg-bus", address.name);
+      return make_program_link(program_folder() + "proleg-bus", arguments_of_bus(address.name));
     case BusAddress::Kind::can:
     case BusAddress::Kind::automatic:
       break;

@@ -6,6 +6,7 @@
 #include <boost/asio/io_context.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "host/transport/bus_address.hpp"
 #include "host/transport/descriptor.hpp"
@@ -48,10 +49,10 @@ class Link {
 [[nodiscard]] std::unique_ptr<Link> make_bluetooth_link(const BusAddress& address);
 /// Makes a link to a descriptor of this process, which is closed with the link.
 [[nodiscard]] std::unique_ptr<Link> make_descriptor_link(int descriptor);
-/// Makes a link to a program that is started as `program file --fd 3` and speaks slcan on that descriptor. Its
+/// Makes a link to a program that is started as `program arguments --fd 3` and speaks slcan on that descriptor. Its
 /// standard error is that of this process. Signals of the terminal do not reach it. It is ended with the link: its
 /// descriptor is closed, it receives SIGTERM, and after two seconds SIGKILL.
-[[nodiscard]] std::unique_ptr<Link> make_program_link(const std::string& program, const std::string& file);
+[[nodiscard]] std::unique_ptr<Link> make_program_link(const std::string& program, std::vector<std::string> arguments);
 
 /// The folder of the program that runs, with a slash at the end.
 [[nodiscard]] std::string program_folder();

@@ -57,7 +57,8 @@ class SpawnSettings {
 
 class ProgramLink final : public Link {
  public:
-  ProgramLink(std::string program, std::string file) : program_(std::move(program)), file_(std::move(file)) {}
+  ProgramLink(std::string program, std::vector<std::string> arguments)
+      : program_(std::move(program)), arguments_(std::move(arguments)) {}
   ~ProgramLink() override {
     if (process_ > 0) {
       kill(process_, SIGTERM);
@@ -76,7 +77,10 @@ class ProgramLink final : public Link {
     const Descriptor other(ends[1]);
     static_cast<void>(make_private(own));
     pid_t process = 0;
-    const int error = SpawnSettings(other.number()).start({program_, file_, "--fd", "3"}, process);
+    std::vector<std::string> words{program_};
+    words.insert(words.end(), arguments_.begin(), arguments_.end());
+    words.insert(words.end(), {"--fd", "3"});
+    const int error = SpawnSettings(other.number()).start(std::move(words), process);
     if (error != 0) {
       throw TransportError(program_ + " cannot be started: " + system_text(error));
     }
@@ -123,14 +127,14 @@ class ProgramLink final : public Link {
   }
 
   const std::string program_;
-  const std::string file_;
+  const std::vector<std::string> arguments_;
   pid_t process_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Link> make_program_link(const std::string& program, const std::string& file) {
-  return std::make_unique<ProgramLink>(program, file);
+std::unique_ptr<Link> make_program_link(const std::string& program, std::vector<std::string> arguments) {
+  return std::make_unique<ProgramLink>(program, std::move(arguments));
 }
 
 }  // namespace proleg::host

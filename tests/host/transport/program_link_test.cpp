@@ -14,7 +14,7 @@ using namespace test;
 class ProgramLinkTest : public testing::Test {
  protected:
   std::unique_ptr<Transport> open(const std::string& file) {
-    return open_slcan_transport(context, "sim:" + file, make_program_link(program, file), log);
+    return open_slcan_transport(context, "sim:" + file, make_program_link(program, {file}), log);
   }
 
   const std::string program = program_folder() + "host_stand_in_bus";
@@ -53,7 +53,7 @@ TEST_F(ProgramLinkTest, EndsTheProgramWithTheTransport) {
 TEST_F(ProgramLinkTest, NamesAProgramThatIsMissing) {
   const std::string missing = program_folder() + "no_such_program";
   EXPECT_EQ(message_of<TransportError>([&] {
-              static_cast<void>(open_slcan_transport(context, "sim:x", make_program_link(missing, "x"), log));
+              static_cast<void>(open_slcan_transport(context, "sim:x", make_program_link(missing, {"x"}), log));
             }),
             "sim:x: " + missing + " cannot be started: No such file or directory");
 }

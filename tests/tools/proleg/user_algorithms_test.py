@@ -210,6 +210,14 @@ class UserAlgorithms(unittest.TestCase):
         result = self.optimise(self.library, self.folder / "search")
         self.assertEqual(result.returncode, 0, result.stderr)
 
+    def test_a_simulated_bus_that_drive_starts_has_it(self):
+        for options in (("--fast",), ()):
+            with self.subTest(options=options):
+                done = proleg("drive", self.scenario, "--algorithms", self.library, "--bus", f"sim:{self.scenario}",
+                              "--seconds", "1", *options)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn("0 differences", done.stdout)
+
     # Commands that are printed so that the user repeats them.
 
     def run_printed(self, command):

@@ -74,6 +74,7 @@ GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environmen
     sensors_.push_back({link.mass.center - quarter, link.mass.center + quarter});
     link_centers_.push_back(link.mass.center);
   }
+  bends_vertically_ = !robot.joints.empty() && direction_of(robot.joints.front()) == JointDirection::pitch;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const Joint& joint = robot.joints[i];
     constexpr double cosine_of_45_degrees = 0.7071;
@@ -259,8 +260,6 @@ void GaitMeter::add_servo_measures(MeasureValues& values) const {
 
 void GaitMeter::add_wave_measures(MeasureValues& values, const Stride& stride) const {
   constexpr double degree = std::numbers::pi / 180.0;
-  constexpr double least_difference =
-      1.0 * degree;  // for smaller differences all joints swing together, without a wave
   const std::optional<BodyWave> wave = find_body_wave({targets_, joints_.size()}, planar_joints_, stride, tick_s_);
   if (!wave) {
     return;
@@ -269,8 +268,14 @@ void GaitMeter::add_wave_measures(MeasureValues& values, const Stride& stride) c
   const double amplitude = without_last_bits(wave->amplitude / degree) * degree;
   const double waves = wave_count(phase_difference, static_cast<double>(wave->joints));
   values[Measure::wave_count] = waves;
-  if (std::abs(phase_difference) >= least_difference) {
-    const double step = predicted_step_length(body_length_, waves, winding_angle(amplitude, phase_difference));
+  // The equation is for a wave in the vertical plane, of which the body has at least a half, and whose links never
+  // head backwards.
+  constexpr double least_waves = 0.5;
+  if (!bends_vertically_ || waves < least_waves) {
+    return;
+  }
+  if (const double winding = winding_angle(amplitude, phase_difference); winding <= std::numbers::pi / 2.0) {
+    const double step = predicted_step_length(body_length_, waves, winding);
     values[Measure::predicted_distance] =
         without_last_bits(step * stride.frequency * static_cast<double>(ticks_) * tick_s_);
   }

@@ -243,6 +243,7 @@ class GaitMeter {
   double body_length_ = 0.0;
   Eigen::Vector2d forward_;  ///< direction of the head at the start; not numbers if the head points up or down
   std::vector<SensorPositions> sensors_;
+  bool bends_vertically_;                   ///< the first joint does
   std::vector<std::size_t> planar_joints_;  ///< joints that bend in the first joint's plane, from head to tail
   BodyEnergy energy_;
   std::vector<Eigen::Vector3d> link_centers_;  ///< centres of mass, in the frames of the links

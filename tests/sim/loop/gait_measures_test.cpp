@@ -64,6 +64,26 @@ TEST(GaitMeasures, TheTravellingWaveTakesMoreThanHalfOfThePredictedStep) {
               std::pow(values[Measure::distance] / 30, 2) / 9.81 / values[Measure::stride_length], 1e-9);
 }
 
+TEST(GaitMeasures, ADistanceIsPredictedOnlyWhereTheEquationHolds) {
+  const auto predicted = [](const char* name, const std::vector<std::string>& settings) {
+    Scenario scenario = shipped(name);
+    for (const std::string& setting : settings) {
+      apply_setting(scenario, setting);
+    }
+    Simulation simulation(scenario);
+    run_on(simulation, 5);
+    return simulation.measures()[Measure::predicted_distance];
+  };
+  EXPECT_TRUE(std::isfinite(predicted("travelling_wave/uniform", {})));
+  // Five joints: half a wave at 36 degrees.
+  EXPECT_TRUE(std::isfinite(predicted("travelling_wave/uniform", {"phase_difference=37"})));
+  EXPECT_TRUE(std::isnan(predicted("travelling_wave/uniform", {"phase_difference=35"})));
+  EXPECT_TRUE(std::isnan(predicted("travelling_wave/uniform", {"phase_difference=1"})));
+  // 70 degrees, 37 degrees apart: 110 degrees of winding angle.
+  EXPECT_TRUE(std::isnan(predicted("travelling_wave/uniform", {"phase_difference=37", "amplitude=70"})));
+  EXPECT_TRUE(std::isnan(predicted("gaits/serpentine", {}))) << "its joints bend it to the sides";
+}
+
 // Anchors that hold better slip less.
 TEST(GaitMeasures, SlipFallsWithFriction) {
   double before = std::numeric_limits<double>::infinity();

@@ -184,6 +184,31 @@ TEST(MeshFile, AMeshThatANodeOfAColladaFileNamesTwiceIsOne) {
   EXPECT_NEAR(solid_of(read("t.dae", text)).volume, 1e-6, 1e-12);
 }
 
+TEST(MeshFile, AMeshOfAColladaFileWithSeveralMaterialsIsWhole) {
+  const auto replace = [](std::string text, const std::string& before, const std::string& after) {
+    EXPECT_NE(text.find(before), std::string::npos) << before;
+    return text.replace(text.find(before), before.size(), after);
+  };
+  std::string text = replace(collada("0.01", "Z_UP"), "<p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>",
+                             "<p>0 2 1 0 1 3</p></triangles><triangles count=\"2\" material=\"nn\"><input "
+                             "semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 3 2 1 2 3</p></triangles>");
+  text = replace(text, "<triangles count=\"4\"", "<triangles count=\"2\"");
+  text = replace(text, "<library_materials>",
+                 "<library_materials><material id=\"n\" name=\"n\"><instance_effect url=\"#e\"/></material>");
+  const std::string two = replace(text, "<instance_material symbol=\"mm\" target=\"#m\"/>",
+                                  "<instance_material symbol=\"mm\" target=\"#m\"/>"
+                                  "<instance_material symbol=\"nn\" target=\"#n\"/>");
+  EXPECT_NEAR(solid_of(read("t.dae", two)).volume, 1e-6, 1e-12);
+  // Two instances that differ in their materials only.
+  const std::size_t begin = two.find("<instance_geometry");
+  const std::string end = "</instance_geometry>";
+  std::string instance = two.substr(begin, two.find(end) + end.size() - begin);
+  instance = replace(instance, "target=\"#m\"", "target=\"#n\"");
+  std::string twice = two;
+  twice.insert(begin, instance);
+  EXPECT_NEAR(solid_of(read("t.dae", twice)).volume, 1e-6, 1e-12);
+}
+
 TEST(MeshFile, ANegativeVertexOfAnOffFileIsRefused) {
   const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 -1\n";
   for (const std::string start : {"OFF\n4 2 0\n", "OFF 4 2 0\n", "# a comment\nOFF\n\n4 2 0 # counts\n"}) {

@@ -163,4 +163,23 @@ std::filesystem::path new_recording(const std::filesystem::path& folder, const s
   return path;
 }
 
+std::vector<std::string> scenarios_in(const fs::path& folder) {
+  std::vector<std::string> scenarios;
+  std::error_code error;
+  std::size_t visited = 0;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator() && visited < max_visited; entry.increment(error)) {
+    ++visited;
+    if (entry.depth() >= max_depth) {
+      entry.disable_recursion_pending();
+    }
+    std::error_code ignored;
+    if (entry->path().string().ends_with(".simulation.xml") && entry->is_regular_file(ignored)) {
+      scenarios.push_back(entry->path().string());
+    }
+  }
+  std::ranges::sort(scenarios);
+  return scenarios;
+}
+
 }  // namespace proleg::tools

@@ -150,6 +150,24 @@ RecordedSessionOptions recordings_of(const UiOptions& options) {
   return {options.recordings, std::nullopt, false};
 }
 
+/// A folder may hold what a person wants to see instead of recordings.
+void print_scenarios(const std::filesystem::path& folder) {
+  constexpr std::size_t max_lines = 60;
+  const std::vector<std::string> scenarios = scenarios_in(folder);
+  if (scenarios.empty()) {
+    return;
+  }
+  std::cout << "\nThe page shows the recordings of this folder. It has " << scenarios.size()
+            << (scenarios.size() == 1 ? " scenario" : " scenarios") << ", too; `proleg ui FILE` opens one:\n";
+  for (std::size_t i = 0; i < scenarios.size() && i < max_lines; ++i) {
+    std::cout << "  " << one_line(scenarios[i]) << '\n';
+  }
+  if (scenarios.size() > max_lines) {
+    std::cout << "  ... and " << scenarios.size() - max_lines << " more\n";
+  }
+  std::cout << std::flush;
+}
+
 /// Options of a robot have no effect without one.
 void refuse_robot_options(const UiOptions& options) {
   const ScenarioOptions& scenario = options.scenario;
@@ -218,6 +236,9 @@ int serve(UiOptions& options) {
   const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
+  if (std::error_code error; has_file && std::filesystem::is_directory(options.scenario.file, error)) {
+    print_scenarios(options.scenario.file);
+  }
   if (!options.no_browser && !address.open()) {
     std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
   }

@@ -40,7 +40,7 @@ export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage
           </div>
         )}
       </main>
-      <NoticeList state={app.state} />
+      <NoticeList app={app} />
       {openDialog.value !== 'none' && <LaterView app={app} part={dialogs()} wait="" />}
     </>
   );

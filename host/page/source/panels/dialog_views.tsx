@@ -140,7 +140,7 @@ function CommandLine({ app }: { app: Stores<'operations'> }) {
   );
 }
 
-const stopHint = 
+const stopHint =
   'Buttons: Enter. Esc and Space stop the robot, in this window too; in a simulation Esc closes the window first. STOP does not replace a power switch.';
 
 export function DialogView({ app }: { app: Stores<'newGesture' | 'operations' | 'sets' | 'shownActions' | 'state'> }) {

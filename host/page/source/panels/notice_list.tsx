@@ -1,7 +1,9 @@
 // The last notices, for some seconds each; errors stay until they are closed.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { Notice, PageState } from '../state/page_state.js';
+import type { Notice } from '../state/page_state.js';
+import { openDialog } from '../view/dialogs.js';
+import type { Stores } from '../view/robot_view.js';
 import { closeIcon } from './icons.js';
 
 const shownFor = 8000; // milliseconds
@@ -31,8 +33,9 @@ function NoticeView({ notice }: { notice: Notice }) {
   );
 }
 
-export function NoticeList({ state }: { state: PageState }) {
-  const shown = state.notices.value.filter((notice) => !closed.value.has(notice.number)).slice(-mostShown);
+export function NoticeList({ app: { shownPage, state } }: { app: Stores<'shownPage' | 'state'> }) {
+  const isLiveInFront = (shownPage.value === 'live' || state.isAlone.value) && openDialog.value === 'none';
+  const shown = state.noticesFor(isLiveInFront).filter((notice) => !closed.value.has(notice.number)).slice(-mostShown);
   return (
     <ul class="notices" aria-live="polite" aria-label="Notices">
       {shown.map((notice) => (

@@ -22,6 +22,7 @@ export interface Notice {
   number: number; // ascending
   level: NoticeMessage['level'];
   text: string;
+  isForAll: boolean; // about the live robot, not only for this viewer
 }
 
 const keptNotices = 200;
@@ -148,7 +149,7 @@ export class PageState {
       if (number < this.firstNews) return;
       this.nextNotice = number + 1;
     }
-    this.addNotice(level, text);
+    this.append(level, text, number !== undefined);
   }
 
   // For a new run: warnings and errors are about the one before. (What else there is goes away by itself.)
@@ -156,8 +157,17 @@ export class PageState {
     this.notices.value = this.notices.value.filter((notice) => notice.level === 'info');
   }
 
+  // The notices that belong to what is in front: those about the live robot wait until it is seen again, except errors.
+  noticesFor(isLiveInFront: boolean): readonly Notice[] {
+    return this.notices.value.filter((notice) => isLiveInFront || !notice.isForAll || notice.level === 'error');
+  }
+
   addNotice(level: Notice['level'], text: string): void {
+    this.append(level, text, false);
+  }
+
+  private append(level: Notice['level'], text: string, isForAll: boolean): void {
     this.lastNotice += 1;
-    this.notices.value = [...this.notices.value, { number: this.lastNotice, level, text }].slice(-keptNotices);
+    this.notices.value = [...this.notices.value, { number: this.lastNotice, level, text, isForAll }].slice(-keptNotices);
   }
 }

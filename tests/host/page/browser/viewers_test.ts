@@ -51,6 +51,23 @@ describe('viewers', () => {
     assert.ok(await waitUntil(() => second.button('Ask for control').isEnabled()));
   });
 
+  it('see what concerns the live robot when no window is in front, and on a phone the newest only', async () => {
+    const notices = second.page.getByRole('list', { name: 'Notices' }).getByRole('listitem');
+    await second.page.keyboard.press('?');
+    await second.page.getByRole('dialog').waitFor();
+    await first.button(/^STOP/).click();
+    await second.waitForState('STOPPED');
+    await first.run();
+    await first.button(/^STOP/).click();
+    await second.waitForState('STOPPED');
+    assert.equal(await notices.count(), 0);
+    await second.page.keyboard.press('Escape');
+    await notices.nth(1).waitFor();
+    await second.page.setViewportSize({ width: 390, height: 800 });
+    assert.ok(await waitUntil(async () => (await notices.count()) === 1));
+    await second.screenshot('notices_on_a_phone');
+  });
+
   it('may take control at once after it was released', async () => {
     await first.button('Release').click();
     await second.takeControl();

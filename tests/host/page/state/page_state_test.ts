@@ -73,7 +73,7 @@ describe('the state of the page', () => {
       state.receive({ type: 'notice', level: 'info', text: `line ${i}` });
     }
     assert.equal(state.notices.value.length, 200);
-    assert.deepEqual(state.notices.value.at(-1), { number: 250, level: 'info', text: 'line 249' });
+    assert.deepEqual(state.notices.value.at(-1), { number: 250, level: 'info', text: 'line 249', isForAll: false });
   });
 
   const texts = (state: PageState) => state.notices.value.map((notice) => notice.text);
@@ -107,5 +107,16 @@ describe('the state of the page', () => {
     state.receive({ type: 'notice', number: 1, level: 'info', text: 'recorded 5 s in run.proleg' });
     state.forgetProblems();
     assert.deepEqual(texts(state), ['recorded 5 s in run.proleg']);
+  });
+
+  it('keeps notices about the live robot back while it is not in front, except errors', () => {
+    const state = connected();
+    state.receive({ type: 'notice', number: 0, level: 'warning', text: 'stopped by another viewer' });
+    state.receive({ type: 'notice', number: 1, level: 'error', text: 'the robot has fallen' });
+    state.receive({ type: 'notice', level: 'info', text: 'for this viewer' });
+    state.addNotice('warning', 'of the page');
+    const textsFor = (isLiveInFront: boolean) => state.noticesFor(isLiveInFront).map((shown) => shown.text);
+    assert.deepEqual(textsFor(false), ['the robot has fallen', 'for this viewer', 'of the page']);
+    assert.deepEqual(textsFor(true), ['stopped by another viewer', 'the robot has fallen', 'for this viewer', 'of the page']);
   });
 });

@@ -106,9 +106,6 @@ void print_table(const ScenarioOptions& options, const Result& result, const std
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
-  if (!result.world_hash) {
-    std::printf("                  of commands: another ground changes them only through sensors\n");
-  }
   if (result.world_hash) {
     std::printf("world hash        %s\n", result.world_hash->c_str());
   }

@@ -1,7 +1,8 @@
 #pragma once
 
-// The output of the measures of a run (docs/gait-measures.md).
+// The output of the measures (docs/gait-measures.md) and hashes of a run.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,6 +46,9 @@ void print_warning_on_servos(const std::string& program, const RunMeasures& meas
 
 /// Adds the option --measures: print all measures instead of the most important ones.
 void add_measures_option(CommandLine& command_line, bool& all);
+
+/// Prints the hashes of a run; world: nothing if the engine has none.
+void print_hashes(const std::string& setpoints, const std::string& servos, const std::optional<std::string>& world);
 
 /// Prints measures that the run defines on standard output, one in each line: all, or the six that say most.
 void print_measures(const sim::MeasureValues& values, bool all);

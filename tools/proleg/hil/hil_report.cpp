@@ -180,11 +180,7 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
     std::printf("problem           %s, tick %u: %s\n", joint_and_node(run, problem.joint).c_str(), problem.tick,
                 problem.text.substr(0, problem.text.find('\n')).c_str());
   }
-  std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
-  std::printf("servo hash        %s\n", result.servo_hash.c_str());
-  if (result.world_hash) {
-    std::printf("world hash        %s\n", result.world_hash->c_str());
-  }
+  print_hashes(result.setpoint_hash, result.servo_hash, result.world_hash);
   std::printf(
       "differences       %llu against the gait in memory%s\n", count(result.differences),
       result.first_fault_tick

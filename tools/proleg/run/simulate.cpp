@@ -104,11 +104,7 @@ void print_table(const ScenarioOptions& options, const Result& result, const std
   if (options.losses) {
     std::printf("lost frames       %s\n", losses_text(result.lost_frames, result.receptions).c_str());
   }
-  std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
-  std::printf("servo hash        %s\n", result.servo_hash.c_str());
-  if (result.world_hash) {
-    std::printf("world hash        %s\n", result.world_hash->c_str());
-  }
+  print_hashes(result.setpoint_hash, result.servo_hash, result.world_hash);
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }

@@ -105,6 +105,28 @@ TEST_F(Hil, RunsACampaignOfRandomFaults) {
   EXPECT_EQ(campaign["joints_ended"]["unsafe"], 0);
 }
 
+TEST_F(Hil, HashesOfCommandsAreNotTakenForThoseOfAWorld) {
+  const std::string none =
+      "world hash        none: the two above are of commands, and may be the same on another floor";
+  for (const char* program : {"simulate", "hil"}) {
+    EXPECT_NE(proleg({program, scenario("uniform"), "--seconds", "1"}).out.find(none), std::string::npos) << program;
+    EXPECT_EQ(proleg({program, scenario("uniform"), "--seconds", "1", "--engine", "reduced"}).out.find(none),
+              std::string::npos)
+        << program;
+  }
+}
+
+TEST_F(Hil, WarnsOfAFaultThatNativeModulesCannotPlay) {
+  std::ofstream(file("chip.txt")) << "at 1s crystal J4 for 100ms\nat 1s unplug J2 for 30ms\n";
+  const Finished run = proleg({"hil", scenario("uniform"), "--seconds", "4", "--faults", file("chip.txt").string()});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("found 'at 1s crystal J4 for 100ms', which a native module cannot play; it has no effect "
+                         "without --modules mcu"),
+            std::string::npos)
+      << run.err;
+  EXPECT_EQ(run.err.find("unplug"), std::string::npos) << run.err;
+}
+
 TEST_F(Hil, FaultsThatDoNotExistAreRefused) {
   const std::string scenario_file = scenario("uniform");
   std::ofstream(file("wrong.txt")) << "at 1s unplug J7 for 1s\n";

@@ -220,6 +220,7 @@ int hil(const HilOptions& options) {
     catch_interrupts();
     return run_fault_campaign(options, run, modules, plan);
   }
+  warn_of_faults_without_effect(plan.schedule, run, modules);
   hardware.faults = plan.schedule;
   check_files(options, modules);
   modules.flash("proleg hil");

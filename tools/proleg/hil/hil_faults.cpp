@@ -164,6 +164,16 @@ FaultPlan read_fault_plan(const HilOptions& options, const ScenarioRun& run, boo
   return *plan;
 }
 
+void warn_of_faults_without_effect(const sim::FaultSchedule& schedule, const ScenarioRun& run,
+                                   const HilModules& modules) {
+  for (const sim::Fault& fault : schedule) {
+    if (fault.joint && sim::declaration_of(fault.kind).needs_chip && !modules.is_virtual(*fault.joint)) {
+      print_warning("proleg hil", "--faults: found " + in_quotes(describe(fault, run.scenario.robot)) +
+                                      ", which a native module cannot play; it has no effect without --modules mcu");
+    }
+  }
+}
+
 int run_fault_campaign(const HilOptions& options, const ScenarioRun& run, HilModules& modules, const FaultPlan& plan) {
   Campaign campaign;
   {

@@ -23,6 +23,10 @@ struct FaultPlan {
 /// Reads FILE, SEED or SEED:COUNT. Throws InputError.
 [[nodiscard]] FaultPlan read_fault_plan(const HilOptions& options, const ScenarioRun& run, bool any_virtual);
 
+/// Prints a warning for each fault that only a virtual chip can play, at a module that is none.
+void warn_of_faults_without_effect(const sim::FaultSchedule& schedule, const ScenarioRun& run,
+                                   const HilModules& modules);
+
 /// Runs the schedules of a campaign and prints a summary. With virtual chips, schedules that native modules can play
 /// too are run with both and compared. Returns the exit status.
 [[nodiscard]] int run_fault_campaign(const HilOptions& options, const ScenarioRun& run, HilModules& modules,

@@ -57,6 +57,7 @@ class Evaluator::Implementation {
       throw SearchEnded{};
     }
     Evaluation evaluation = evaluate(candidate);
+    evaluation.after_restart = std::exchange(restarts_, false);
     ++number_;
     record(evaluation);
     if (store_ != nullptr) {
@@ -74,6 +75,8 @@ class Evaluator::Implementation {
       hopeless_below_ = *score * experiment_.racing.keep;
     }
   }
+
+  void mark_restart() { restarts_ = true; }
 
   [[nodiscard]] const SearchProgress& progress() const { return progress_; }
   [[nodiscard]] bool stopped() const { return stopped_; }
@@ -206,6 +209,7 @@ class Evaluator::Implementation {
   std::optional<double> requested_limit_;                    ///< hopeless_below_ at the last request_trials()
   std::unordered_map<Task, Evaluation, TaskHash> outcomes_;  ///< by outcome_key, if outcomes may be reused
   SearchProgress progress_;
+  bool restarts_ = false;  ///< with the next evaluation
   bool stopped_ = false;
 };
 
@@ -218,6 +222,7 @@ void Evaluator::expect(std::span<const Candidate> next) { implementation_->expec
 std::size_t Evaluator::lookahead() const { return implementation_->lookahead(); }
 std::vector<double> Evaluator::fitness(const Candidate& candidate) { return implementation_->fitness(candidate); }
 void Evaluator::set_needed_score(std::optional<double> score) { implementation_->set_needed_score(score); }
+void Evaluator::mark_restart() { implementation_->mark_restart(); }
 const SearchProgress& Evaluator::progress() const { return implementation_->progress(); }
 bool Evaluator::stopped() const { return implementation_->stopped(); }
 bool Evaluator::budget_spent() const { return implementation_->budget_spent(); }

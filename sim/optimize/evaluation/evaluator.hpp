@@ -42,6 +42,7 @@ class Evaluator final : public FitnessSource {
   [[nodiscard]] std::size_t lookahead() const override;  ///< twice the number of workers; in batches, eight times
   std::vector<double> fitness(const Candidate& candidate) override;
   void set_needed_score(std::optional<double> score) override;
+  void mark_restart() override;
 
   [[nodiscard]] const SearchProgress& progress() const;
   [[nodiscard]] bool stopped() const;       ///< whether stop() returned true

@@ -22,6 +22,8 @@ class FitnessSource {
   /// Sets the score that a candidate needs to be of use (racing), from the next expect() or fitness() on; nothing:
   /// none.
   virtual void set_needed_score(std::optional<double> score) = 0;
+  /// Says that the search starts again from another population, with the next candidate. Reports mark it.
+  virtual void mark_restart() {}
 };
 
 /// Thrown through an optimiser to end it: the budget is used up, or the search was stopped.

@@ -62,10 +62,11 @@ struct Evaluation {
   sim::MeasureValues measures;  ///< mean over the trials that did not fail
   double wall_s = 0.0;          ///< of all trials
   double simulated_s = 0.0;
-  bool given_up = false;  ///< at least one trial was
-  bool reused = false;    ///< not simulated: an earlier evaluation had the outcome
-  bool restored = false;  ///< not simulated now: from the store of an interrupted run
-  std::string failure;    ///< of the first trial that failed
+  bool given_up = false;       ///< at least one trial was
+  bool reused = false;         ///< not simulated: an earlier evaluation had the outcome
+  bool restored = false;       ///< not simulated now: from the store of an interrupted run
+  std::string failure;         ///< of the first trial that failed
+  bool after_restart = false;  ///< the first one after the search started again from another population
 };
 
 /// The scenario that a search writes for a candidate: the experiment's, with the candidate's values and without the

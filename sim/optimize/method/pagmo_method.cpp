@@ -223,6 +223,9 @@ class PagmoSearch {
 
   std::string run() {
     for (std::uint64_t start = 0;; ++start) {
+      if (start > 0) {
+        evaluator_.source().mark_restart();
+      }
       const std::string ending = run_from(start == 0 ? seed_ : scatter(seed_ + start));
       if (settings_.restart_after == 0 || !chosen_.evolves_by_generation || generations_ == 0) {
         return ending;

@@ -33,6 +33,7 @@ constexpr const char* failure_style = R"(stroke="#d55e00" stroke-width="1.1")";
 constexpr const char* best_style = R"(stroke="#0072b2" stroke-width="2.4" stroke-linejoin="round")";
 constexpr const char* mean_style = R"(stroke="#222222" stroke-width="1.1" stroke-linejoin="round")";
 constexpr const char* baseline_style = R"(stroke="#009e73" stroke-width="1.3" stroke-dasharray="7 4")";
+constexpr const char* restart_style = R"(stroke="#888888" stroke-width="1" stroke-dasharray="2 3")";
 constexpr const char* dot = "h0";
 constexpr const char* cross = "m-2 -2l4 4m0 -4l-4 4";
 constexpr const char* failure_mark = "v-7";
@@ -41,8 +42,9 @@ constexpr const char* failure_mark = "v-7";
 struct Contents {
   Polyline rated;
   Polyline given_up;
-  std::vector<double> failed;  ///< numbers of evaluations that have no score of measures
-  Polyline best;               ///< a step for each improvement
+  std::vector<double> restarts;  ///< numbers of the evaluations that began one
+  std::vector<double> failed;    ///< numbers of evaluations that have no score of measures
+  Polyline best;                 ///< a step for each improvement
   std::optional<Point> winner;
   Polyline mean;  ///< mean of the last `window` scores
   std::size_t window = 1;
@@ -79,6 +81,9 @@ Contents collect(const Experiment& experiment, std::span<const Evaluation> evalu
   for (std::size_t i = 0; i < evaluations.size(); ++i) {
     const Evaluation& evaluation = evaluations[i];
     const auto number = static_cast<double>(i + 1);
+    if (evaluation.after_restart) {
+      contents.restarts.push_back(number);
+    }
     if (!has_own_score(experiment, evaluation, 0)) {
       contents.failed.push_back(number);
       continue;
@@ -127,9 +132,15 @@ std::string count_text(double evaluations) {
   return sim::plain_number(evaluations, 0) + (evaluations == 1.0 ? " evaluation" : " evaluations");
 }
 
+/// ", 2 restarts"; empty for none.
+std::string count_of(std::size_t count, const char* what) {
+  return count == 0 ? "" : ", " + std::to_string(count) + what + (count == 1 ? "" : "s");
+}
+
 void draw_head(Svg& svg, const Experiment& experiment, const Contents& contents, std::size_t evaluations) {
   sim::draw_title(svg, shortened(experiment.title()),
                   "method " + method_name(experiment.method) + ", " + count_text(static_cast<double>(evaluations)) +
+                      count_of(contents.restarts.size(), " restart") +
                       (contents.failed.empty() ? "" : ", " + std::to_string(contents.failed.size()) + " failed"));
   if (contents.winner) {
     const std::string_view unit = experiment.objectives.front().unit();
@@ -150,6 +161,9 @@ void draw_key(Svg& svg, const Contents& contents) {
   }
   entries.push_back({"mean of " + std::to_string(contents.window), mean_style, ""});
   entries.push_back({"best so far", best_style, ""});
+  if (!contents.restarts.empty()) {
+    entries.push_back({"restart", restart_style, "m0 6v-12"});
+  }
   if (contents.baseline) {
     entries.push_back({"baseline " + rounded_text(*contents.baseline), baseline_style, ""});
   }
@@ -170,6 +184,11 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
   draw_head(svg, experiment, contents, evaluations.size());
   draw_key(svg, contents);
   sim::draw_plot_grid(svg, x, y, "evaluations", with_unit(shortened(objective.name), objective.unit()));
+  svg.begin_group("restarts");
+  for (const double number : contents.restarts) {
+    svg.polyline(sim::to_pixels({{number, y.low}, {number, y.high}}, x, y), restart_style);
+  }
+  svg.end_group();
   svg.begin_group("evaluations");
   svg.marks(sim::to_marks(contents.rated, x, y, 2.5), dot, dot_style(evaluations.size()));
   svg.end_group();

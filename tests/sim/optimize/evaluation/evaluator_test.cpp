@@ -300,6 +300,23 @@ TEST(Evaluator, SimulatesAgainIfTheExperimentSaysSo) {
   EXPECT_EQ(workers.started().size(), 2U);
 }
 
+TEST(Evaluator, MarksTheFirstEvaluationAfterARestartAlsoIfItsOutcomeIsKnown) {
+  const Experiment experiment = small_experiment();
+  MadeUpWorkers workers(experiment, 1, 1);
+  std::vector<bool> marks;
+  Evaluator evaluator(
+      experiment, 0, workers, nullptr,
+      [&](const Evaluation& evaluation, const SearchProgress&) { marks.push_back(evaluation.after_restart); }, {});
+  evaluator.fitness({1, 1, 1});
+  evaluator.mark_restart();
+  evaluator.fitness({1, 1, 1});
+  evaluator.fitness({2, 1, 1});
+  evaluator.mark_restart();
+  evaluator.fitness({3, 1, 1});
+  evaluator.fitness({3, 1, 1});
+  EXPECT_EQ(marks, (std::vector<bool>{false, true, false, true, false}));
+}
+
 TEST(Evaluator, GivesTasksTheScoreThatTheyNeed) {
   Experiment experiment = small_experiment();
   experiment.racing = {0.5, 0.75};

@@ -56,6 +56,7 @@ class FakeSource final : public FitnessSource {
   }
 
   void set_needed_score(std::optional<double> score) override { needed_ = score; }
+  void mark_restart() override { restarts.push_back(asked.size()); }
 
   [[nodiscard]] std::size_t count(Prediction kind) const {
     return static_cast<std::size_t>(std::count(predictions.begin(), predictions.end(), kind));
@@ -65,6 +66,7 @@ class FakeSource final : public FitnessSource {
   std::vector<std::vector<double>> scores;
   std::vector<std::optional<double>> needed;
   std::vector<Prediction> predictions;
+  std::vector<std::size_t> restarts;  ///< numbers of the evaluations that began one
   std::vector<std::pair<std::uint64_t, std::vector<Candidate>>>
       expectations;  ///< with the number of evaluations before
 

@@ -120,6 +120,10 @@ TEST(PagmoSearch, RestartsOnAPlateauAlsoIfItsScoreIsZero) {
     static_cast<void>(search(make_experiment({161, 161, 161}, settings), 0, source));
     // 40 generations in starts of 3 generations, each with a first population.
     EXPECT_EQ(source.asked.size(), 12U * (40U + 14U)) << "at " << plateau;
+    ASSERT_EQ(source.restarts.size(), 13U) << "at " << plateau;
+    for (std::size_t i = 0; i < source.restarts.size(); ++i) {
+      EXPECT_EQ(source.restarts[i], 12U * 4U * (i + 1));
+    }
   }
 }
 

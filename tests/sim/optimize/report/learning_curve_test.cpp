@@ -61,6 +61,17 @@ TEST(LearningCurve, TheBestOfAnObjectiveToMinimiseIsTheLowest) {
   EXPECT_TRUE(Picture(draw_learning_curve(experiment, evaluations)).has_text("best 4.5 m/s^2 after 2 evaluations"));
 }
 
+TEST(LearningCurve, MarksTheRestartsOfTheSearch) {
+  std::vector<Evaluation> evaluations = climbing(40);
+  EXPECT_FALSE(Picture(draw_learning_curve(distance_experiment(), evaluations)).has_text("restart"));
+  evaluations[12].after_restart = true;
+  evaluations[30].after_restart = true;
+  Picture picture(draw_learning_curve(distance_experiment(), evaluations));
+  EXPECT_EQ(picture.lines("restarts"), 2U);
+  EXPECT_TRUE(picture.has_text("restart"));
+  EXPECT_TRUE(picture.has_text("2 restarts"));
+}
+
 TEST(LearningCurve, MarksWhatWasGivenUpAndWhatFailed) {
   std::vector<Evaluation> evaluations = climbing(40);
   evaluations[3].given_up = true;

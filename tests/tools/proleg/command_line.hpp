@@ -42,7 +42,7 @@ inline std::string without_progress(const std::string& text) {
   std::istringstream lines(text);
   std::string rest;
   for (std::string line; std::getline(lines, line);) {
-    if (!line.ends_with(" left") && !line.ends_with(" s/s")) {
+    if (!line.ends_with(" left") && !line.ends_with(" x real time")) {
       rest += line + '\n';
     }
   }

@@ -33,12 +33,12 @@ TEST(ProgressText, HasEvaluationsScoresSpeedAndRemainingTime) {
   optimize::SearchProgress progress = progress_of(100, 50);
   progress.best.emplace().scores = {1.25};
   EXPECT_EQ(progress_text("cmaes", "m", 400, progress, 20.0),
-            "cmaes: 100 of 400, best 1.25 m, mean 0.5, 150 s/s, 2 min 0 s left");
-  EXPECT_EQ(progress_text("cmaes", "", 0, progress, 20.0), "cmaes: 100, best 1.25, mean 0.5, 150 s/s");
+            "cmaes: 100 of 400, best 1.25 m, mean 0.5, 150 x real time, 2 min 0 s left");
+  EXPECT_EQ(progress_text("cmaes", "", 0, progress, 20.0), "cmaes: 100, best 1.25, mean 0.5, 150 x real time");
 }
 
 TEST(ProgressText, OfASearchWithoutAScoreSaysSo) {
-  EXPECT_EQ(progress_text("cmaes", "m", 0, progress_of(100, 0), 20.0), "cmaes: 100, all failed, 150 s/s");
+  EXPECT_EQ(progress_text("cmaes", "m", 0, progress_of(100, 0), 20.0), "cmaes: 100, all failed, 150 x real time");
 }
 
 }  // namespace

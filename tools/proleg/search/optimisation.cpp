@@ -225,10 +225,11 @@ std::string progress_text(const std::string& label, const std::string& unit, std
   }
   std::array<char, 160> figures{};
   if (progress.best) {
-    std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f s/s", progress.best->scores.front(),
-                  unit.empty() ? "" : " ", unit.c_str(), progress.score_sum / done, progress.simulated_s / elapsed_s);
+    std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f x real time",
+                  progress.best->scores.front(), unit.empty() ? "" : " ", unit.c_str(), progress.score_sum / done,
+                  progress.simulated_s / elapsed_s);
   } else {
-    std::snprintf(figures.data(), figures.size(), ", all failed, %.0f s/s", progress.simulated_s / elapsed_s);
+    std::snprintf(figures.data(), figures.size(), ", all failed, %.0f x real time", progress.simulated_s / elapsed_s);
   }
   line += figures.data();
   // Restored evaluations took no time, so they are no measure of the remaining time.

@@ -75,7 +75,7 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
   print_result(experiment, outcome, result);
   const optimize::SearchProgress& progress = outcome.progress;
   std::printf("%-24s %s\n", "engine", std::string(sim::name_of(experiment.scenario.environment.engine)).c_str());
-  std::printf("%-24s %.1f s, %.0f simulated s/s; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
+  std::printf("%-24s %.1f s, %.0f x real time; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
               outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
               100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
   if (outcome.confirmation_wall_s > 0.0) {

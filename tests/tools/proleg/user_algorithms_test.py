@@ -334,7 +334,7 @@ class UserAlgorithms(unittest.TestCase):
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assert_one_line(result, f"proleg simulate: {self.mistakes}: the algorithm '{NAME}' ", text,
                                      f"in advance() at tick {BAD_TICK}, joint {BAD_JOINT} (0 is at the head)",
-                                     f"what was simulated is in {recording}")
+                                     f"the run until then is in {recording}")
                 self.assertEqual(self.recorded_ticks(recording), BAD_TICK, "the ticks before it")
 
     def test_a_mistake_that_leaves_the_c_library_locked_ends_the_program(self):

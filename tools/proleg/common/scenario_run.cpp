@@ -258,7 +258,7 @@ std::string losses_text(std::uint64_t lost, std::uint64_t receptions) {
 }
 
 std::string kept_in_recording(const ScenarioOptions& options) {
-  return options.record ? "; what was simulated is in " + *options.record : "";
+  return options.record ? "; the run until then is in " + *options.record : "";
 }
 
 }  // namespace proleg::tools

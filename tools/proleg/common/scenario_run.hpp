@@ -92,7 +92,7 @@ void print_setup(const sim::Scenario& scenario);
 /// Text on the effect of --losses: "2969 of 59900 (5.0 %); a frame counts once for each joint that is to receive it".
 [[nodiscard]] std::string losses_text(std::uint64_t lost, std::uint64_t receptions);
 
-/// Text "; what was simulated is in FILE", for messages about a run that ended early; empty without a recording.
+/// Text "; the run until then is in FILE", for messages about a run that ended early; empty without a recording.
 [[nodiscard]] std::string kept_in_recording(const ScenarioOptions& options);
 
 }  // namespace proleg::tools

@@ -259,9 +259,10 @@ int drive(const DriveOptions& options) {
     // The stop takes some seconds if no module answers.
     std::cerr << "proleg drive: the robot stops: " << *failure << '\n';
   }
-  const bool is_off = robot.stop();
-  if (!is_off && !failure) {
-    failure = "not all modules have confirmed that their servos have no power: switch the robot off";
+  if (!robot.stop()) {
+    failure = (failure ? *failure + "; " : std::string()) +
+              "not all modules have confirmed that their servos have no power: switch the robot off; modules without a "
+              "host stop by themselves within 1.5 s";
   }
   const GaitCheck& check = robot.check();
   const DriveResult result = robot.result();
@@ -282,8 +283,7 @@ int drive(const DriveOptions& options) {
   }
   print_result(options, result, check, seconds, mirrored ? &*mirrored : nullptr);
   if (failure) {
-    throw std::runtime_error(*failure + (is_off ? "" : "; modules without a host stop by themselves within 1.5 s") +
-                             kept_in_recording(options));
+    throw std::runtime_error(*failure + kept_in_recording(options));
   }
   if (result.dropped_changes > 0) {
     std::cerr << "proleg drive: " << result.dropped_changes << (result.dropped_changes == 1 ? " change" : " changes")

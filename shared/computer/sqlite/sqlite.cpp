@@ -28,11 +28,12 @@ class OpenFile {
     sqlite3_int64 size = 0;
     return file_->pMethods->xFileSize(file_, &size) == SQLITE_OK ? size : 0;
   }
-  /// Of a database file (https://www.sqlite.org/fileformat.html): magic string, page size, version and kind.
+  /// Of a database file (https://www.sqlite.org/fileformat.html): magic string, page size, schema cookie, version and
+  /// kind. The cookie tells files of one schema from each other if their programs have drawn it at random.
   [[nodiscard]] std::string identity() const {
     std::array<char, 100> head{};
     file_->pMethods->xRead(file_, head.data(), static_cast<int>(head.size()), 0);  // zeros if it is shorter
-    return std::string(head.data(), 18) + std::string(head.data() + 60, 12);
+    return std::string(head.data(), 18) + std::string(head.data() + 40, 4) + std::string(head.data() + 60, 12);
   }
 
  private:

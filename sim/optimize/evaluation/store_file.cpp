@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,12 @@ std::string universal_time() {
   gmtime_r(&now, &parts);
   std::array<char, 32> text{};
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
+/// So that Database::require_own_file() notices another store in the place of this one.
+std::uint32_t random_schema_version() {
+  std::random_device device;
+  return std::uniform_int_distribution<std::uint32_t>(1, 0x7FFFFFFF)(device);
 }
 
 std::int64_t pragma(Database& database, const char* sql) {
@@ -161,6 +168,7 @@ StoreLock create_store(const std::filesystem::path& path, const Experiment& expe
                          .c_str());
     database.execute(store_schema(experiment, columns).c_str());
     write_experiment(database, experiment, columns, result_key);
+    database.execute(("PRAGMA schema_version = " + std::to_string(random_schema_version())).c_str());
     database.execute("COMMIT");
   } catch (...) {
     std::error_code ignored;

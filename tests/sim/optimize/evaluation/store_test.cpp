@@ -282,6 +282,27 @@ TEST_F(StoreTest, ReportsThatItsFileOrItsLogIsShortenedOrOverwrittenAndWritesNot
   }
 }
 
+TEST_F(StoreTest, ReportsThatAnotherStoreIsCopiedOverIt) {
+  std::unique_ptr<Store> store = fresh();
+  for (std::uint64_t number = 0; number < 200; ++number) {  // larger than the one below
+    store->save({0, number, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+  }
+  store.reset();
+  const std::string other = file_contents(path_);
+  std::filesystem::remove(path_);
+
+  store = fresh();
+  store->save({0, 0, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+  Database(path_, SQLITE_OPEN_READWRITE).execute("PRAGMA wal_checkpoint(PASSIVE)");  // as a long search does by itself
+  std::fstream(path_, std::ios::binary | std::ios::in | std::ios::out) << other;
+  EXPECT_NE(message_of<StoreError>([&] {
+              store->save({0, 1, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+            }).find("shortened or overwrote"),
+            std::string::npos);
+  store.reset();
+  EXPECT_EQ(file_contents(path_), other);
+}
+
 TEST_F(StoreTest, AllowsAnotherProgramToEmptyTheLogInTheWayOfSqlite) {
   const std::unique_ptr<Store> store = fresh();
   store->save({0, 0, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);

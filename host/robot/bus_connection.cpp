@@ -108,6 +108,10 @@ std::string BusConnection::diagnosis() const {
     return "no line of the adapter was understood: received " + numbers.malformed_line +
            ", expected slcan: a line such as t1230 (proleg doctor says what to do)";
   }
+  if (requested_ > 0 && numbers.transmitted == 0 && numbers.received > 0) {
+    return "the adapter has confirmed no frame, but " + std::to_string(numbers.received) +
+           " frames were received: its line loses bytes, or it only listens; what was sent may have arrived: try again";
+  }
   if (requested_ > 0 && numbers.transmitted == 0) {
     return "no frame was acknowledged: no other node is on the bus, or it has another bit rate than 1 Mbit/s, or the "
            "cable or a terminator is missing";

@@ -60,7 +60,6 @@ void Master::stop(Microseconds now) {
     enter(Phase::none);
     return;
   }
-  constexpr unsigned max_stop_attempts = 3;
   sdo_clients_.set_attempts(std::min(options_.attempts, max_stop_attempts));
   state_ = MasterState::stopping;
   mission_ = Mission::stop;

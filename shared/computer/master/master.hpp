@@ -124,6 +124,7 @@ class Master final : private SdoWork {
   static constexpr Microseconds pause_us = 300;
   /// Time for an SDO answer during stop().
   static constexpr Microseconds stop_timeout_us = 100'000;
+  static constexpr unsigned max_stop_attempts = 3;
   static constexpr unsigned commit_repeats = 3;
 
   struct Identity {

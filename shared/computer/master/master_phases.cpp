@@ -149,6 +149,13 @@ void Master::enter(Phase phase) {
   }
   const bool leaves_room_for_ticks =
       is_running() || (mission_ == Mission::stop && options_.ramps_down && now_ < ticks_until_);
+  if (!leaves_room_for_ticks && (phase == Phase::ramp || phase == Phase::disable || phase == Phase::sync_off)) {
+    // Where no node acknowledges a frame, the queue stays full, and no request begins that could time out.
+    constexpr Microseconds reserve_us = 200'000;
+    const unsigned rounds = (served.size() + SdoClientPool::clients - 1) / SdoClientPool::clients;
+    const unsigned requests = rounds * (phase == Phase::disable ? 2U : 1U);
+    deadline_ = now_ + Microseconds{requests} * max_stop_attempts * stop_timeout_us + reserve_us;
+  }
   sdo_clients_.begin(served, timeout_us,
                      leaves_room_for_ticks     ? pause_us
                      : phase == Phase::ramp_in ? ramp_in_pause_us
@@ -317,6 +324,15 @@ void Master::phase_timed_out() {
       }
       break;
     }
+    case Phase::ramp:
+    case Phase::disable:
+    case Phase::sync_off:
+      for (const unsigned joint : phase_ == Phase::disable ? sdo_clients_.unfinished() : JointMask()) {
+        add_event(EventKind::not_stopped, setup_.nodes[joint]);
+      }
+      sdo_clients_.cancel_all();
+      next_phase();
+      break;
     default:
       break;
   }

@@ -32,6 +32,14 @@ bool SdoClientPool::done() const {
   return waiting_.empty();
 }
 
+JointMask SdoClientPool::unfinished() const {
+  JointMask joints = waiting_;
+  for (const Channel& channel : channels_) {
+    joints |= channel.is_busy ? JointMask::of(channel.joint) : JointMask();
+  }
+  return joints;
+}
+
 /// The next request of a channel: that of the present joint, or of the next joint if the present list is done.
 std::optional<SdoRequest> SdoClientPool::next_request(Channel& channel, SdoWork& work) {
   for (;;) {

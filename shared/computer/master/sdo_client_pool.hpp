@@ -57,6 +57,8 @@ class SdoClientPool {
   void cancel(unsigned joint);
   void cancel_all() { begin({}, 0, 0); }
   [[nodiscard]] bool done() const;
+  /// The joints whose lists have not ended.
+  [[nodiscard]] JointMask unfinished() const;
 
   /// Sends as many requests as the queue has room for. nodes: node id of each joint.
   void send(Microseconds now, std::span<const std::uint8_t> nodes, TransmitQueue& queue, SdoWork& work);

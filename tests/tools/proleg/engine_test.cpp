@@ -205,8 +205,7 @@ TEST_F(Engine, ARunThatExplodesEndsWithALineThatNamesItsTick) {
     EXPECT_EQ(run.out, "");
     const std::regex line(
         "(^|\n)proleg " + subcommand +
-        ": tick ([0-9]+) \\([0-9.]+ s\\): the simulation became unstable: [^\n]*; what was simulated is "
-        "in " +
+        ": tick ([0-9]+) \\([0-9.]+ s\\): the simulation became unstable: [^\n]*; the run until then is in " +
         recording + "\n$");
     std::smatch found;
     ASSERT_TRUE(std::regex_search(run.err, found, line)) << run.err;

@@ -152,9 +152,9 @@ void Master::enter(Phase phase) {
   if (!leaves_room_for_ticks && (phase == Phase::ramp || phase == Phase::disable || phase == Phase::sync_off)) {
     // Where no node acknowledges a frame, the queue stays full, and no request begins that could time out.
     constexpr Microseconds reserve_us = 200'000;
-    const unsigned rounds = (served.size() + SdoClientPool::clients - 1) / SdoClientPool::clients;
-    const unsigned requests = rounds * (phase == Phase::disable ? 2U : 1U);
-    deadline_ = now_ + Microseconds{requests} * max_stop_attempts * stop_timeout_us + reserve_us;
+    const Microseconds rounds = (served.size() + SdoClientPool::clients - 1) / SdoClientPool::clients;
+    const Microseconds requests = phase == Phase::disable ? 2 : 1;
+    deadline_ = now_ + rounds * requests * max_stop_attempts * stop_timeout_us + reserve_us;
   }
   sdo_clients_.begin(served, timeout_us,
                      leaves_room_for_ticks     ? pause_us

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "small_experiment.hpp"
 
@@ -315,9 +316,12 @@ TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatIsStopped) {
 }
 
 TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatComputesMuchLongerThanTheOthers) {
+  // A loop without a pause would not let the virtual time pass.
   LocalWorkers workers(experiment_, 1, once([] {
-                         for (volatile unsigned turns = 0;;) {
-                           turns = turns + 1;
+                         for (volatile unsigned turns = 0;; turns = turns + 1) {
+                           if (turns % 100'000 == 0) {
+                             std::this_thread::sleep_for(milliseconds(10));
+                           }
                          }
                        }),
                        {.fixed = milliseconds(3000), .per_simulated_second = 0.0, .resting = milliseconds(400)});

@@ -224,7 +224,9 @@ std::span<const Symptom> symptoms_of(BareProbe probe) {
       return dfu_symptoms;
     case BareProbe::uart:
       return uart_symptoms;
-    default:
+    case BareProbe::stlink:
+    case BareProbe::jlink:
+    case BareProbe::cmsis_dap:
       break;
   }
   return openocd_symptoms;

@@ -165,14 +165,17 @@ std::string version_number_text(const image::Version& version) {
 
 std::string commit_text(const image::Header& image) {
   constexpr std::size_t shown_bytes = 4;
-  const bool is_known = std::ranges::any_of(image.commit, [](std::uint8_t byte) { return byte != 0; });
-  std::string text = is_known ? "" : "unknown";
-  for (std::size_t i = 0; is_known && i < shown_bytes; ++i) {
+  const char* const changes = image.has_changed_sources ? "+" : "";
+  if (std::ranges::all_of(image.commit, [](std::uint8_t byte) { return byte == 0; })) {
+    return std::string("unknown") + changes;
+  }
+  std::string text;
+  for (std::size_t i = 0; i < shown_bytes; ++i) {
     std::array<char, 3> digits{};
     std::snprintf(digits.data(), digits.size(), "%02x", unsigned{image.commit.at(i)});
     text += digits.data();
   }
-  return text + (image.has_changed_sources ? "+" : "");
+  return text + changes;
 }
 
 std::string version_text(const image::Header& image) {

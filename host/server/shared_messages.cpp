@@ -47,26 +47,16 @@ SharedText DocumentStore::next(KnownRevisions& known) const {
   return oldest->second.message;
 }
 
-namespace {
-
-nlohmann::json notice_json(NoticeLevel level, const std::string& text) {
-  return {{"type", "notice"}, {"level", text_of(level)}, {"text", text}};
-}
-
-std::string text_of_json(const nlohmann::json& message) {
+std::string notice_message(NoticeLevel level, const std::string& text, std::optional<std::uint64_t> number) {
+  nlohmann::json message{{"type", "notice"}, {"level", text_of(level)}, {"text", text}};
+  if (number) {
+    message["number"] = *number;
+  }
   return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-}  // namespace
-
-std::string notice_message(NoticeLevel level, const std::string& text) {
-  return text_of_json(notice_json(level, text));
-}
-
 void NoticeLog::add(NoticeLevel level, const std::string& text) {
-  nlohmann::json message = notice_json(level, text);
-  message["number"] = next_number();
-  notices_.push_back(std::make_shared<const std::string>(text_of_json(message)));
+  notices_.push_back(std::make_shared<const std::string>(notice_message(level, text, next_number())));
   if (notices_.size() > max_notices) {
     notices_.pop_front();
     ++first_;

@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -39,8 +40,9 @@ class DocumentStore {
   std::map<std::string, Document> documents_;
 };
 
-/// The message to one viewer about a notice.
-[[nodiscard]] std::string notice_message(NoticeLevel level, const std::string& text);
+/// The message about a notice. number: in the log of all viewers; nothing: it is for one viewer.
+[[nodiscard]] std::string notice_message(NoticeLevel level, const std::string& text,
+                                         std::optional<std::uint64_t> number = {});
 
 /// The last notices, for present and later viewers.
 class NoticeLog {

@@ -29,6 +29,19 @@ fs::path existing_part(const fs::path& folder) {
 
 }  // namespace
 
+fs::path chosen_folder(const std::optional<std::string>& out, const std::optional<std::string>& resume,
+                       const std::string& name, const std::string& what) {
+  if (resume && out && *out != *resume) {
+    throw BadInput("found --out " + *out + " beside --resume " + *resume + ", expected one of them: a resumed " + what +
+                   " stays in its folder");
+  }
+  const std::string folder = resume ? *resume : out.value_or(name);
+  if (folder.empty()) {
+    throw InputError(resume ? "--resume" : "--out", 0, "an empty name", "the name of a folder");
+  }
+  return folder;
+}
+
 void check_result_folder(const fs::path& folder, std::span<const std::string_view> files) {
   const fs::path existing = existing_part(folder);
   std::error_code error;

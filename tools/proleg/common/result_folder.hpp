@@ -3,11 +3,18 @@
 // The folder (--out) into which a search, a sweep or an experiment writes its files.
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace proleg::tools {
+
+/// The folder of a search or a sweep, whose name is `what`: that of --resume, else that of --out, else the one with
+/// this name. Throws BadInput for two different folders, InputError for an empty name.
+[[nodiscard]] std::filesystem::path chosen_folder(const std::optional<std::string>& out,
+                                                  const std::optional<std::string>& resume, const std::string& name,
+                                                  const std::string& what);
 
 /// Throws InputError if the folder cannot be made or written in, and BadInput if one of the files exists in it: results
 /// replace only their own files. To be called before the work begins.

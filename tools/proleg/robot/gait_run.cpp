@@ -256,7 +256,7 @@ void GaitRun::stop() {
   // What the modules send while they stop is not part of the gait.
   end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
   drive_.master().stop(bus_.now());
-  // The master gives up by itself: eight silent modules cost it 0.6 s, or five times that if others still tick.
+  // The master gives up by itself: it needs 0.6 s for eight silent modules, or for each of them if others still tick.
   constexpr Microseconds at_most = 20'000'000;
   stops_by_ = bus_.now() + at_most;
 }

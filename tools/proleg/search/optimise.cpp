@@ -28,18 +28,6 @@ namespace {
 
 using optimize::Experiment;
 
-std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment& experiment) {
-  if (options.resume && options.out && *options.out != *options.resume) {
-    throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
-                   ", expected one of them: a resumed search stays in its folder");
-  }
-  const std::string folder = options.resume ? *options.resume : options.out.value_or(experiment.title());
-  if (folder.empty()) {
-    throw InputError(options.resume ? "--resume" : "--out", 0, "an empty name", "the name of a folder");
-  }
-  return folder;
-}
-
 void print_json(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
                 const std::filesystem::path& folder, std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
@@ -190,7 +178,7 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
 
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   Experiment experiment = read_experiment(options);
-  const std::filesystem::path folder = folder_of(options, experiment);
+  const std::filesystem::path folder = chosen_folder(options.out, options.resume, experiment.title(), "search");
   print_warnings("proleg optimise", experiment.scenario);
   refuse_overwriting(experiment, folder);
   if (!options.resume &&

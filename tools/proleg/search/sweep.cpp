@@ -76,15 +76,16 @@ constexpr std::array<std::string_view, 3> result_files{"sweep.tsv", "summary.tsv
 /// The table of all runs. It gets a line when a run ends, so a process that is killed loses no other run.
 class GrowingTable {
  public:
-  /// The file is created with the first run; it exists already if there are runs.
-  GrowingTable(const Sweep& sweep, std::filesystem::path path, std::size_t runs)
-      : sweep_(sweep), path_(std::move(path)), written_(runs) {}
+  /// exists: the file has a head and these runs; else it is created with the first run.
+  GrowingTable(const Sweep& sweep, std::filesystem::path path, bool exists, std::size_t runs)
+      : sweep_(sweep), path_(std::move(path)), has_head_(exists), written_(runs) {}
 
   /// runs: all, the new ones last.
   void add(std::span<const SweepRun> runs) {
     for (; written_ < runs.size(); ++written_) {
-      append((written_ == 0 ? optimize::sweep_head(sweep_, result_key) : std::string()) +
+      append((has_head_ ? std::string() : optimize::sweep_head(sweep_, result_key)) +
              optimize::sweep_line(sweep_, runs[written_]));
+      has_head_ = true;
     }
   }
 
@@ -99,22 +100,15 @@ class GrowingTable {
 
   const Sweep& sweep_;
   std::filesystem::path path_;
+  bool has_head_;
   std::size_t written_;
 };
 
 /// The folder of the results.
 std::filesystem::path result_folder(const SweepOptions& options) {
-  const char* const option = options.resume ? "--resume" : "--out";
-  if (options.resume && options.out && *options.out != *options.resume) {
-    throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
-                   ", expected one of them: a resumed sweep stays in its folder");
-  }
   const std::string file = std::filesystem::path(options.scenario.file).filename().string();
   std::filesystem::path folder =
-      options.resume ? *options.resume : options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
-  if (folder.empty()) {
-    throw InputError(option, 0, "an empty name", "the name of a folder");
-  }
+      chosen_folder(options.out, options.resume, file.substr(0, file.find('.')) + "_sweep", "sweep");
   check_result_folder(folder, {});
   return folder;
 }
@@ -354,7 +348,7 @@ int sweep(const SweepOptions& options) {
   } else {
     require_no_results(folder);
   }
-  GrowingTable table(sweep, folder / result_files[0], earlier.size());
+  GrowingTable table(sweep, folder / result_files[0], options.resume.has_value(), earlier.size());
   print_warnings("proleg sweep", sweep.scenario);
   warn_of_equal_runs(sweep);
   SweepResult result = run(sweep, worker_count, std::move(earlier), table);

@@ -42,6 +42,21 @@ json describe(const fs::path& path) {
   }
 }
 
+/// Calls use(path) for what is in a folder and in the folders in it. Links to folders are not followed.
+template <typename Use>
+void for_each_path(const fs::path& folder, const Use& use) {
+  std::error_code error;
+  std::size_t visited = 0;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator() && visited < max_visited; entry.increment(error)) {
+    ++visited;
+    if (entry.depth() >= max_depth) {
+      entry.disable_recursion_pending();
+    }
+    use(entry->path());
+  }
+}
+
 }  // namespace
 
 RecordingFolder::RecordingFolder(const fs::path& folder) {
@@ -75,20 +90,11 @@ bool RecordingFolder::is_inside(const fs::path& path) const {
 
 json RecordingFolder::list() {
   std::map<std::string, Entry> found;
-  std::error_code error;
-  std::size_t visited = 0;
-  // Links to folders are not followed.
-  fs::recursive_directory_iterator entry(folder_, fs::directory_options::skip_permission_denied, error);
-  for (; !error && entry != fs::recursive_directory_iterator() && visited < max_visited; entry.increment(error)) {
-    ++visited;
-    if (entry.depth() >= max_depth) {
-      entry.disable_recursion_pending();
-    }
+  for_each_path(folder_, [&](const fs::path& path) {
     std::error_code ignored;
-    const fs::path& path = entry->path();
     if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, ignored)) ||
         !is_inside(fs::canonical(path, ignored)) || ignored) {
-      continue;
+      return;
     }
     const std::string name = path.lexically_relative(folder_).string();
     Entry& known = found[name];
@@ -97,7 +103,7 @@ json RecordingFolder::list() {
       known.description = before->second.description;
       known.is_described = before->second.is_described && before->second.version == known.version;
     }
-  }
+  });
   std::vector<std::pair<std::int64_t, std::string>> newest;
   newest.reserve(found.size());
   for (const auto& [name, known] : found) {
@@ -165,19 +171,12 @@ std::filesystem::path new_recording(const std::filesystem::path& folder, const s
 
 std::vector<std::string> scenarios_in(const fs::path& folder) {
   std::vector<std::string> scenarios;
-  std::error_code error;
-  std::size_t visited = 0;
-  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  for (; !error && entry != fs::recursive_directory_iterator() && visited < max_visited; entry.increment(error)) {
-    ++visited;
-    if (entry.depth() >= max_depth) {
-      entry.disable_recursion_pending();
-    }
+  for_each_path(folder, [&](const fs::path& path) {
     std::error_code ignored;
-    if (entry->path().string().ends_with(".simulation.xml") && entry->is_regular_file(ignored)) {
-      scenarios.push_back(entry->path().string());
+    if (path.string().ends_with(".simulation.xml") && fs::is_regular_file(path, ignored)) {
+      scenarios.push_back(path.string());
     }
-  }
+  });
   std::ranges::sort(scenarios);
   return scenarios;
 }

@@ -8,6 +8,7 @@
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
 #include "shared/computer/algorithm_library/kept_signals.hpp"
+#include "shared/computer/algorithm_library/program_end.hpp"
 #include "shared/computer/child_process/trial.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"

@@ -43,13 +43,4 @@ template <typename Function>
       subject, [](void* context) { (*static_cast<Callable*>(context))(); }, &function, failure);
 }
 
-/// From now on, a crash outside of a guarded call, a call of exit() in another thread than the first, and a library
-/// that keeps the program from ending for three seconds print one line that names this file and end the program with
-/// status 1. To be called after a guarded call that has loaded the library. The first file stays. file: must live until
-/// the program ends.
-void blame_for_crashes(const char* file);
-
-/// All work is done and all results are written: what runs from now on is what libraries do at the end of the program.
-void expect_program_end();
-
 }  // namespace proleg

@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
-#include "shared/computer/algorithm_library/guarded_call.hpp"
 #include "shared/computer/algorithm_library/kept_signals.hpp"
+#include "shared/computer/algorithm_library/program_end.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 

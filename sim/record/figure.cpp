@@ -125,8 +125,11 @@ std::string scenario_name(const Recording& recording) {
 }
 
 void draw_head(Svg& svg, const Recording& recording, std::size_t changes, const Disturbances& disturbances) {
-  std::string about = "robot " + shortened(recording.run_value("robot"), 24) + ", " +
-                      std::to_string(recording.joints().size()) + " joints, seed " + recording.run_value("seed");
+  std::string about = shortened(recording.path().filename().string(), 24) + ": ";
+  if (const std::string robot = recording.run_value("robot"); robot != "robot") {
+    about += "robot " + shortened(robot, 24) + ", ";
+  }
+  about += std::to_string(recording.joints().size()) + " joints, seed " + recording.run_value("seed");
   if (changes > 0) {
     about += changes == 1 ? ", changed once in flight" : ", changed " + std::to_string(changes) + " times in flight";
   }

@@ -33,11 +33,11 @@ inline constexpr std::array<const char*, 7> distinct_colours{"#0072b2", "#d55e00
                                                              "#e69f00", "#56b4e9", "#000000"};
 
 /// Draws title and subtitle at the head of the page. The subtitle leaves room for another text at the right edge, at
-/// the height subtitle_y.
+/// the height subtitle_y. raised_by: pixels.
 inline constexpr double subtitle_y = 58.0;
-inline void draw_title(Svg& svg, std::string_view title, std::string_view subtitle) {
-  svg.text({page_left, 36.0}, title, TextAnchor::start, 20.0, ink, R"(font-weight="bold")");
-  svg.text({page_left, subtitle_y}, subtitle, TextAnchor::start, label_size, faint_ink);
+inline void draw_title(Svg& svg, std::string_view title, std::string_view subtitle, double raised_by = 0.0) {
+  svg.text({page_left, 36.0 - raised_by}, title, TextAnchor::start, 20.0, ink, R"(font-weight="bold")");
+  svg.text({page_left, subtitle_y - raised_by}, subtitle, TextAnchor::start, label_size, faint_ink);
 }
 
 inline void draw_heading(Svg& svg, double panel_top, std::string_view text) {

@@ -52,9 +52,10 @@ Svg begin_page(const Sweep& sweep, sim::Measure measure, const std::string& desc
   constexpr std::size_t max_characters = 115;  // this number fits the page
   const std::string title = measure_name(measure);
   Svg svg(sim::page_width, page_height, title, description + " Made by: " + command_of(sweep));
-  sim::draw_title(svg, title, shortened(subtitle(sweep), max_characters));
-  svg.text({sim::page_left, sim::subtitle_y + 15.0}, shortened(fixed_options(sweep), max_characters),
-           sim::TextAnchor::start, sim::label_size, sim::faint_ink);
+  constexpr double line = 15.0;  // higher by a line, because there are two subtitles
+  sim::draw_title(svg, title, shortened(subtitle(sweep), max_characters), line);
+  svg.text({sim::page_left, sim::subtitle_y}, shortened(fixed_options(sweep), max_characters), sim::TextAnchor::start,
+           sim::label_size, sim::faint_ink);
   return svg;
 }
 

@@ -119,8 +119,10 @@ std::filesystem::path picture_of(const Options& options, bool is_data_file) {
   if (!options.out.empty()) {
     return options.out;
   }
-  return is_data_file ? std::filesystem::path(options.recording).replace_extension(extension)
-                      : beside_recording(options.recording, extension);
+  // So that a picture of columns does not replace that of the whole run.
+  const std::string ending = (options.series ? ".series" : "") + std::string(extension);
+  return is_data_file ? std::filesystem::path(options.recording).replace_extension(ending)
+                      : beside_recording(options.recording, ending);
 }
 
 /// The series of a data file that are drawn without --series: the commands of its modules; else the motion of the
@@ -228,7 +230,8 @@ int main(int argc, char** argv) {
   command_line
       .add_option(
           "--out", options.out,
-          "the picture, - for standard output; by default run.svg (run.png) for run.proleg, run.1.svg for run.1")
+          "the picture, - for standard output; by default run.svg (run.png) for run.proleg, run.1.svg for run.1; with\n"
+          "--series run.series.svg")
       .value_name("FILE");
   command_line
       .add_option(

@@ -171,9 +171,10 @@ void print_best(const Experiment& experiment, const SearchResult& result) {
   if (confirmation != nullptr && !is_decided) {
     print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
   }
-  if (depends_on_seed(experiment)) {
-    print_line("  in its own world", number_text(result.own_scores.front(), experiment.objectives.front().unit()) +
-                                         ", the best scenario" + judge_text(experiment));
+  const std::string_view unit = experiment.objectives.front().unit();
+  const std::string own_score = number_text(result.own_scores.front(), unit);
+  if (depends_on_seed(experiment) && !is_decided && own_score != number_text(best.scores.front(), unit)) {
+    print_line("  in its own world", own_score + ", the best scenario" + judge_text(experiment));
   }
   if (optimize::is_judged(experiment) && confirmation == nullptr) {
     print_line("not judged",

@@ -21,6 +21,10 @@
 namespace proleg {
 namespace {
 
+/// Processor time after which a call counts as an endless loop, and time after which it counts as stuck.
+constexpr double longest_call_cpu_s = 1.0;
+constexpr double longest_call_wall_s = 20.0;
+
 constexpr auto watchdog_period = std::chrono::milliseconds(20);
 /// What an interrupted call may have left locked must be free after so many periods, 3 s. A clock would also count the
 /// time for which a whole computer was suspended.

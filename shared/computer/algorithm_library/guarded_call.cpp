@@ -99,7 +99,8 @@ enum class End : std::uint8_t { returned, exception, signal };
 bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context, CallFailure& failure) {
   thread_local GuardOwner owner;
   ThreadGuard& guard = owner.guard();
-  guard.subject = subject;
+  guard.subject = subject.name;
+  guard.function = subject.function;
   const FloatingPointModes modes;
   const End end = enter(guard, function, context);
   modes.restore();

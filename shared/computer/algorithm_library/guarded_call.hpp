@@ -22,10 +22,6 @@ struct CallFailure {
   const void* address = nullptr;  ///< of a bad access to memory
 };
 
-/// Processor time after which a call counts as an endless loop, and time after which it counts as stuck.
-inline constexpr double longest_call_cpu_s = 1.0;
-inline constexpr double longest_call_wall_s = 20.0;
-
 /// Calls function(context). Returns false if it throws, breaks a rule of the processor (SIGSEGV, SIGBUS, SIGFPE,
 /// SIGILL), calls abort(), or takes too long; `failure` says which. What the function had locked or allocated is then
 /// lost: do not call its code again. If that are locks of the C library, or its lists of memory are damaged, or the

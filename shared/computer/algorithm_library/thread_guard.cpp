@@ -25,7 +25,7 @@ const char* text_of(const ThreadGuard& guard) {
 
 [[noreturn]] void end_program_after(const ThreadGuard& guard, const char* what, const char* consequence) {
   LastLine line;
-  line << "proleg: " << guard.subject.name << " " << what << ", in " << guard.subject.function << "()" << consequence;
+  line << "proleg: " << guard.subject << " " << what << ", in " << guard.function << "()" << consequence;
   line.end_program();
 }
 

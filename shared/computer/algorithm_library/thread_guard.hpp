@@ -11,8 +11,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "shared/computer/algorithm_library/guarded_call.hpp"
-
 namespace proleg {
 
 /// The signal that the watchdog sends to a thread. No program of the tree uses it for anything else.
@@ -32,7 +30,8 @@ struct ThreadGuard {
   bool is_terminated = false;             ///< std::terminate() was called
   int signal = 0;
   std::optional<const void*> address;  ///< of a bad access to memory; nothing if the process sent itself the signal
-  CallSubject subject;
+  const char* subject = "";            ///< what is called; "steep.so: the algorithm 'steep'"
+  const char* function = "";           ///< without brackets
   std::array<char, 200> exception{};
   pthread_t thread = pthread_self();
   sigset_t mask{};  ///< of signals, before the first call

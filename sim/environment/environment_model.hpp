@@ -67,6 +67,8 @@ struct StaticObject {
   Pose pose;  ///< in the world
   std::vector<Geometry> geometries;
   std::vector<Look> looks;  ///< shown beside the geometries
+  std::string file = {};    ///< where its <Body> is; empty: in no file
+  int line = 0;
 };
 
 /// An object in the world that moves when something pushes it: a ball, a box. Its geometries are convex.
@@ -76,6 +78,8 @@ struct MovingObject {
   MassProperties mass;
   std::vector<Geometry> geometries;
   std::vector<Look> looks;  ///< shown beside the geometries
+  std::string file = {};    ///< where its <Body> is; empty: in no file
+  int line = 0;
 };
 
 /// A scale on the ground, for the eye only: segments of equal length whose colours alternate.

@@ -152,7 +152,8 @@ void add_moving_object(BodyEntry body, EnvironmentModel& environment) {
                      "at least one; otherwise it would fall for ever");
   }
   environment.moving_objects.push_back({std::move(body.link.name), body.link.pose, body.link.mass,
-                                        std::move(body.link.geometries), std::move(body.link.looks)});
+                                        std::move(body.link.geometries), std::move(body.link.looks),
+                                        std::move(body.origin.file), body.origin.line});
 }
 
 /// What is higher above the robot's lowest point, and not under its start position, is no ground but a wall: who starts
@@ -325,7 +326,8 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
       }
       if (body.is_fixed) {
         environment.objects.push_back(
-            {std::move(link.name), link.pose, std::move(link.geometries), std::move(link.looks)});
+            {std::move(link.name), link.pose, std::move(link.geometries), std::move(link.looks),
+             std::move(body.origin.file), body.origin.line});
       } else {
         add_moving_object(std::move(body), environment);
       }

@@ -139,6 +139,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   read_actuation(*actuation_file, scenario, robot_file->name());
 
   const auto environment_file = open("environment");
+  scenario.environment_file = environment_file->name();
   scenario.environment = read_environment(*environment_file, sources, scenario.remarks, scenario.warnings);
   apply_overrides(overrides, scenario.environment);
   if (scenario.environment.self_collision) {

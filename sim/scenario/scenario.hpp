@@ -61,6 +61,7 @@ struct Scenario {
 
   std::vector<SourceFile> sources;    ///< every file, the top-level file first
   std::string actuation_file;         ///< path of the source that has the start values
+  std::string environment_file;       ///< path of the source that has the environment
   std::vector<std::string> remarks;   ///< for the user: the joint map, tags without effect
   std::vector<std::string> warnings;  ///< for the user: what is valid and probably not meant
 };

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/scenario/actuation_edit.hpp"
+#include "sim/authoring/actuation_edit.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {

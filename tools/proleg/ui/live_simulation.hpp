@@ -16,7 +16,7 @@
 
 #include "sim/loop/simulation.hpp"
 #include "sim/record/recorder.hpp"
-#include "sim/scenario/actuation_edit.hpp"
+#include "sim/authoring/actuation_edit.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"

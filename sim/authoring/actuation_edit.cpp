@@ -1,4 +1,4 @@
-#include "sim/scenario/actuation_edit.hpp"
+#include "sim/authoring/actuation_edit.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -16,60 +16,24 @@
 namespace proleg::sim {
 namespace {
 
-/// An element in the text, with its end tag.
-struct TextElement {
-  TextTag tag;
-  std::size_t end;  ///< behind its last '>'
-};
-
 /// The elements of a module in the text that a tag may follow.
 struct ModuleText {
-  TextElement joint_configuration{};
-  std::vector<TextElement> parameters{};
+  ElementNumber joint_configuration = 0;
+  std::vector<ElementNumber> parameters = {};
 };
 
-std::vector<ModuleText> find_modules(std::string_view text) {
+std::vector<ModuleText> find_modules(const XmlText& xml) {
   std::vector<ModuleText> modules;
-  TextElement* last = nullptr;
-  TagScanner tags(text);
-  while (const std::optional<TextTag> tag = tags.next()) {
-    const std::string name = lower_case(tag->name);
-    if (tag->kind == TextTag::Kind::end) {
-      if (last != nullptr) {
-        last->end = tag->end;
-      }
-      last = nullptr;
-    } else if (name == "actuationmodule") {
+  for (ElementNumber i = 0; i < xml.size(); ++i) {
+    if (xml.is(i, "actuationModule")) {
       modules.emplace_back();
-    } else if (!modules.empty() && (name == "parameter" || name == "jointconfiguration")) {
-      ModuleText& module = modules.back();
-      TextElement& element = name == "parameter" ? module.parameters.emplace_back() : module.joint_configuration;
-      element = {*tag, tag->end};
-      last = tag->kind == TextTag::Kind::start ? &element : nullptr;
+    } else if (!modules.empty() && xml.is(i, "parameter")) {
+      modules.back().parameters.push_back(i);
+    } else if (!modules.empty() && xml.is(i, "jointConfiguration")) {
+      modules.back().joint_configuration = i;
     }
   }
   return modules;
-}
-
-/// The text as an attribute in double quotes needs it.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char character : text) {
-    switch (character) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += character;
-    }
-  }
-  return result;
 }
 
 /// What people see of a line.
@@ -86,18 +50,16 @@ TextRange line_around(std::string_view text, std::size_t position) {
   return {before == std::string_view::npos ? 0 : before + 1, has_return ? end - 1 : end};
 }
 
-bool is_blank_or_comment(std::string_view rest) {
-  rest = trimmed(rest);
-  return rest.empty() || (rest.starts_with("<!--") && rest.find("-->") == rest.size() - 3);
-}
-
 class Editor {
  public:
   Editor(const Scenario& file, const Scenario& wanted)
-      : file_(file), wanted_(wanted), text_(actuation_source(file).text), modules_(find_modules(text_)) {}
+      : file_(file),
+        wanted_(wanted),
+        xml_(file.actuation_file, actuation_source(file).text),
+        modules_(find_modules(xml_)) {}
 
   std::vector<ActuationEdit> run() {
-    const XmlDocument document(file_.actuation_file, std::string(text_), nullptr);
+    const XmlDocument document(file_.actuation_file, xml_.text(), nullptr);
     const std::vector<XmlElement> modules = actuation_modules(document);
     for (unsigned slot = 0; slot < modules.size(); ++slot) {
       edit_module(slot, read_parameter_tags(modules[slot], file_, slot));
@@ -134,21 +96,21 @@ class Editor {
   void edit_parameter(unsigned slot, unsigned number, const std::vector<ParameterTag>& tags) {
     const ModuleText& module = modules_[slot];
     JointMask common = file_.kernel.slots[slot].group;  // joints without a tag of their own
-    const TextElement* for_all = nullptr;
-    const TextElement* anchor = module.parameters.empty() ? &module.joint_configuration : &module.parameters.back();
+    std::optional<ElementNumber> for_all;
+    ElementNumber anchor = module.parameters.empty() ? module.joint_configuration : module.parameters.back();
     for (std::size_t i = 0; i < tags.size(); ++i) {
       const Setting& setting = tags[i].setting;
       if (setting.number != number) {
         continue;
       }
-      anchor = &module.parameters[i];
+      anchor = module.parameters[i];
       if (tags[i].is_for_all) {
         for_all = anchor;
         continue;
       }
       common.erase(setting.joint);
       if (setting.value != wanted(slot, setting.joint, number)) {
-        replace_value(slot, number, JointMask::of(setting.joint), *anchor);
+        replace_value(slot, number, JointMask::of(setting.joint), anchor);
       }
     }
     JointMask changed;
@@ -162,59 +124,54 @@ class Editor {
     }
     const bool has_own_tags = common != file_.kernel.slots[slot].group;
     const bool is_uniform = changed == common && want_one_value(slot, common, number);
-    if (is_uniform && for_all != nullptr) {
+    if (is_uniform && for_all) {
       replace_value(slot, number, common, *for_all);
     } else if (is_uniform && !has_own_tags) {
-      add_tag(slot, number, common, {}, *anchor);
+      add_tag(slot, number, common, {}, anchor);
     } else {
       for (const unsigned joint : changed) {
         add_tag(slot, number, JointMask::of(joint), " joint=\"" + escaped(file_.robot.joints[joint].name) + '"',
-                *anchor);
+                anchor);
       }
     }
   }
 
-  void replace_value(unsigned slot, unsigned number, JointMask joints, const TextElement& element) {
-    const TextRange value = find_attribute(text_, element.tag, "value").value();  // the reader has read it
-    ActuationEdit edit{
-        slot, number, joints, value.begin, value.end - value.begin, value_text(slot, joints.front(), number)};
+  void replace_value(unsigned slot, unsigned number, JointMask joints, ElementNumber element) {
+    const std::string value = value_text(slot, joints.front(), number);
+    ActuationEdit edit{slot, number, joints, xml_.set_attribute(element, "value", value)};
     show_changed_line(edit);
     edits_.push_back(std::move(edit));
   }
 
   /// Below the line of the element, or behind the element if its line has more than that.
   void add_tag(unsigned slot, unsigned number, JointMask joints, const std::string& joint_attribute,
-               const TextElement& behind) {
+               ElementNumber behind) {
     const std::string unit = shown_unit(parameter(slot, number).unit);
     const std::string tag = "<parameter name=\"" + std::string(parameter(slot, number).name) + "\" value=\"" +
                             value_text(slot, joints.front(), number) + '"' +
                             (unit.empty() ? "" : " unit=\"" + unit + '"') + joint_attribute + "/>";
-    const TextRange first_line = line_around(text_, behind.tag.begin);
-    const TextRange last_line = line_around(text_, behind.end);
-    const std::string_view indentation = text_.substr(first_line.begin, behind.tag.begin - first_line.begin);
-    ActuationEdit edit{slot, number, joints, behind.end, 0, tag};
-    if (trimmed(indentation).empty() && is_blank_or_comment(text_.substr(behind.end, last_line.end - behind.end))) {
-      edit.position = last_line.end;
-      edit.text = (text_.substr(last_line.end).starts_with('\r') ? "\r\n" : "\n") + std::string(indentation) + tag;
-      edit.line = line_at(text_, behind.end);
-      edit.new_line = shown(tag);
-    } else {
+    ActuationEdit edit{slot, number, joints, xml_.add_behind(behind, tag)};
+    if (edit.patch.inserted.starts_with('<')) {
       show_changed_line(edit);
+    } else {  // a line of its own
+      edit.line = line_at(xml_.text(), xml_.at(behind).end);
+      edit.new_line = shown(tag);
     }
     edits_.push_back(std::move(edit));
   }
 
   void show_changed_line(ActuationEdit& edit) const {
-    const TextRange line = line_around(text_, edit.position);
-    std::string changed(text_.substr(line.begin, line.end - line.begin));
-    edit.line = line_at(text_, edit.position);
+    const TextRange line = line_around(xml_.text(), edit.patch.position);
+    std::string changed = xml_.text().substr(line.begin, line.end - line.begin);
+    edit.line = line_at(xml_.text(), edit.patch.position);
     edit.old_line = shown(changed);
-    edit.new_line = shown(changed.replace(edit.position - line.begin, edit.removed, edit.text));
+    apply({edit.patch.position - line.begin, edit.patch.removed, edit.patch.inserted}, changed);
+    edit.new_line = shown(changed);
   }
 
   const Scenario& file_;
   const Scenario& wanted_;
-  std::string_view text_;
+  XmlText xml_;
   std::vector<ModuleText> modules_;
   std::vector<ActuationEdit> edits_;
 };
@@ -236,9 +193,10 @@ std::string edited(std::string text, std::span<const ActuationEdit> edits) {
   }
   // Tags that are added at one place keep their order.
   std::ranges::reverse(from_the_end);
-  std::ranges::stable_sort(from_the_end, std::ranges::greater{}, &ActuationEdit::position);
+  std::ranges::stable_sort(from_the_end, std::ranges::greater{},
+                           [](const ActuationEdit* edit) { return edit->patch.position; });
   for (const ActuationEdit* edit : from_the_end) {
-    text.replace(edit->position, edit->removed, edit->text);
+    apply(edit->patch, text);
   }
   return text;
 }

@@ -3,13 +3,13 @@
 // Writes start values of parameters into the actuation file that they come from. What a person wrote stays: an edit
 // replaces the value of a tag, or adds a tag behind a similar one.
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "shared/gait/joint_mask.hpp"
+#include "sim/authoring/xml_text.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
@@ -19,9 +19,7 @@ struct ActuationEdit {
   unsigned slot = 0;
   unsigned number = 0;  ///< of the parameter in the declaration
   JointMask joints;     ///< whose start value it changes; kernel order
-  std::size_t position = 0;
-  std::size_t removed = 0;  ///< bytes from the position on that the text replaces
-  std::string text = {};
+  TextPatch patch;
   int line = 0;                              ///< line that the edit changes, or after which it adds one
   std::optional<std::string> old_line = {};  ///< nothing: the line is new
   std::string new_line = {};                 ///< with this edit alone

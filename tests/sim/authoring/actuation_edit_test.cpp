@@ -1,4 +1,4 @@
-#include "sim/scenario/actuation_edit.hpp"
+#include "sim/authoring/actuation_edit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "memory_files.hpp"
+#include "replaced.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tests/support/files.hpp"
@@ -47,10 +48,6 @@ const std::string& module_text() {
 </actuation>
 )";
   return text;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
 }
 
 TEST(ActuationEdit, NothingIsWrittenForWhatTheFileSays) {

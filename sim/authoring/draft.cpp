@@ -1,0 +1,259 @@
+#include "sim/authoring/draft.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::sim {
+namespace {
+
+// What undo keeps at most; older entries are forgotten.
+constexpr std::size_t max_history_entries = 10'000;
+constexpr std::size_t max_history_bytes = std::size_t{32} << 20U;
+
+std::size_t bytes_of(const TextPatch& patch) { return patch.removed.size() + patch.inserted.size(); }
+
+}  // namespace
+
+std::optional<std::string> DraftTexts::read(const std::filesystem::path& path) {
+  const std::string* const text = find(name_of(path));
+  return text != nullptr ? std::optional(*text) : disk_->read(path);
+}
+
+std::optional<std::string> DraftTexts::found_instead(const std::filesystem::path& path) {
+  return disk_->found_instead(path);
+}
+
+const std::string* DraftTexts::find(const std::string& name) const {
+  const auto found = texts_.find(name);
+  return found == texts_.end() ? nullptr : &found->second;
+}
+
+const std::string& DraftTexts::at(const std::string& name) const {
+  const std::string* const text = find(name);
+  if (text == nullptr) {
+    throw InputError(name, 0, "no such file in the draft", "one of its files");
+  }
+  return *text;
+}
+
+const XmlText& DraftChange::xml(const std::string& name) {
+  std::unique_ptr<XmlText>& parsed = parsed_[name];
+  if (parsed == nullptr) {
+    parsed = std::make_unique<XmlText>(name, texts_.at(name));
+  }
+  return *parsed;
+}
+
+void DraftChange::apply(const std::string& name, const TextPatch& patch) {
+  if (patch.removed == patch.inserted) {
+    return;  // a value that is as it was; what could be done again still can
+  }
+  steps_.push_back({name, patch});
+  parsed_.erase(name);
+  apply_step(steps_.back(), texts_);
+}
+
+void DraftChange::add_file(const std::string& name, std::string text) {
+  if (texts_.read(name)) {
+    throw InputError(name, 0, "a file that exists", "a new name");
+  }
+  steps_.push_back({name, {0, {}, std::move(text)}, true});
+  apply_step(steps_.back(), texts_);
+}
+
+bool DraftChange::Step::absorbs(const Step& next) {
+  const std::size_t begin = patch.position;
+  const std::size_t at = next.patch.position;
+  if (file != next.file || next.is_new_file || at < begin ||
+      at + next.patch.removed.size() > begin + patch.inserted.size()) {
+    return false;
+  }
+  patch.inserted.replace(at - begin, next.patch.removed.size(), next.patch.inserted);
+  return true;
+}
+
+void DraftChange::apply_step(const Step& step, DraftTexts& texts) {
+  const std::string* const before = texts.find(step.file);
+  std::string text = before == nullptr ? std::string() : *before;
+  sim::apply(step.patch, text);
+  texts.set(step.file, std::move(text));
+}
+
+void DraftChange::take_back(const Step& step, DraftTexts& texts) {
+  if (step.is_new_file) {
+    texts.erase(step.file);
+    return;
+  }
+  std::string text = *texts.find(step.file);
+  sim::apply(inverse(step.patch), text);
+  texts.set(step.file, std::move(text));
+}
+
+Draft::Draft(Scenario scenario, FileSource& disk) : texts_(disk), scenario_(std::move(scenario)) {
+  for (const SourceFile& source : scenario_.sources) {
+    texts_.set(source.path, source.text);
+    saved_.emplace(source.path, source.text);
+  }
+}
+
+Scenario Draft::read() {
+  Scenario scenario = read_scenario(scenario_.path, texts_, scenario_.overrides);
+  scenario.moves = scenario_.moves;  // of the command line, as the overrides
+  // What the change names for the first time, such as a mesh, belongs to the draft from now on: it must not change
+  // behind it.
+  for (const SourceFile& source : scenario.sources) {
+    if (texts_.find(source.path) == nullptr) {
+      texts_.set(source.path, source.text);
+      saved_.insert_or_assign(source.path, source.text);
+    }
+  }
+  return scenario;
+}
+
+void Draft::change(const std::string& label, std::optional<std::uint64_t> gesture,
+                   const std::function<void(DraftChange&)>& change) {
+  DraftChange collected(texts_);
+  try {
+    change(collected);
+    if (collected.steps_.empty()) {
+      return;
+    }
+    scenario_ = read();
+  } catch (...) {
+    take_back(collected.steps_);
+    throw;
+  }
+  keep(label, gesture, std::move(collected.steps_));
+  ++revision_;
+}
+
+void Draft::keep(const std::string& label, std::optional<std::uint64_t> gesture, std::vector<DraftChange::Step> steps) {
+  const bool goes_on = done_ > 0 && done_ == history_.size() && gesture && history_.back().gesture == gesture;
+  history_.erase(history_.begin() + static_cast<std::ptrdiff_t>(done_), history_.end());
+  if (!goes_on) {
+    history_.push_back({label, gesture, {}});
+  }
+  std::vector<DraftChange::Step>& kept = history_.back().steps;
+  for (DraftChange::Step& step : steps) {
+    // The steps of a drag replace each other's text.
+    if (kept.empty() || !kept.back().absorbs(step)) {
+      kept.push_back(std::move(step));
+    }
+  }
+  done_ = history_.size();
+  limit_history();
+}
+
+void Draft::limit_history() {
+  std::size_t bytes = 0;
+  std::size_t kept = 0;
+  for (auto entry = history_.rbegin(); entry != history_.rend(); ++entry) {
+    for (const DraftChange::Step& step : entry->steps) {
+      bytes += bytes_of(step.patch);
+    }
+    if (kept > 0 && (bytes > max_history_bytes || kept == max_history_entries)) {
+      break;
+    }
+    ++kept;
+  }
+  history_.erase(history_.begin(), history_.end() - static_cast<std::ptrdiff_t>(kept));
+  done_ = history_.size();
+}
+
+void Draft::take_back(const std::vector<DraftChange::Step>& steps) {
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    DraftChange::take_back(*step, texts_);
+  }
+}
+
+void Draft::do_again(const std::vector<DraftChange::Step>& steps) {
+  for (const DraftChange::Step& step : steps) {
+    DraftChange::apply_step(step, texts_);
+  }
+}
+
+bool Draft::undo() {
+  if (done_ == 0) {
+    return false;
+  }
+  Entry& entry = history_[done_ - 1];
+  take_back(entry.steps);
+  try {
+    scenario_ = read();
+  } catch (...) {  // a file that only the disk has is not as it was
+    do_again(entry.steps);
+    throw;
+  }
+  entry.gesture.reset();  // what follows a redo is another gesture
+  --done_;
+  ++revision_;
+  return true;
+}
+
+bool Draft::redo() {
+  if (done_ == history_.size()) {
+    return false;
+  }
+  const std::vector<DraftChange::Step>& steps = history_[done_].steps;
+  do_again(steps);
+  try {
+    scenario_ = read();
+  } catch (...) {
+    take_back(steps);
+    throw;
+  }
+  ++done_;
+  ++revision_;
+  return true;
+}
+
+std::optional<std::string> Draft::undo_label() const {
+  return done_ == 0 ? std::nullopt : std::optional(history_[done_ - 1].label);
+}
+
+std::optional<std::string> Draft::redo_label() const {
+  return done_ == history_.size() ? std::nullopt : std::optional(history_[done_].label);
+}
+
+std::vector<Draft::ChangedFile> Draft::changed_files() const {
+  std::vector<ChangedFile> changed;
+  for (const auto& [name, text] : texts_.all()) {
+    const auto saved = saved_.find(name);
+    if (saved == saved_.end() || saved->second != text) {
+      changed.push_back({name, saved == saved_.end() ? std::nullopt : std::optional(saved->second), text});
+    }
+  }
+  return changed;
+}
+
+void Draft::mark_saved() { saved_ = texts_.all(); }
+
+void Draft::rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path) {
+  const auto new_name = [&renamed](const std::string& name) {
+    const auto found = renamed.find(name);
+    return found == renamed.end() ? name : found->second;
+  };
+  const std::map<std::string, std::string> texts = texts_.all();
+  for (const auto& [name, text] : texts) {
+    texts_.erase(name);
+  }
+  saved_.clear();
+  for (const auto& [name, text] : texts) {
+    texts_.set(new_name(name), text);
+  }
+  mark_saved();
+  for (Entry& entry : history_) {
+    for (DraftChange::Step& step : entry.steps) {
+      step.file = new_name(step.file);
+    }
+  }
+  scenario_.path = path.string();
+  scenario_ = read();
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,140 @@
+#pragma once
+
+// The files of a scenario while a person changes them. A change is an edit of the files' texts; the scenario reader
+// judges the result, so that a draft can be run at any time and what it accepts is what every program accepts. Nothing
+// on disk changes.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/authoring/xml_text.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/sources.hpp"
+
+namespace proleg::sim {
+
+/// The texts of a draft, by the names of the files (name_of()), and the files on disk that it does not have.
+class DraftTexts final : public FileSource {
+ public:
+  /// disk: must outlive this.
+  explicit DraftTexts(FileSource& disk) : disk_(&disk) {}
+
+  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
+  [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
+
+  /// The text of a file of the draft; null if it has no such file.
+  [[nodiscard]] const std::string* find(const std::string& name) const;
+  /// The same. Throws InputError if there is no such file.
+  [[nodiscard]] const std::string& at(const std::string& name) const;
+  void set(const std::string& name, std::string text) { texts_.insert_or_assign(name, std::move(text)); }
+  void erase(const std::string& name) { texts_.erase(name); }
+  [[nodiscard]] const std::map<std::string, std::string>& all() const { return texts_; }
+
+ private:
+  FileSource* disk_;
+  std::map<std::string, std::string> texts_;
+};
+
+/// What one change does to the files. Each call takes effect at once, so that the next one sees it.
+class DraftChange {
+ public:
+  /// A file after the calls before. Throws InputError for a file that the draft does not have, or that is no XML. Valid
+  /// until the next apply() to this file.
+  [[nodiscard]] const XmlText& xml(const std::string& name);
+  void apply(const std::string& name, const TextPatch& patch);
+  /// Adds a file. Throws InputError if the draft, or the disk, has one of this name.
+  void add_file(const std::string& name, std::string text);
+
+ private:
+  friend class Draft;
+  explicit DraftChange(DraftTexts& texts) : texts_(texts) {}
+
+  struct Step {
+    std::string file;
+    TextPatch patch;
+    bool is_new_file = false;  ///< the patch has its text
+
+    /// Adds a later step to this one if that changes only what this one has inserted, as the steps of a drag do.
+    /// Returns false if it does not.
+    bool absorbs(const Step& next);
+  };
+
+  static void apply_step(const Step& step, DraftTexts& texts);
+  static void take_back(const Step& step, DraftTexts& texts);
+
+  DraftTexts& texts_;
+  std::vector<Step> steps_;
+  std::map<std::string, std::unique_ptr<XmlText>> parsed_;
+};
+
+class Draft {
+ public:
+  /// A file that is not as it is on disk.
+  struct ChangedFile {
+    std::string name;
+    std::optional<std::string> saved;  ///< its text when it was read or saved; nothing: it is new
+    std::string text;
+  };
+
+  /// scenario: as it was read, with its sources. disk: where files are that a change names; must outlive the draft.
+  Draft(Scenario scenario, FileSource& disk);
+
+  /// The scenario as the reader has it from the present texts.
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  /// Counts the changes, undo and redo included.
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
+  /// A file as it is now. Throws InputError for one that the draft does not have.
+  [[nodiscard]] const std::string& text(const std::string& name) const { return texts_.at(name); }
+
+  /// Changes the files by calls of `change`. If the reader refuses the result, or `change` throws, nothing changes and
+  /// the InputError says why. label: for undo, "move box". gesture: changes in a row with the same number are one entry
+  /// of undo, such as the steps of a drag.
+  void change(const std::string& label, std::optional<std::uint64_t> gesture,
+              const std::function<void(DraftChange&)>& change);
+
+  /// Takes the last change back, or does it again. Returns false if there is none. Throws InputError, and then does
+  /// nothing, if the reader refuses the state because of a file that only the disk has.
+  bool undo();
+  bool redo();
+  /// What undo() and redo() would do: the label of the change. Nothing if there is none.
+  [[nodiscard]] std::optional<std::string> undo_label() const;
+  [[nodiscard]] std::optional<std::string> redo_label() const;
+
+  /// The files that differ from the disk, by name.
+  [[nodiscard]] std::vector<ChangedFile> changed_files() const;
+  /// The present texts are on disk.
+  void mark_saved();
+  /// The files have been saved under other names, in `renamed` by their names until now, and the draft goes on there.
+  /// path: of the top-level file from now on. Undo stays.
+  void rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path);
+
+ private:
+  struct Entry {
+    std::string label;
+    std::optional<std::uint64_t> gesture;
+    std::vector<DraftChange::Step> steps;
+  };
+
+  void take_back(const std::vector<DraftChange::Step>& steps);
+  void do_again(const std::vector<DraftChange::Step>& steps);
+  [[nodiscard]] Scenario read();
+  void keep(const std::string& label, std::optional<std::uint64_t> gesture, std::vector<DraftChange::Step> steps);
+  void limit_history();
+
+  DraftTexts texts_;
+  std::map<std::string, std::string> saved_;  ///< texts as they are on disk
+  Scenario scenario_;
+  std::uint64_t revision_ = 0;
+  std::deque<Entry> history_;
+  std::size_t done_ = 0;  ///< entries of the history that have effect; those behind can be done again
+};
+
+}  // namespace proleg::sim

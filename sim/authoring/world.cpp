@@ -1,0 +1,450 @@
+#include "sim/authoring/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/authoring/library_items.hpp"
+#include "sim/authoring/scenario_text.hpp"
+#include "sim/scenario/reader.hpp"
+#include "sim/scenario/values.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr std::array<std::string_view, 3> rotation_tags{"rotationaxis", "quat", "rotationmat"};
+
+bool is_one_of(const XmlText& xml, ElementNumber element, std::span<const std::string_view> tags) {
+  return std::ranges::any_of(tags, [&](std::string_view tag) { return xml.is(element, tag); });
+}
+
+/// An element by itself, for the functions of the reader.
+XmlDocument parsed(const XmlText& xml, ElementNumber element) {
+  return {xml.name(), std::string(xml.bytes(element)), nullptr};
+}
+
+Pose local_pose(const XmlText& xml, ElementNumber element) {
+  const XmlDocument document = parsed(xml, element);
+  return read_pose(document.root(xml.at(element).tag.name));
+}
+
+/// The numbers in a child of an element; nothing without it.
+std::optional<std::vector<double>> numbers_in(const XmlElement& element, std::string_view tag) {
+  const std::optional<XmlElement> child = element.child(tag);
+  if (!child) {
+    return std::nullopt;
+  }
+  std::vector<double> numbers;
+  const std::string text = child->text({"unit"});
+  for (const std::string_view word : words(text)) {
+    numbers.push_back(parse_number(word).value_or(0.0));
+  }
+  return numbers;
+}
+
+WorldShape read_shape(const XmlText& xml, ElementNumber geom) {
+  const XmlDocument document = parsed(xml, geom);
+  const XmlElement element = document.root(xml.at(geom).tag.name);
+  WorldShape shape{geom, lower_case(element.required_attribute("type")), {}, {}, {}};
+  if (const auto sides = numbers_in(element, "extents")) {
+    for (const double half : *sides) {
+      shape.size.push_back(2.0 * half);
+    }
+  }
+  for (const std::string_view tag : {"radius", "height"}) {
+    if (const auto number = numbers_in(element, tag); number && number->size() == 1) {
+      shape.size.push_back(number->front());
+    }
+  }
+  if (const auto friction = numbers_in(element, "friction"); friction && friction->size() == 1) {
+    shape.friction = friction->front();
+  }
+  if (const auto colour = numbers_in(element, "diffuseColor"); colour && colour->size() == 3) {
+    shape.colour = Eigen::Vector3d((*colour)[0], (*colour)[1], (*colour)[2]);
+  }
+  return shape;
+}
+
+/// An object of the scenario; the reader keeps those that move apart.
+struct ReadObject {
+  WorldObject object;
+  bool is_found = false;  ///< its element is known
+};
+
+std::vector<ReadObject> read_objects(const EnvironmentModel& environment) {
+  std::vector<ReadObject> all;
+  const auto add = [&all](const auto& body, bool moves, double mass) {
+    WorldObject object;
+    object.name = body.name;
+    object.file = body.file;
+    object.line = body.line;
+    object.moves = moves;
+    object.mass = mass;
+    object.pose = body.pose;
+    all.push_back({std::move(object)});
+  };
+  for (const StaticObject& object : environment.objects) {
+    add(object, false, 0.0);
+  }
+  for (const MovingObject& object : environment.moving_objects) {
+    add(object, true, object.mass.mass);
+  }
+  return all;
+}
+
+/// The outermost <KinBody> of a body, directly in the environment.
+std::optional<ElementNumber> group_of(const XmlText& xml, ElementNumber body) {
+  ElementNumber at = body;
+  while (xml.at(at).parent && *xml.at(at).parent != 0) {
+    at = *xml.at(at).parent;
+  }
+  return at == body ? std::nullopt : std::optional(at);
+}
+
+std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> read_start(std::string_view comment) {
+  std::string numbers(comment.substr(comment.find(':') + 1));
+  std::ranges::replace(numbers, ',', ' ');
+  std::vector<double> values;
+  for (const std::string_view word : words(numbers)) {
+    if (const auto value = parse_number(word)) {
+      values.push_back(*value);
+    }
+  }
+  if (values.size() != 6) {
+    return std::nullopt;
+  }
+  return std::pair(Eigen::Vector3d(values[0], values[1], values[2]), Eigen::Vector3d(values[3], values[4], values[5]));
+}
+
+}  // namespace
+
+WorldContents read_world_contents(const Draft& draft) {
+  WorldContents world;
+  const Scenario& scenario = draft.scenario();
+  world.file = scenario.environment_file;
+  const XmlText xml(world.file, draft.text(world.file));
+  std::vector<ReadObject> all = read_objects(scenario.environment);
+  for (ElementNumber i = 0; i < xml.size(); ++i) {
+    if (xml.is(i, "ruler") && xml.at(i).parent == ElementNumber{0}) {
+      const Ruler& ruler = scenario.environment.rulers.at(world.rulers.size());
+      world.rulers.push_back({i, ruler.from, ruler.to});
+    }
+    if (!xml.is(i, "Body")) {
+      continue;
+    }
+    const bool moves = lower_case(xml.attribute(i, "type").value_or("")) == "dynamic";
+    const auto read = std::ranges::find_if(all, [&](const ReadObject& candidate) {
+      return !candidate.is_found && candidate.object.moves == moves && candidate.object.file == world.file &&
+             candidate.object.line == xml.at(i).tag.line;
+    });
+    if (read == all.end()) {
+      continue;
+    }
+    read->is_found = true;
+    WorldObject& object = read->object;
+    object.body = i;
+    object.group = group_of(xml, i);
+    for (const ElementNumber geom : xml.children(i, "Geom")) {
+      object.shapes.push_back(read_shape(xml, geom));
+    }
+    world.objects.push_back(std::move(object));
+  }
+  for (ReadObject& read : all) {
+    if (!read.is_found) {
+      world.objects.push_back(std::move(read.object));
+    }
+  }
+  for (WorldObject& object : world.objects) {
+    if (object.group) {
+      object.group_size = static_cast<std::size_t>(
+          std::ranges::count(world.objects, object.group, [](const WorldObject& other) { return other.group; }));
+    }
+  }
+  if (const auto comment = xml.comment_with("pose:")) {
+    if (const auto start =
+            read_start(std::string_view(xml.text()).substr(comment->begin, comment->end - comment->begin))) {
+      std::tie(world.start, world.start_degrees) = *start;
+    }
+  }
+  return world;
+}
+
+const WorldObject& WorldChange::object(std::size_t number) const {
+  if (number >= world_.objects.size()) {
+    throw InputError("object", 0, std::to_string(number),
+                     "a number below " + std::to_string(world_.objects.size()) + ", of an object of the world");
+  }
+  return world_.objects[number];
+}
+
+const WorldObject& WorldChange::editable(std::size_t number) const {
+  const WorldObject& found = object(number);
+  if (!found.body) {
+    throw InputError("object", 0, in_quotes(found.name) + " is in " + found.file,
+                     "an object of " + world_.file + "; other worlds may use that file, too");
+  }
+  return found;
+}
+
+/// Sets the content of a child, or adds the child as the last one.
+void WorldChange::set_tag(ElementNumber parent, std::string_view tag, const std::string& content) {
+  if (const auto child = xml().child(parent, tag)) {
+    apply(xml().set_content(*child, content));
+  } else {
+    apply(xml().add_last(parent, element_text(tag, content)));
+  }
+}
+
+/// Gives an element this pose in the frame around it. A rotation that is as it should be keeps its tags.
+void WorldChange::set_pose(ElementNumber element, const Pose& pose) {
+  const Pose before = local_pose(xml(), element);
+  const std::string position = vector_text(pose.position);
+  if (const auto translations = xml().children(element, "translation"); !translations.empty()) {
+    for (std::size_t i = translations.size(); i-- > 1;) {
+      apply(xml().remove(translations[i]));
+    }
+    apply(xml().set_content(translations.front(), position));
+  } else if (!pose.position.isZero(1e-9)) {
+    apply(xml().add_first(element, element_text("Translation", position)));
+  }
+  constexpr double same_angle = 1e-9;  // rad
+  if (before.orientation.angularDistance(pose.orientation) < same_angle) {
+    return;
+  }
+  std::vector<ElementNumber> rotations;
+  for (const ElementNumber child : xml().children(element)) {
+    if (is_one_of(xml(), child, rotation_tags)) {
+      rotations.push_back(child);
+    }
+  }
+  const std::optional<std::string> rotation = rotation_text(pose.orientation);
+  for (std::size_t i = rotations.size(); i-- > (rotation ? 1U : 0U);) {
+    apply(xml().remove(rotations[i]));
+  }
+  if (!rotation) {
+    return;
+  }
+  const std::string tag = element_text("RotationAxis", *rotation);
+  if (!rotations.empty()) {
+    const XmlText::Element& first = xml().at(rotations.front());
+    apply(xml().replace({first.tag.begin, first.end}, tag));
+  } else if (const auto translation = xml().child(element, "translation")) {
+    apply(xml().add_behind(*translation, tag));
+  } else {
+    apply(xml().add_first(element, tag));
+  }
+}
+
+void WorldChange::place(std::size_t number, const Pose& pose, bool with_group) {
+  const WorldObject& found = editable(number);
+  if (with_group && found.group) {
+    // The whole group turns and moves as its body does.
+    const Pose of_group = local_pose(xml(), *found.group);
+    set_pose(*found.group, pose * found.pose.inverse() * of_group);
+    return;
+  }
+  const Pose local = local_pose(xml(), *found.body);
+  const Pose frame = found.pose * local.inverse();
+  set_pose(*found.body, frame.inverse() * pose);
+}
+
+void WorldChange::set_size(std::size_t number, std::size_t shape_number, const std::vector<double>& size) {
+  const WorldObject& found = editable(number);
+  if (shape_number >= found.shapes.size()) {
+    throw InputError("shape", 0, std::to_string(shape_number), "a number below " + std::to_string(found.shapes.size()));
+  }
+  const WorldShape& shape = found.shapes[shape_number];
+  if (size.size() != shape.size.size() || size.empty()) {
+    throw InputError("size", 0, std::to_string(size.size()) + " numbers for " + in_quotes(shape.type),
+                     shape.size.empty() ? "a shape that has a size" : std::to_string(shape.size.size()) + " numbers");
+  }
+  for (const double length : size) {
+    if (!(length >= 2.0 * lengths.min && length <= lengths.max)) {
+      throw InputError("size", 0, number_text(length), "lengths up to " + number_text(lengths.max) + " m, above 0");
+    }
+  }
+  if (shape.type == "box" || shape.type == "heightfield") {
+    std::string halves;
+    for (const double side : size) {
+      halves += (halves.empty() ? "" : " ") + length_text(side / 2.0);
+    }
+    set_tag(shape.element, "extents", halves);
+    return;
+  }
+  set_tag(shape.element, "radius", length_text(size[0]));
+  if (size.size() > 1) {
+    set_tag(shape.element, "height", length_text(size[1]));
+  }
+}
+
+void WorldChange::set_friction(std::size_t number, std::optional<double> friction) {
+  const WorldObject& found = editable(number);
+  // From the last on, because tags that are added or removed change the numbers of those behind them.
+  for (std::size_t i = found.shapes.size(); i-- > 0;) {
+    const ElementNumber geom = found.shapes[i].element;
+    if (friction) {
+      set_tag(geom, "friction", number_text_of(*friction));
+    } else if (const auto tag = xml().child(geom, "friction")) {
+      apply(xml().remove(*tag));
+    }
+  }
+}
+
+void WorldChange::set_colour(std::size_t number, const Eigen::Vector3d& colour) {
+  const WorldObject& found = editable(number);
+  for (std::size_t i = found.shapes.size(); i-- > 0;) {
+    set_tag(found.shapes[i].element, "diffuseColor", vector_text(colour));
+  }
+}
+
+void WorldChange::set_moves(std::size_t number, bool moves) {
+  const WorldObject& found = editable(number);
+  if (moves && !xml().child(*found.body, "Mass")) {
+    constexpr std::string_view usual_mass = "<Mass type=\"mimicgeom\">\n  <density>500</density>\n</Mass>";
+    apply(xml().add_last(*found.body, usual_mass));
+  }
+  apply(xml().set_attribute(*found.body, "type", moves ? "dynamic" : "static"));
+}
+
+void WorldChange::set_mass(std::size_t number, double mass) {
+  const WorldObject& found = editable(number);
+  const std::optional<ElementNumber> element = xml().child(*found.body, "Mass");
+  if (!found.moves || !element) {
+    throw InputError("mass", 0,
+                     "object " + in_quotes(found.name) + (found.moves ? " without a <Mass>" : ", which does not move"),
+                     "an object that moves and has a mass of its own");
+  }
+  if (xml().child(*element, "inertia")) {
+    throw InputError("mass", 0, "an <inertia> in line " + std::to_string(xml().at(*element).tag.line),
+                     "a mass whose inertia follows from its shape");
+  }
+  if (const auto density = xml().child(*element, "density")) {
+    const XmlText::Element& tag = xml().at(*density);
+    apply(xml().replace({tag.tag.begin, tag.end}, element_text("total", number_text_of(mass))));
+  } else {
+    set_tag(*element, "total", number_text_of(mass));
+  }
+}
+
+void WorldChange::rename(std::size_t number, const std::string& name) {
+  const WorldObject& found = editable(number);
+  if (name.empty() || !is_visible_line(name) || shortened(name) != name) {
+    throw InputError("name", 0, in_quotes(name), "1 to 60 characters that a person sees");
+  }
+  const bool is_group_name = !xml().attribute(*found.body, "name") && found.group && found.group_size == 1 &&
+                             xml().at(*found.body).parent == found.group;
+  apply(xml().set_attribute(is_group_name ? *found.group : *found.body, "name", name));
+}
+
+void WorldChange::remove(std::size_t number, bool with_group) {
+  const WorldObject& found = editable(number);
+  const bool whole = found.group && (with_group || found.group_size == 1);
+  apply(xml().remove(whole ? *found.group : *found.body));
+}
+
+std::string WorldChange::free_name(const std::string& wanted) const {
+  std::set<std::string> taken;
+  for (const WorldObject& found : world_.objects) {
+    taken.insert(found.name);
+  }
+  std::string name = wanted;
+  for (unsigned i = 2; taken.contains(name); ++i) {
+    name = wanted + " " + std::to_string(i);
+  }
+  return name;
+}
+
+/// Behind the last one that is there, or as the last child.
+void WorldChange::add_kinbody(const std::string& lines) {
+  const std::vector<ElementNumber> all = xml().children(0, "KinBody");
+  apply(all.empty() ? xml().add_last(0, lines) : xml().add_behind(all.back(), lines));
+}
+
+void WorldChange::duplicate(std::size_t number, bool with_group, const Eigen::Vector3d& step, unsigned count) {
+  constexpr unsigned most_copies = 200;
+  if (count < 1 || count > most_copies) {
+    throw InputError("count", 0, std::to_string(count), "1 to " + std::to_string(most_copies));
+  }
+  const WorldObject& found = editable(number);
+  const bool whole = found.group && (with_group || found.group_size == 1);
+  const ElementNumber original = whole ? *found.group : *found.body;
+  const Pose local = local_pose(xml(), original);
+  const Pose frame = whole ? Pose{} : found.pose * local.inverse();
+  // From the last copy on, each directly behind the original.
+  for (unsigned i = count; i > 0; --i) {
+    const std::string lines = unindented(xml(), original);
+    apply(xml().add_behind(original, lines));
+    const ElementNumber copy = next_sibling(xml(), original);
+    Pose moved = local;
+    moved.position += frame.inverse().orientation * (static_cast<double>(i) * step);
+    set_pose(copy, moved);
+  }
+}
+
+void WorldChange::add(LibraryItem item, const std::map<std::string, double>& values, const Eigen::Vector3d& position,
+                      double turn_degrees) {
+  const LibraryDeclaration& declaration = library().at(static_cast<std::size_t>(item));
+  std::map<std::string, double> checked;
+  for (const LibraryParameter& parameter : declaration.parameters) {
+    checked.emplace(parameter.name, parameter.usual);
+  }
+  for (const auto& [name, value] : values) {
+    const auto parameter = std::ranges::find(declaration.parameters, name, &LibraryParameter::name);
+    if (parameter == declaration.parameters.end()) {
+      throw InputError("values", 0, in_quotes(name), "parameters of " + in_quotes(declaration.name));
+    }
+    if (!(value >= parameter->lowest && value <= parameter->highest) ||
+        (parameter->is_whole && value != std::floor(value))) {
+      throw InputError(name, 0, number_text(value),
+                       (parameter->is_whole ? "a whole number from " : "a number from ") +
+                           number_text(parameter->lowest) + " to " + number_text(parameter->highest));
+    }
+    checked[name] = value;
+  }
+  if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= coordinates.max) ||
+      !(std::abs(turn_degrees) <= turns.max)) {
+    throw InputError("position", 0, "a place that is out of range", "coordinates up to 10000 m, degrees up to 360");
+  }
+  add_kinbody(item_text(item, checked, free_name(std::string(declaration.name)), position, turn_degrees));
+}
+
+void WorldChange::add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const std::string lines = "<ruler>\n  " + element_text("from", vector_text(from)) + "\n  " +
+                            element_text("to", vector_text(to)) + "\n</ruler>";
+  apply(xml().add_last(0, lines));
+}
+
+void WorldChange::set_ruler(std::size_t ruler, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  if (ruler >= world_.rulers.size()) {
+    throw InputError("ruler", 0, std::to_string(ruler), "a number below " + std::to_string(world_.rulers.size()));
+  }
+  set_tag(world_.rulers[ruler].element, "from", vector_text(from));
+  set_tag(world_.rulers[ruler].element, "to", vector_text(to));
+}
+
+void WorldChange::remove_ruler(std::size_t ruler) {
+  if (ruler >= world_.rulers.size()) {
+    throw InputError("ruler", 0, std::to_string(ruler), "a number below " + std::to_string(world_.rulers.size()));
+  }
+  apply(xml().remove(world_.rulers[ruler].element));
+}
+
+void WorldChange::set_start(const Eigen::Vector3d& position, const Eigen::Vector3d& degrees) {
+  const std::string comment = "<!--Pose: ," + vector_text(position) + "," + vector_text(degrees) + ",-->";
+  if (const auto range = xml().comment_with("pose:")) {
+    apply(xml().replace(*range, comment));
+    return;
+  }
+  const std::string& text = xml().text();
+  const TextRange end{text.size(), text.size()};
+  apply(xml().replace(end, (text.ends_with('\n') ? "" : "\n") + comment + "\n"));
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,137 @@
+#pragma once
+
+// The environment of a draft as a person edits it: a list of objects, rulers, the start of the robot.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/authoring/draft.hpp"
+#include "sim/robot/pose.hpp"
+
+namespace proleg::sim {
+
+/// A shape of an object: a <Geom>.
+struct WorldShape {
+  ElementNumber element = 0;
+  std::string type;  ///< "box", "sphere", "cylinder", "trimesh" or "heightfield"
+  std::vector<double>
+      size;  ///< m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y
+  std::optional<double> friction;
+  std::optional<Eigen::Vector3d> colour;  ///< red, green, blue, 0 to 1
+};
+
+/// An object: a <Body>.
+struct WorldObject {
+  std::string name;
+  std::string file;  ///< where its <Body> is
+  int line = 0;
+  /// In the environment file; nothing: the object is in a file of its own, which other robots may share, and cannot be
+  /// edited here.
+  std::optional<ElementNumber> body;
+  /// The <KinBody> directly in the environment that has the body.
+  std::optional<ElementNumber> group;
+  std::size_t group_size = 1;  ///< bodies of the group
+  bool moves = false;
+  double mass = 0.0;  ///< kg, of one that moves
+  Pose pose;          ///< in the world
+  std::vector<WorldShape> shapes;
+};
+
+struct WorldRuler {
+  ElementNumber element = 0;
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+};
+
+struct WorldContents {
+  std::string file;                  ///< the environment file of the draft
+  std::vector<WorldObject> objects;  ///< in the order of the file; then those of other files
+  std::vector<WorldRuler> rulers;
+  /// The start of the robot as the file gives it; the robot may be lifted from there onto the ground.
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();          ///< m
+  Eigen::Vector3d start_degrees = Eigen::Vector3d::Zero();  ///< about x, then y, then z
+};
+
+[[nodiscard]] WorldContents read_world_contents(const Draft& draft);
+
+/// An item of the library of objects.
+enum class LibraryItem : std::uint8_t {
+  box,
+  ramp,
+  stairs,
+  cylinder,  ///< lies across the way: a log
+  sphere,
+  hills,  ///< waves of a cosine across the way, as the obstacle of the thesis
+  rough,  ///< a height field of random heights
+};
+
+/// A number of a library item that a person may set before it is added.
+struct LibraryParameter {
+  std::string_view name;
+  std::string_view help;
+  std::string_view unit;
+  double lowest;
+  double highest;
+  double usual;
+  bool is_whole = false;
+};
+
+struct LibraryDeclaration {
+  LibraryItem item;
+  std::string_view name;  ///< also the name of a new object
+  std::string_view help;  ///< a plain sentence
+  std::vector<LibraryParameter> parameters;
+};
+
+/// All items, in the order of LibraryItem.
+[[nodiscard]] const std::vector<LibraryDeclaration>& library();
+
+/// Changes of a world. All of them refer to the world as read_world_contents() gives it for the draft before the
+/// change; a number of an object or a shape that does not exist, an object that cannot be edited, and a value out of
+/// range are an InputError. Lengths are metres, angles degrees.
+class WorldChange {
+ public:
+  WorldChange(const WorldContents& world, DraftChange& change) : world_(world), change_(change) {}
+
+  /// Puts an object somewhere in the world, or the whole group that it belongs to, as a rigid body.
+  void place(std::size_t object, const Pose& pose, bool with_group);
+  void set_size(std::size_t object, std::size_t shape, const std::vector<double>& size);
+  /// The coefficient of all its shapes; nothing: that of what it touches holds.
+  void set_friction(std::size_t object, std::optional<double> friction);
+  void set_colour(std::size_t object, const Eigen::Vector3d& colour);
+  /// Whether it moves when something pushes it.
+  void set_moves(std::size_t object, bool moves);
+  void set_mass(std::size_t object, double mass);
+  void rename(std::size_t object, const std::string& name);
+  void remove(std::size_t object, bool with_group);
+  /// Adds `count` copies, each moved by `step` from the one before.
+  void duplicate(std::size_t object, bool with_group, const Eigen::Vector3d& step, unsigned count);
+  /// Adds an item of the library. values: by the names of its parameters; the usual values for those that are missing.
+  void add(LibraryItem item, const std::map<std::string, double>& values, const Eigen::Vector3d& position,
+           double turn_degrees);
+  void add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  void set_ruler(std::size_t ruler, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  void remove_ruler(std::size_t ruler);
+  void set_start(const Eigen::Vector3d& position, const Eigen::Vector3d& degrees);
+
+ private:
+  [[nodiscard]] const WorldObject& object(std::size_t number) const;
+  [[nodiscard]] const WorldObject& editable(std::size_t number) const;
+  [[nodiscard]] const XmlText& xml() { return change_.xml(world_.file); }
+  void apply(const TextPatch& patch) { change_.apply(world_.file, patch); }
+  void set_tag(ElementNumber parent, std::string_view tag, const std::string& content);
+  void set_pose(ElementNumber element, const Pose& pose);
+  void add_kinbody(const std::string& lines);
+  [[nodiscard]] std::string free_name(const std::string& wanted) const;
+
+  const WorldContents& world_;
+  DraftChange& change_;
+};
+
+}  // namespace proleg::sim

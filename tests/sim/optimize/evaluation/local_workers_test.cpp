@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -318,7 +319,7 @@ TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatIsStopped) {
 TEST_F(LocalWorkersTest, NameAndThenReplaceOneThatComputesMuchLongerThanTheOthers) {
   // A loop without a pause would not let the virtual time pass.
   LocalWorkers workers(experiment_, 1, once([] {
-                         for (volatile unsigned turns = 0;; turns = turns + 1) {
+                         for (std::atomic<unsigned> turns = 0;; ++turns) {
                            if (turns % 100'000 == 0) {
                              std::this_thread::sleep_for(milliseconds(10));
                            }

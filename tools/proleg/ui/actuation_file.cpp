@@ -1,5 +1,6 @@
 #include "tools/proleg/ui/actuation_file.hpp"
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/program_run.hpp"
+#include "tools/proleg/ui/scenario_copy.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -34,20 +36,6 @@ json entries_json(const sim::Scenario& file, std::span<const sim::ActuationEdit>
                        {"joints", std::move(joints)}});
   }
   return entries;
-}
-
-fs::path absolute_path(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
-
-/// The deepest folder that has all files of the scenario.
-fs::path common_folder(const sim::Scenario& scenario) {
-  fs::path common = absolute_path(scenario.path).parent_path();
-  for (const sim::SourceFile& source : scenario.sources) {
-    const fs::path path = absolute_path(source.path);
-    while (path.lexically_relative(common).begin()->string() == "..") {
-      common = common.parent_path();
-    }
-  }
-  return common;
 }
 
 }  // namespace
@@ -107,29 +95,17 @@ sim::Scenario write_actuation(const sim::Scenario& file, std::span<const sim::Ac
 }
 
 sim::Scenario write_copy(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits, const fs::path& folder) {
-  const fs::path root = common_folder(file);
-  const auto place_of = [&](const std::string& path) { return folder / absolute_path(path).lexically_relative(root); };
-  std::error_code error;
-  if (!fs::create_directory(folder, error)) {
-    if (error) {
-      throw FileError(folder, "cannot be created: " + error.message());
+  std::vector<sim::SourceFile> sources = file.sources;
+  for (sim::SourceFile& source : sources) {
+    if (source.path == file.actuation_file) {
+      source.text = sim::edited(source.text, edits);
     }
-    throw InputError(folder.string(), 0, "a folder that exists", "a new name");
   }
-  try {
-    for (const sim::SourceFile& source : file.sources) {
-      fs::create_directories(place_of(source.path).parent_path());
-      write_file(place_of(source.path),
-                 source.path == file.actuation_file ? sim::edited(source.text, edits) : source.text);
-    }
-    sim::DiskFiles disk;
-    sim::Scenario copy = sim::read_scenario(place_of(file.path), disk, file.overrides);
-    copy.moves = file.moves;  // of the command line, as the overrides
-    return copy;
-  } catch (...) {
-    fs::remove_all(folder, error);
-    throw;
-  }
+  const std::map<std::string, std::string> names = copy_sources(sources, folder);
+  sim::DiskFiles disk;
+  sim::Scenario copy = sim::read_scenario(names.at(sim::name_of(file.path)), disk, file.overrides);
+  copy.moves = file.moves;  // of the command line, as the overrides
+  return copy;
 }
 
 }  // namespace proleg::tools

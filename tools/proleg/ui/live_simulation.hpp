@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "sim/authoring/actuation_edit.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/record/recorder.hpp"
-#include "sim/authoring/actuation_edit.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"

@@ -14,6 +14,8 @@ namespace proleg::tools {
 void SessionRouter::operate(const host::OperationRequest& request) {
   if (request.name.starts_with(recording_operations)) {
     recordings_.operate(request);
+  } else if (request.name.starts_with(draft_operations) || request.name.starts_with(world_operations)) {
+    draft_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {
     remote_.operate(request);
   } else {

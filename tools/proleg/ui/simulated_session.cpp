@@ -20,6 +20,7 @@
 #include "tools/proleg/document/telemetry_row.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
+#include "tools/proleg/ui/scenario_copy.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -149,6 +150,7 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
                                                             {"file.diff", &SimulatedSession::tell_file_diff},
                                                             {"file.apply", &SimulatedSession::apply_to_file},
                                                             {"file.save_as", &SimulatedSession::save_as},
+                                                            {"load_draft", &SimulatedSession::load_draft},
                                                             {"ping", &SimulatedSession::ping}};
   const Handler handler = handler_of(handlers, operation.name);
   require_possible(operation.name);
@@ -156,7 +158,7 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
 }
 
 void SimulatedSession::require_possible(const std::string& operation) const {
-  if (live_ == nullptr && operation != "continue" && operation != "ping") {
+  if (live_ == nullptr && operation != "continue" && operation != "load_draft" && operation != "ping") {
     throw std::runtime_error("there is no simulation; continue one from a recording");
   }
   if (is_repeating_ && operation != "pause" && operation != "ping") {
@@ -171,6 +173,9 @@ void SimulatedSession::require_sound() const {
 }
 
 void SimulatedSession::require_file() const {
+  if (is_unsaved_draft_) {
+    throw std::runtime_error("this simulation is of a draft that is not saved; save it in Make, and simulate it again");
+  }
   if (!options_.has_file) {
     throw std::runtime_error(
         "this robot has no file yet; Save as writes its files, as `proleg new robot --joints 5` does");
@@ -312,6 +317,7 @@ json SimulatedSession::continue_recording(const json& arguments) {
   end_recording();
   live_ = std::move(live);
   repeated_ = std::move(repeated);
+  is_unsaved_draft_ = false;
   options_.command = repeated_->command();
   failure_.clear();
   ++run_;
@@ -321,6 +327,30 @@ json SimulatedSession::continue_recording(const json& arguments) {
   is_repeating_ = true;
   publish_robot();
   return {{"tick", *tick}};
+}
+
+json SimulatedSession::load_draft(const json& /*arguments*/) {
+  const PresentDraft::Content draft = options_.draft == nullptr ? PresentDraft::Content{} : options_.draft->get();
+  if (draft.scenario == nullptr) {
+    throw std::runtime_error("there is no draft");
+  }
+  auto live = std::make_unique<LiveSimulation>(*draft.scenario, std::vector<std::string>{}, nullptr);
+  end_recording();
+  live_ = std::move(live);
+  repeated_.reset();
+  is_repeating_ = false;
+  is_unsaved_draft_ = !draft.is_saved;
+  options_.has_file = draft.is_saved;
+  options_.command =
+      draft.is_saved && options_.command_of_copy ? options_.command_of_copy(draft.scenario->path) : std::string();
+  failure_.clear();
+  steps_left_ = 0;
+  ++run_;
+  pace_ = RunPace(live_->scenario().kernel.tick_period_us);
+  pace_.begin(Clock::now());
+  set_state(state_ == State::running ? State::running : State::paused);
+  publish_robot();
+  return {{"revision", draft.revision}};
 }
 
 json SimulatedSession::tell_file_diff(const json& /*arguments*/) {
@@ -338,17 +368,11 @@ json SimulatedSession::apply_to_file(const json& arguments) {
 }
 
 json SimulatedSession::save_as(const json& arguments) {
-  if (repeated_ != nullptr) {
+  if (repeated_ != nullptr || is_unsaved_draft_) {
     require_file();
   }
   const auto name = argument<std::string>(arguments, "folder", "the name of a new folder");
-  const std::filesystem::path folder(name.value_or(""));
-  const bool is_plain = is_visible_line(folder.string()) && shortened(folder.string()) == folder.string();
-  if (folder.empty() || folder.filename() != folder || name->front() == '.' || !is_plain) {
-    throw InputError("folder", 0, in_quotes(one_line(folder.string())),
-                     "a short name without a path, for a new folder");
-  }
-  live_->save_as(options_.recordings / folder);
+  live_->save_as(folder_of_copy(options_.recordings, name.value_or("")));
   const std::string& file = live_->file().path;
   options_.has_file = true;
   if (options_.command_of_copy) {
@@ -364,6 +388,9 @@ json SimulatedSession::ping(const json& /*arguments*/) { return json::object(); 
 json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   if (repeated_ != nullptr && repeated_->losses().any()) {
     throw std::runtime_error("the frames that were lost in " + repeated_->name() + " are in no option of a command");
+  }
+  if (is_unsaved_draft_) {
+    require_file();
   }
   std::string text = options_.command;
   for (const std::string& word : live_->repeating_words()) {

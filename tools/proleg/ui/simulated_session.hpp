@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/proleg/ui/live_simulation.hpp"
+#include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
 #include "tools/proleg/ui/repeated_run.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -81,6 +82,7 @@ struct SimulatedSessionOptions {
   bool has_file = true;  ///< the files of the scenario are on disk
   std::string build_id;
   bool starts_paused = false;
+  const PresentDraft* draft = nullptr;  ///< what `load_draft` simulates; null: nothing. Must outlive the session
 };
 
 class SimulatedSession final : private SessionThread {
@@ -144,6 +146,7 @@ class SimulatedSession final : private SessionThread {
   nlohmann::json tell_file_diff(const nlohmann::json& arguments);
   nlohmann::json apply_to_file(const nlohmann::json& arguments);
   nlohmann::json save_as(const nlohmann::json& arguments);
+  nlohmann::json load_draft(const nlohmann::json& arguments);
   nlohmann::json ping(const nlohmann::json& arguments);
   nlohmann::json tell_command_line(const nlohmann::json& arguments);
 
@@ -153,6 +156,7 @@ class SimulatedSession final : private SessionThread {
   // The members from here on are used on the session's thread only.
   std::unique_ptr<RepeatedRun> repeated_;  ///< the recording that is continued; it has the losses of the simulation
   bool is_repeating_ = false;              ///< its ticks are computed again
+  bool is_unsaved_draft_ = false;          ///< the simulation is that of a draft that is not on disk
   std::unique_ptr<LiveSimulation> live_;
   RunPace pace_;
   State state_ = State::running;

@@ -19,6 +19,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/scenario/robot_move.hpp"
+#include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"
@@ -28,6 +29,7 @@
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/draft_session.hpp"
 #include "tools/proleg/ui/page_access.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
@@ -69,8 +71,7 @@ class NewRobot final : public sim::FileSource {
 };
 
 /// The scenario; for a simulation as its files have it, because the session applies the settings.
-ScenarioRun prepare(ScenarioOptions& options, bool is_simulated) {
-  NewRobot new_robot;
+ScenarioRun prepare(ScenarioOptions& options, NewRobot& new_robot, bool is_simulated) {
   const bool has_file = !options.file.empty();
   if (!has_file) {
     options.file = new_robot.name();
@@ -184,11 +185,13 @@ int serve(UiOptions& options) {
   const std::uint16_t port = parse_port(options.port);
   const RecordedSessionOptions recordings = recordings_of(options);
   std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
+  NewRobot new_robot;
+  sim::DiskFiles disk;
   std::optional<ScenarioRun> run;
   if (recordings.is_alone) {
     refuse_robot_options(options);
   } else {
-    run = prepare(options.scenario, !options.bus.bus);
+    run = prepare(options.scenario, new_robot, !options.bus.bus);
     print_warnings("proleg ui", run->scenario);
   }
   const std::filesystem::path page_folder =
@@ -198,7 +201,7 @@ int serve(UiOptions& options) {
   server.certificate = std::move(certificate);
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
-        RecordedSession::free_operations(), RemoteSession::free_operations()}) {
+        RecordedSession::free_operations(), DraftSession::free_operations(), RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -209,12 +212,17 @@ int serve(UiOptions& options) {
   catch_interrupts();
   boost::asio::io_context context{1};
   SessionRequests recording_requests;
+  SessionRequests draft_requests;
   SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
-  SessionRouter router(recording_requests, remote, requests);
+  SessionRouter router(recording_requests, draft_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
+  PresentDraft present_draft;
+  const DraftSession draft(run ? std::optional(run->scenario) : std::nullopt,
+                           has_file ? static_cast<sim::FileSource&>(disk) : new_robot, {options.recordings, has_file},
+                           draft_requests, present_draft, page);
   const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
@@ -230,7 +238,7 @@ int serve(UiOptions& options) {
         std::move(live),
         SimulatedSessionOptions{recordings.folder, run ? command_of(options, has_file) : std::string(),
                                 [&](const std::string& file) { return command_of(options.scenario, file); }, has_file,
-                                build_id, options.paused},
+                                build_id, options.paused, &present_draft},
         requests, remote);
   }
   const PageAddress address(page.origin(), page.port(), token.text());

@@ -140,7 +140,7 @@ TEST_F(ActuationFile, OnlyAPresentListOfDifferencesIsApplied) {
     return chosen_edits(live.file(), live.file_edits(), {{"diff", diff["diff"]}, {"entries", numbers}});
   };
   ASSERT_EQ(chosen({1}).size(), 1U);
-  EXPECT_EQ(chosen({1})[0].position, edits[1].position);
+  EXPECT_EQ(chosen({1})[0].patch.position, edits[1].patch.position);
   for (const json& numbers : {json::array(), json({2}), json({0, 0}), json({-1}), json("all"), json()}) {
     EXPECT_THROW(chosen(numbers), InputError) << numbers;
   }

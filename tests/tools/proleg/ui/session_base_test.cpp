@@ -7,24 +7,30 @@
 namespace proleg::tools {
 namespace {
 
-TEST(SessionRouter, RobotRemoteControlAndRecordingsGetTheirOwn) {
+TEST(SessionRouter, RobotRemoteControlRecordingsAndDraftGetTheirOwn) {
   SessionRequests recordings;
+  SessionRequests draft;
   SessionRequests remote;
   SessionRequests robot;
-  SessionRouter router(recordings, remote, robot);
+  SessionRouter router(recordings, draft, remote, robot);
   router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
   router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
   router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
+  router.operate({4, "draft.undo", nlohmann::json::object(), 1, "a test"});
+  router.operate({5, "world.add", nlohmann::json::object(), 1, "a test"});
   router.holder_changed(true, false);
   EXPECT_EQ(recordings.take_operation()->request, 1U);
   EXPECT_EQ(robot.take_operation()->request, 2U);
   EXPECT_EQ(remote.take_operation()->request, 3U);
+  EXPECT_EQ(draft.take_operation()->request, 4U);
+  EXPECT_EQ(draft.take_operation()->request, 5U);
+  EXPECT_FALSE(draft.take_operation());
   EXPECT_FALSE(robot.take_operation());
   EXPECT_FALSE(remote.take_operation());
   EXPECT_FALSE(recordings.take_operation());
   EXPECT_TRUE(robot.take_holder().is_there);
   EXPECT_TRUE(remote.take_holder().is_there);
-  router.stop({4, "a test"});
+  router.stop({6, "a test"});
   std::deque<host::OperationRequest> outdated;
   EXPECT_TRUE(recordings.take_stops(outdated).empty());
   EXPECT_EQ(robot.take_stops(outdated).size(), 1U);

@@ -1,0 +1,266 @@
+#include "tools/proleg/ui/draft_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "shipped.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tools/proleg/ui/scenario_copy.hpp"
+#include "tools/proleg/ui/simulated_session.hpp"
+#include "viewers.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using nlohmann::json;
+
+class DraftSessionTest : public ::testing::Test {
+ protected:
+  /// A copy of a shipped scenario, as a user has it.
+  DraftSessionTest() {
+    const sim::Scenario shipped = sim::shipped("travelling_wave/uniform");
+    file_ = copy_sources(shipped.sources, folder_ / "mine").at(shipped.sources.front().path);
+    open();
+  }
+  void open(bool has_file = true) {
+    session_.reset();
+    requests_.emplace();
+    session_.emplace(sim::read_scenario(file_, disk_), disk_, DraftSessionOptions{folder_ / "", has_file}, *requests_,
+                     present_, viewers_);
+  }
+
+  Viewers::Answer ask(const std::string& name, json arguments = json::object()) {
+    if (name.starts_with("world.") && !arguments.contains("layout")) {
+      arguments["layout"] = viewers_.document("draft")["layout"];
+    }
+    requests_->operate({++request_, name, std::move(arguments), 1, "a test"});
+    return viewers_.answer(request_);
+  }
+  json must(const std::string& name, json arguments = json::object()) {
+    const Viewers::Answer answer = ask(name, std::move(arguments));
+    EXPECT_TRUE(answer.is_done) << name << ": " << answer.text;
+    return answer.is_done ? json::parse(answer.text) : json();
+  }
+  /// The draft of a revision, or a later one.
+  json draft(std::uint64_t revision) {
+    return viewers_.document_when("draft", [&](const json& document) {
+      return document.contains("revision") && document["revision"] >= revision;
+    });
+  }
+  json add_box() {
+    const json answer = must("world.add", {{"item", "box"}, {"values", {{"height", 0.05}}}, {"position", {0, 1, 0}}});
+    return draft(answer["revision"]);
+  }
+  [[nodiscard]] std::string world_file() const { return folder_ / "mine/flat.environment.xml"; }
+
+  TemporaryFolder folder_;
+  std::string file_;
+  sim::DiskFiles disk_;
+  Viewers viewers_;
+  PresentDraft present_;
+  std::optional<SessionRequests> requests_;
+  std::optional<DraftSession> session_;
+  std::uint64_t request_ = 0;
+};
+
+TEST_F(DraftSessionTest, ShowsTheWorldOfTheScenario) {
+  const json document = draft(0);
+  EXPECT_EQ(document["file"], file_);
+  EXPECT_EQ(document["changed"], json::array());
+  EXPECT_EQ(document["undo"], json());
+  ASSERT_EQ(document["world"]["objects"].size(), 1U);
+  EXPECT_EQ(document["world"]["objects"][0]["name"], "floor");
+  EXPECT_EQ(document["world"]["start"]["position"], json({0.0, 0.0, 0.026}));
+  EXPECT_EQ(viewers_.document("draft_robot")["terrain"].size(), 1U);
+  EXPECT_GE(viewers_.document("library").size(), 7U);
+}
+
+TEST_F(DraftSessionTest, AnObjectIsAddedMovedAndTakenBack) {
+  json document = add_box();
+  ASSERT_EQ(document["world"]["objects"].size(), 2U);
+  EXPECT_EQ(document["undo"], "add box");
+  EXPECT_EQ(document["changed"], json({world_file()}));
+  EXPECT_EQ(viewers_.document("draft_robot")["terrain"].size(), 2U);
+  for (const double x : {0.1, 0.2, 0.3}) {
+    must("world.place", {{"object", 1}, {"pose", {x, 1, 0.025, 1, 0, 0, 0}}, {"gesture", 7}});
+  }
+  document = draft(4);
+  EXPECT_EQ(document["undo"], "move box");
+  EXPECT_EQ(document["world"]["objects"][1]["pose"][0], 0.3);
+  must("draft.undo");
+  document = draft(5);
+  EXPECT_EQ(document["world"]["objects"][1]["pose"][0], 0.0) << "a drag is one entry";
+  EXPECT_EQ(document["redo"], "move box");
+  must("draft.undo");
+  EXPECT_EQ(draft(6)["changed"], json::array());
+  EXPECT_EQ(ask("draft.undo").text, "there is nothing to undo");
+}
+
+TEST_F(DraftSessionTest, SavesWhatHasChangedAndNothingElse) {
+  const std::string before = file_contents(world_file());
+  add_box();
+  EXPECT_EQ(file_contents(world_file()), before);
+  const json diff = must("draft.diff");
+  ASSERT_EQ(diff["files"].size(), 1U);
+  EXPECT_EQ(diff["files"][0]["old"], before);
+  EXPECT_EQ(must("draft.save")["written"], 1);
+  EXPECT_EQ(file_contents(world_file()), diff["files"][0]["new"]);
+  EXPECT_EQ(viewers_.document_when("draft", [](const json& document) { return document["changed"].empty(); })["undo"],
+            "add box");
+  must("draft.undo");
+  EXPECT_EQ(draft(2)["changed"], json({world_file()})) << "undo goes back behind Save";
+}
+
+TEST_F(DraftSessionTest, NeverOverwritesAFileThatHasChangedMeanwhile) {
+  add_box();
+  std::ofstream(world_file(), std::ios::app) << "<!-- by hand -->\n";
+  const std::string by_hand = file_contents(world_file());
+  EXPECT_NE(ask("draft.save").text.find("has changed since this program read it"), std::string::npos);
+  EXPECT_EQ(file_contents(world_file()), by_hand);
+  EXPECT_TRUE(ask("draft.save_as", {{"folder", "other"}}).is_done);
+  EXPECT_NE(file_contents(folder_ / "other/flat.environment.xml").find("name=\"box\""), std::string::npos);
+  EXPECT_EQ(file_contents(world_file()), by_hand);
+}
+
+TEST_F(DraftSessionTest, SaveAsMakesACompleteCopyAndGoesOnThere) {
+  add_box();
+  EXPECT_FALSE(ask("draft.save_as", {{"folder", "mine"}}).is_done) << "it exists";
+  EXPECT_FALSE(ask("draft.save_as", {{"folder", "../out"}}).is_done);
+  EXPECT_FALSE(ask("draft.save_as", {{"folder", ""}}).is_done);
+  EXPECT_FALSE(ask("draft.save_as").is_done);
+  const std::string copy = must("draft.save_as", {{"folder", "copy"}})["file"];
+  EXPECT_EQ(sim::read_scenario(copy, disk_).environment.objects.size(), 2U);
+  must("draft.undo");
+  must("draft.save");
+  EXPECT_EQ(sim::read_scenario(copy, disk_).environment.objects.size(), 1U);
+}
+
+TEST_F(DraftSessionTest, AScenarioWithoutFilesIsSavedAsACopy) {
+  open(false);
+  add_box();
+  EXPECT_NE(ask("draft.save").text.find("no files yet"), std::string::npos);
+  must("draft.save_as", {{"folder", "new"}});
+  must("draft.save");
+}
+
+TEST_F(DraftSessionTest, AnOperationForAnotherListOfObjectsIsRefused) {
+  const json before = draft(0);
+  add_box();
+  const Viewers::Answer answer = ask("world.remove", {{"object", 0}, {"layout", before["layout"]}});
+  EXPECT_FALSE(answer.is_done);
+  EXPECT_NE(answer.text.find("have changed meanwhile"), std::string::npos);
+}
+
+TEST_F(DraftSessionTest, BadArgumentsAreRefusedWithTheirReason) {
+  add_box();
+  struct Row {
+    const char* name;
+    json arguments;
+    const char* reason;
+  };
+  const json place = {0, 0, 0, 1, 0, 0, 0};
+  for (const Row& row :
+       std::vector<Row>{{"world.fly", {}, "one of world.add"},
+                        {"draft.fly", {}, "one of draft.diff"},
+                        {"world.place", {{"pose", place}}, "object: found none"},
+                        {"world.place", {{"object", -1}, {"pose", place}}, "object: found -1"},
+                        {"world.place", {{"object", 9}, {"pose", place}}, "object: found 9"},
+                        {"world.place", {{"object", 1}}, "pose: found 0 numbers"},
+                        {"world.place", {{"object", 1}, {"pose", {0, 0, 0, 0, 0, 0, 0}}}, "quaternion"},
+                        {"world.place", {{"object", 1}, {"pose", {0, 0, 1e300, 1, 0, 0, 0}}}, "flat.environment.xml"},
+                        {"world.place", {{"object", 1}, {"pose", "there"}}, "pose"},
+                        {"world.resize", {{"object", 1}, {"shape", 0}, {"size", {1, 2}}}, "2 numbers"},
+                        {"world.friction", {{"object", 1}, {"value", "ice"}}, "value"},
+                        {"world.mass", {{"object", 1}, {"value", 1}}, "does not move"},
+                        {"world.rename", {{"object", 1}, {"name", 5}}, "name"},
+                        {"world.add", {{"item", "castle"}, {"position", {0, 0, 0}}}, "an item of the library"},
+                        {"world.add", {{"item", "box"}, {"position", {0, 0}}}, "2 numbers"},
+                        {"world.add", {{"item", "box"}, {"position", {0, 0, 0}}, {"values", {1, 2}}}, "values"},
+                        {"world.duplicate", {{"object", 1}, {"step", {1, 0, 0}}, {"count", 1000000}}, "1 to 200"},
+                        {"world.start", {{"position", {0, 0, 0}}}, "degrees"},
+                        {"world.ruler", {{"ruler", 3}, {"from", {0, 0, 0}}, {"to", {0, 1, 0}}}, "ruler: found 3"}}) {
+    const Viewers::Answer answer = ask(row.name, row.arguments);
+    EXPECT_FALSE(answer.is_done) << row.name;
+    EXPECT_NE(answer.text.find(row.reason), std::string::npos) << row.name << ": " << answer.text;
+    EXPECT_EQ(answer.text.find('\n'), std::string::npos);
+  }
+  EXPECT_EQ(draft(0)["revision"], 1) << "nothing has changed";
+}
+
+// What the path says is what a simulation then does, to the bit of the reduced engine.
+TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
+  must("world.friction", {{"object", 0}, {"value", 0.3}});
+  const json foresight = viewers_.document_when(
+      "foresight", [](const json& document) { return document.contains("revision") && document["revision"] == 1; });
+  ASSERT_EQ(foresight["failure"], json()) << foresight;
+  EXPECT_EQ(foresight["engine"], "reduced");
+  must("draft.save");
+  sim::Scenario scenario = sim::read_scenario(file_, disk_);
+  scenario.environment.engine = sim::PhysicsEngine::reduced;
+  sim::Simulation simulation(scenario);
+  const json& path = foresight["path"];
+  ASSERT_EQ(path.size(), 301U);
+  for (std::size_t point = 1; point < path.size(); ++point) {
+    for (int tick = 0; tick < 10; ++tick) {
+      simulation.advance();
+    }
+    const Eigen::Vector3d& head = simulation.plant().link_poses().front().position;
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(path[point][static_cast<std::size_t>(axis)], std::round(head[axis] * 1e4) / 1e4);
+    }
+  }
+  EXPECT_EQ(foresight["distance"], simulation.measures()[sim::Measure::distance]);
+}
+
+TEST_F(DraftSessionTest, AWorldThatTheReducedEngineLacksIsForeseenByOde) {
+  must("world.add", {{"item", "sphere"}, {"position", {0, 2, 0}}});
+  const json foresight = viewers_.document_when(
+      "foresight", [](const json& document) { return document.contains("revision") && document["revision"] == 1; });
+  EXPECT_EQ(foresight["engine"], "ode");
+  EXPECT_EQ(foresight["failure"], json());
+}
+
+TEST_F(DraftSessionTest, ItsSimulationIsTheOneOfItsFiles) {
+  add_box();
+  Viewers robot_viewers;
+  SessionRequests robot_requests;
+  const auto options = [&] {
+    SimulatedSessionOptions result{
+        folder_ / "", "proleg simulate", [](const std::string& file) { return "simulate " + file; }, true, "test",
+        true};
+    result.draft = &present_;
+    return result;
+  };
+  SimulatedSession robot(nullptr, options(), robot_requests, robot_viewers);
+  robot_requests.operate({1, "load_draft", json::object(), 1, "a test"});
+  ASSERT_TRUE(robot_viewers.answer(1).is_done);
+  EXPECT_EQ(robot_viewers.document("robot")["terrain"].size(), 2U);
+  robot_requests.operate({2, "command_line", json::object(), 1, "a test"});
+  EXPECT_NE(robot_viewers.answer(2).text.find("not saved"), std::string::npos);
+  must("draft.save");
+  static_cast<void>(viewers_.document_when("draft", [](const json& document) { return document["changed"].empty(); }));
+  robot_requests.operate({3, "load_draft", json::object(), 1, "a test"});
+  ASSERT_TRUE(robot_viewers.answer(3).is_done);
+  robot_requests.operate({4, "command_line", json::object(), 1, "a test"});
+  EXPECT_NE(robot_viewers.answer(4).text.find("simulate " + file_), std::string::npos) << robot_viewers.answer(4).text;
+}
+
+TEST(DraftSessionWithoutAScenario, RefusesEveryChange) {
+  Viewers viewers;
+  PresentDraft present;
+  SessionRequests requests;
+  sim::DiskFiles disk;
+  const DraftSession session({}, disk, {}, requests, present, viewers);
+  requests.operate({1, "world.add", {{"item", "box"}}, 1, "a test"});
+  EXPECT_NE(viewers.answer(1).text.find("there is no scenario to change"), std::string::npos);
+  EXPECT_EQ(viewers.document("draft"), json());
+}
+
+}  // namespace
+}  // namespace proleg::tools

@@ -1,0 +1,224 @@
+#include "tools/proleg/ui/draft_session.hpp"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tools/proleg/common/program_run.hpp"
+#include "tools/proleg/document/robot_document.hpp"
+#include "tools/proleg/ui/draft_document.hpp"
+#include "tools/proleg/ui/scenario_copy.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using nlohmann::json;
+
+json lines_json(const std::vector<std::string>& texts) {
+  json lines = json::array();
+  for (const std::string& text : texts) {
+    lines.push_back(one_line(text));
+  }
+  return lines;
+}
+
+}  // namespace
+
+DraftSession::DraftSession(std::optional<sim::Scenario> scenario, sim::FileSource& disk, DraftSessionOptions options,
+                           SessionRequests& requests, PresentDraft& present, host::SessionOutput& output)
+    : SessionThread(requests, output), options_(std::move(options)), present_(present), disk_(disk) {
+  if (scenario) {
+    draft_.emplace(std::move(*scenario), disk);
+    foresight_.emplace(output);
+    output.publish("library", library_json());
+  }
+  publish();
+  begin_thread();
+}
+
+DraftSession::~DraftSession() { end_thread(); }
+
+void DraftSession::serve() {
+  static_cast<void>(requests_.take_holder());
+  take_operations();
+  publish();
+  requests_.wait();
+}
+
+sim::Draft& DraftSession::draft() {
+  if (!draft_) {
+    throw std::runtime_error("there is no scenario to change; start `proleg ui` with one, or without FILE");
+  }
+  return *draft_;
+}
+
+void DraftSession::publish() {
+  if (!draft_) {
+    if (std::exchange(is_new_, false)) {
+      output_.publish("draft", json());
+    }
+    return;
+  }
+  const sim::Draft& draft = *draft_;
+  if (published_ == draft.revision() + 1 && !is_new_) {
+    return;
+  }
+  const sim::Scenario& scenario = draft.scenario();
+  if (published_ != draft.revision() + 1) {
+    json robot = robot_document(scenario, "draft");
+    // Meshes are large and seldom change.
+    json meshes = std::exchange(robot["meshes"], json::array());
+    if (std::string text = meshes.dump(); text != published_meshes_ || published_ == 0) {
+      published_meshes_ = std::move(text);
+      output_.publish("draft_meshes", meshes);
+    }
+    output_.publish("draft_robot", robot);
+  }
+  const auto shared = std::make_shared<const sim::Scenario>(scenario);
+  if (published_ != draft.revision() + 1) {
+    foresight_->look_at(shared, draft.revision());
+  }
+  const sim::WorldContents world = read_world_contents(draft);
+  note_layout(world);
+  std::vector<std::string> changed;
+  for (const sim::Draft::ChangedFile& file : draft.changed_files()) {
+    changed.push_back(file.name);
+  }
+  output_.publish("draft", {{"file", one_line(scenario.path)},
+                            {"revision", draft.revision()},
+                            {"undo", draft.undo_label() ? json(*draft.undo_label()) : json()},
+                            {"redo", draft.redo_label() ? json(*draft.redo_label()) : json()},
+                            {"changed", lines_json(changed)},
+                            {"has_file", options_.has_file},
+                            {"is_shipped", is_shipped(scenario.path)},
+                            {"warnings", lines_json(scenario.warnings)},
+                            {"world", world_json(world)},
+                            {"layout", layout_since_}});
+  present_.set({shared, draft.revision(), options_.has_file && changed.empty()});
+  published_ = draft.revision() + 1;
+  is_new_ = false;
+}
+
+void DraftSession::note_layout(const sim::WorldContents& world) {
+  std::vector<std::size_t> layout{world.rulers.size()};
+  for (const sim::WorldObject& object : world.objects) {
+    layout.push_back(object.shapes.size());
+  }
+  if (layout != layout_) {
+    layout_ = std::move(layout);
+    layout_since_ = draft_->revision();
+  }
+}
+
+json DraftSession::carry_out(const host::OperationRequest& operation) {
+  if (operation.name.starts_with(world_operations)) {
+    change_world(operation);
+    publish();  // the next operation that waits is compared with this layout
+    return {{"revision", draft().revision()}};
+  }
+  static const std::map<std::string_view, Handler> handlers{{"draft.undo", &DraftSession::undo},
+                                                            {"draft.redo", &DraftSession::redo},
+                                                            {"draft.diff", &DraftSession::diff},
+                                                            {"draft.save", &DraftSession::save},
+                                                            {"draft.save_as", &DraftSession::save_as}};
+  return (this->*handler_of(handlers, operation.name))(operation.arguments);
+}
+
+void DraftSession::change_world(const host::OperationRequest& operation) {
+  const sim::WorldContents world = read_world_contents(draft());
+  const WorldOperation change = world_operation(operation.name, operation.arguments, world);
+  // Positions in lists that another change has altered would name other objects.
+  const auto layout = argument<std::uint64_t>(operation.arguments, "layout", "the layout of the draft");
+  const auto gesture = argument<std::uint64_t>(operation.arguments, "gesture", "a whole number");
+  if (layout != layout_since_) {
+    throw std::runtime_error("the objects of the world have changed meanwhile; look at them again");
+  }
+  draft().change(change.label, gesture, [&](sim::DraftChange& edit) {
+    sim::WorldChange world_change(world, edit);
+    change.change(world_change);
+  });
+}
+
+json DraftSession::undo(const json& /*arguments*/) {
+  if (!draft().undo()) {
+    throw std::runtime_error("there is nothing to undo");
+  }
+  return {{"revision", draft().revision()}};
+}
+
+json DraftSession::redo(const json& /*arguments*/) {
+  if (!draft().redo()) {
+    throw std::runtime_error("there is nothing to redo");
+  }
+  return {{"revision", draft().revision()}};
+}
+
+json DraftSession::diff(const json& /*arguments*/) {
+  constexpr std::size_t most_bytes = 256 * 1024;  // a person reads no more, and an answer has a limit
+  json files = json::array();
+  for (const sim::Draft::ChangedFile& file : draft().changed_files()) {
+    const bool is_long = file.text.size() + file.saved.value_or("").size() > most_bytes;
+    files.push_back({{"name", one_line(file.name)},
+                     {"is_shipped", is_shipped(file.name)},
+                     {"old", is_long || !file.saved ? json() : json(*file.saved)},
+                     {"new", is_long ? json() : json(file.text)}});
+  }
+  return {{"files", std::move(files)}};
+}
+
+void DraftSession::require_unchanged_on_disk(const sim::Draft::ChangedFile& file) {
+  if (is_shipped(file.name)) {
+    throw InputError(file.name, 0, "a file that ships with Proleg, which stays as it is",
+                     "a copy of your own: Save as");
+  }
+  const std::optional<std::string> on_disk = disk_.read(file.name);
+  if (file.saved ? on_disk != file.saved : on_disk.has_value()) {
+    throw InputError(file.name, 0,
+                     file.saved ? "a file that has changed since this program read it" : "a file that exists",
+                     file.saved ? "the same file; Save as keeps both" : "a new name");
+  }
+}
+
+json DraftSession::save(const json& /*arguments*/) {
+  if (!options_.has_file) {
+    throw std::runtime_error("this scenario has no files yet; Save as writes them into a new folder");
+  }
+  const std::vector<sim::Draft::ChangedFile> changed = draft().changed_files();
+  std::vector<PlannedOutput> outputs;
+  for (const sim::Draft::ChangedFile& file : changed) {
+    require_unchanged_on_disk(file);
+    outputs.push_back({"draft.save", file.name, "file", [](const std::filesystem::path&) { return true; }, true});
+  }
+  // All can be written, or none is.
+  check_outputs(outputs);
+  for (const sim::Draft::ChangedFile& file : changed) {
+    write_file(file.name, sim::bytes_of_source(file.text));
+  }
+  draft().mark_saved();
+  is_new_ = true;
+  output_.notice(host::NoticeLevel::info, "saved " + std::to_string(changed.size()) +
+                                              (changed.size() == 1 ? " file of " : " files of ") +
+                                              one_line(draft().scenario().path));
+  return {{"written", changed.size()}};
+}
+
+json DraftSession::save_as(const json& arguments) {
+  const auto name = argument<std::string>(arguments, "folder", "the name of a new folder");
+  const sim::Scenario& scenario = draft().scenario();
+  const std::map<std::string, std::string> names =
+      copy_sources(scenario.sources, folder_of_copy(options_.folder, name.value_or("")));
+  const std::string file = names.at(scenario.sources.front().path);
+  draft().rename_files(names, file);
+  options_.has_file = true;
+  is_new_ = true;
+  output_.notice(host::NoticeLevel::info, "saved as " + one_line(file) + "; Save writes there from now on");
+  return {{"file", one_line(file)}};
+}
+
+}  // namespace proleg::tools

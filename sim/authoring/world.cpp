@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/library_items.hpp"
 #include "sim/authoring/scenario_text.hpp"
+#include "sim/robot/bounds.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/values.hpp"
 #include "sim/scenario/xml_document.hpp"
@@ -52,7 +53,7 @@ std::optional<std::vector<double>> numbers_in(const XmlElement& element, std::st
 WorldShape read_shape(const XmlText& xml, ElementNumber geom) {
   const XmlDocument document = parsed(xml, geom);
   const XmlElement element = document.root(xml.at(geom).tag.name);
-  WorldShape shape{geom, lower_case(element.required_attribute("type")), {}, {}, {}};
+  WorldShape shape{geom, lower_case(element.required_attribute("type")), {}, {}, {}, read_pose(element)};
   if (const auto sides = numbers_in(element, "extents")) {
     for (const double half : *sides) {
       shape.size.push_back(2.0 * half);
@@ -72,6 +73,30 @@ WorldShape read_shape(const XmlText& xml, ElementNumber geom) {
   return shape;
 }
 
+/// The lowest point of an object's boxes, spheres and cylinders, in m; nothing if it has other shapes.
+std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShape>& shapes) {
+  std::optional<double> lowest;
+  for (const WorldShape& shape : shapes) {
+    const std::vector<double>& size = shape.size;
+    Geometry solid;
+    solid.pose = shape.pose;
+    if (shape.type == "box" && size.size() == 3) {
+      solid.extents = Eigen::Vector3d(size[0], size[1], size[2]) / 2.0;
+    } else if (shape.type == "sphere" && size.size() == 1) {
+      solid.shape = Shape::sphere;
+      solid.extents = {size[0], 0.0, 0.0};
+    } else if (shape.type == "cylinder" && size.size() == 2) {
+      solid.shape = Shape::cylinder;
+      solid.extents = {size[0], size[1] / 2.0, 0.0};
+    } else {
+      return std::nullopt;
+    }
+    const double bottom = bounds_of(solid, pose).lowest.z();
+    lowest = std::min(lowest.value_or(bottom), bottom);
+  }
+  return lowest;
+}
+
 /// An object of the scenario; the reader keeps those that move apart.
 struct ReadObject {
   WorldObject object;
@@ -80,21 +105,22 @@ struct ReadObject {
 
 std::vector<ReadObject> read_objects(const EnvironmentModel& environment) {
   std::vector<ReadObject> all;
-  const auto add = [&all](const auto& body, bool moves, double mass) {
+  const auto add = [&all](const auto& body, std::size_t index, bool moves, double mass) {
     WorldObject object;
     object.name = body.name;
     object.file = body.file;
     object.line = body.line;
     object.moves = moves;
+    object.index = index;
     object.mass = mass;
     object.pose = body.pose;
     all.push_back({std::move(object)});
   };
-  for (const StaticObject& object : environment.objects) {
-    add(object, false, 0.0);
+  for (std::size_t i = 0; i < environment.objects.size(); ++i) {
+    add(environment.objects[i], i, false, 0.0);
   }
-  for (const MovingObject& object : environment.moving_objects) {
-    add(object, true, object.mass.mass);
+  for (std::size_t i = 0; i < environment.moving_objects.size(); ++i) {
+    add(environment.moving_objects[i], i, true, environment.moving_objects[i].mass.mass);
   }
   return all;
 }
@@ -270,6 +296,19 @@ void WorldChange::set_size(std::size_t number, std::size_t shape_number, const s
       throw InputError("size", 0, number_text(length), "lengths up to " + number_text(lengths.max) + " m, above 0");
     }
   }
+  std::vector<WorldShape> resized = found.shapes;
+  resized[shape_number].size = size;
+  const std::optional<double> bottom = lowest_point(found.pose, found.shapes);
+  const std::optional<double> new_bottom = lowest_point(found.pose, resized);
+  write_size(shape, size);
+  if (bottom && new_bottom) {
+    Pose pose = found.pose;
+    pose.position.z() += *bottom - *new_bottom;
+    place(number, pose, false);
+  }
+}
+
+void WorldChange::write_size(const WorldShape& shape, const std::vector<double>& size) {
   if (shape.type == "box" || shape.type == "heightfield") {
     std::string halves;
     for (const double side : size) {

@@ -24,6 +24,7 @@ struct WorldShape {
       size;  ///< m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y
   std::optional<double> friction;
   std::optional<Eigen::Vector3d> colour;  ///< red, green, blue, 0 to 1
+  Pose pose;                              ///< in the object
 };
 
 /// An object: a <Body>.
@@ -38,8 +39,9 @@ struct WorldObject {
   std::optional<ElementNumber> group;
   std::size_t group_size = 1;  ///< bodies of the group
   bool moves = false;
-  double mass = 0.0;  ///< kg, of one that moves
-  Pose pose;          ///< in the world
+  std::size_t index = 0;  ///< in EnvironmentModel::objects, or in moving_objects if it moves
+  double mass = 0.0;      ///< kg, of one that moves
+  Pose pose;              ///< in the world
   std::vector<WorldShape> shapes;
 };
 
@@ -101,6 +103,7 @@ class WorldChange {
 
   /// Puts an object somewhere in the world, or the whole group that it belongs to, as a rigid body.
   void place(std::size_t object, const Pose& pose, bool with_group);
+  /// The object keeps its lowest point: what stands on the ground stays there.
   void set_size(std::size_t object, std::size_t shape, const std::vector<double>& size);
   /// The coefficient of all its shapes; nothing: that of what it touches holds.
   void set_friction(std::size_t object, std::optional<double> friction);
@@ -125,6 +128,7 @@ class WorldChange {
   [[nodiscard]] const WorldObject& editable(std::size_t number) const;
   [[nodiscard]] const XmlText& xml() { return change_.xml(world_.file); }
   void apply(const TextPatch& patch) { change_.apply(world_.file, patch); }
+  void write_size(const WorldShape& shape, const std::vector<double>& size);
   void set_tag(ElementNumber parent, std::string_view tag, const std::string& content);
   void set_pose(ElementNumber element, const Pose& pose);
   void add_kinbody(const std::string& lines);

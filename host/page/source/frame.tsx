@@ -12,13 +12,17 @@ const robotPage = loadLater<PageStores>(() => import('./panels/bus/robot_page.js
 const dialogs = loadLater<PageStores>(() => import('./panels/dialog_views.js').then((module) => module.DialogView));
 livePage();
 dialogs();
-let wereRecordingsShown = false; // the page Recordings is loaded when it is first shown
+// These pages are loaded when they are first shown.
+let wereRecordingsShown = false;
+let wasMakeShown = false;
+const makePage = loadLater<PageStores>(() => import('./make/make_page.js').then((module) => module.MakePage));
 
 // A page stays when another one is shown. `recordingsPage`: loads the page Recordings.
 export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage: () => Later<PageStores> }) {
   const page = app.shownPage.value;
   const isAlone = app.state.isAlone.value;
   if (page === 'recordings') wereRecordingsShown = true;
+  if (page === 'make') wasMakeShown = true;
   const robot = app.state.robot.value;
   return (
     <>
@@ -37,6 +41,11 @@ export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage
         {wereRecordingsShown && (
           <div hidden={page !== 'recordings'}>
             <LaterView app={app} part={recordingsPage()} wait="Loading …" />
+          </div>
+        )}
+        {wasMakeShown && (
+          <div hidden={page !== 'make'}>
+            <LaterView app={app} part={makePage()} wait="Loading …" />
           </div>
         )}
       </main>

@@ -30,6 +30,7 @@ export class PageApp implements PageStores {
   // The page that is shown, and the actions of the recording on the page Recordings.
   readonly shownPage = signal<PageName>('live');
   readonly recordingActions = signal<ActionList | null>(null);
+  readonly makeActions = signal<ActionList | null>(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly mover: MoveTool;
@@ -82,7 +83,8 @@ export class PageApp implements PageStores {
 
   // The actions of the page that is shown, which keys and the palette find.
   get shownActions(): ActionList {
-    return this.shownPage.value === 'recordings' ? (this.recordingActions.value ?? this.actions) : this.actions;
+    const own = { live: null, recordings: this.recordingActions.value, make: this.makeActions.value };
+    return own[this.shownPage.value] ?? this.actions;
   }
 
   newGesture(): number {

@@ -41,6 +41,7 @@ json object_json(const sim::WorldObject& object) {
           {"group", object.group ? json(*object.group) : json()},
           {"group_size", object.group_size},
           {"moves", object.moves},
+          {"index", object.index},
           {"mass", object.moves ? json(object.mass) : json()},
           {"pose", pose_json(object.pose)},
           {"shapes", std::move(shapes)}};

@@ -98,6 +98,7 @@ void DraftSession::publish() {
                             {"has_file", options_.has_file},
                             {"is_shipped", is_shipped(scenario.path)},
                             {"warnings", lines_json(scenario.warnings)},
+                            {"head", pose_json(scenario.environment.robot_pose * scenario.robot.links.front().pose)},
                             {"world", world_json(world)},
                             {"layout", layout_since_}});
   present_.set({shared, draft.revision(), options_.has_file && changed.empty()});

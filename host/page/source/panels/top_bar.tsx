@@ -9,6 +9,7 @@ const badges = {
   simulation: { text: 'SIMULATION', title: 'A simulated robot: nothing on the table moves.' },
   bus: { text: 'ROBOT', title: 'A real robot: it moves.' },
   recording: { text: 'RECORDING', title: 'What a robot did.' },
+  draft: { text: 'DRAFT', title: 'What a robot will be.' },
 } as const;
 
 const states: Record<SessionDocument['state'], string> = {
@@ -183,6 +184,7 @@ export function TopBar({ app }: { app: Stores<'operations' | 'shownPage' | 'stat
       <nav aria-label="Pages">
         {!isAlone && <PageButton app={app} page="live" title="Live" number={1} />}
         <PageButton app={app} page="recordings" title="Recordings" number={2} />
+        {app.state.draft.value !== null && <PageButton app={app} page="make" title="Make" number={3} />}
       </nav>
       <RobotName state={app.state} />
       <Figures state={app.state} />

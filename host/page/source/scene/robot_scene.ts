@@ -36,6 +36,7 @@ export class RobotScene {
   private ghostPath: HeadPath | null = null;
   private pulled: { drag: JointDrag; sense: number } | null = null;
   private run = -1;
+  private robotKey = '';
   private lastMove: number | null = null;
   private hasWholePath = false;
   private width = 1;
@@ -102,6 +103,10 @@ export class RobotScene {
   setRobot(robot: RobotDocument): void {
     this.remove(this.model, this.path);
     this.hasWholePath = false;
+    // The same robot in another world is seen from where the viewer was.
+    const robotKey = JSON.stringify([robot.joints, robot.links]);
+    const isSameRobot = robotKey === this.robotKey;
+    this.robotKey = robotKey;
     this.model = new RobotModel(robot, this.isDark);
     this.path = new HeadPath(this.model.length / 200);
     this.path.setColour(colours(this.isDark).path);
@@ -111,7 +116,7 @@ export class RobotScene {
     Object.assign(this.sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 8 * reach });
     this.sun.shadow.camera.updateProjectionMatrix();
     this.makeGrid();
-    this.resetView();
+    if (!isSameRobot) this.resetView();
   }
 
   // Sets the ghost, which is invisible until a pose contains it.

@@ -3,7 +3,7 @@
 export interface Action {
   id: string;
   title: string;
-  group: 'Robot' | 'Recording' | 'View' | 'Parameters' | 'Page';
+  group: 'Robot' | 'Recording' | 'View' | 'Parameters' | 'Make' | 'Page';
   keys: readonly string[]; // values of KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first key is shown
   isEnabled?: () => boolean;
   // The reason why the action is not enabled, unless the viewer lacks control.

@@ -4,6 +4,10 @@ import type { ConnectionStatus } from '../wire/connection.js';
 import { Freshness } from './freshness.js';
 import type {
   BusDocument,
+  DraftDocument,
+  ForesightDocument,
+  LibraryItem,
+  Mesh,
   ControlDocument,
   InternalValue,
   NoticeMessage,
@@ -48,6 +52,12 @@ export class PageState {
   readonly remote = signal<RemoteDocument | null>(null);
   readonly remoteValues = signal<RemoteValues | null>(null);
   readonly recordings = signal<RecordingsDocument | null>(null);
+  // The scenario that viewers make.
+  readonly draft = signal<DraftDocument | null>(null);
+  readonly draftRobot = signal<RobotDocument | null>(null);
+  readonly draftMeshes = signal<readonly Mesh[]>([]);
+  readonly library = signal<readonly LibraryItem[]>([]);
+  readonly foresight = signal<ForesightDocument | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -126,6 +136,21 @@ export class PageState {
           break;
         case 'recordings':
           this.recordings.value = message.value;
+          break;
+        case 'draft':
+          this.draft.value = message.value;
+          break;
+        case 'draft_robot':
+          this.draftRobot.value = message.value;
+          break;
+        case 'draft_meshes':
+          this.draftMeshes.value = message.value;
+          break;
+        case 'library':
+          this.library.value = message.value;
+          break;
+        case 'foresight':
+          this.foresight.value = message.value;
           break;
       }
     }

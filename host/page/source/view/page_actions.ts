@@ -210,6 +210,14 @@ export function addActions(app: PageStores): void {
       run: () => void (app.shownPage.value = 'recordings'),
     },
     {
+      id: 'make_page',
+      title: 'Page Make',
+      group: 'Page',
+      keys: ['3'],
+      isShown: () => state.draft.value !== null,
+      run: () => void (app.shownPage.value = 'make'),
+    },
+    {
       id: 'value_table',
       title: 'Table of all values: copy and paste as in a spreadsheet',
       group: 'Parameters',

@@ -46,7 +46,7 @@ export interface RobotView {
   startSceneWorker(): Worker;
 }
 
-export type PageName = 'live' | 'recordings';
+export type PageName = 'live' | 'recordings' | 'make';
 
 export interface PageStores extends RobotView {
   readonly state: PageState;
@@ -59,6 +59,7 @@ export interface PageStores extends RobotView {
   readonly stop: StopControl;
   readonly shownPage: Signal<PageName>;
   readonly recordingActions: Signal<ActionList | null>; // of the recording on the page Recordings
+  readonly makeActions: Signal<ActionList | null>; // of the page Make
   readonly shownActions: ActionList; // of the page that is shown, for keys and the palette
   // A number for changes that undo takes back together.
   newGesture(): number;

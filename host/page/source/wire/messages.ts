@@ -69,7 +69,7 @@ export interface Slot {
 export interface RobotDocument {
   name: string;
   file: string;
-  kind: 'simulation' | 'bus' | 'recording';
+  kind: 'simulation' | 'bus' | 'recording' | 'draft';
   joints: Joint[];
   links: Body[];
   terrain: Body[];
@@ -275,7 +275,84 @@ export interface RemoteValues {
   bindings: ({ value: number; taken: boolean[] } | null)[];
 }
 
+// A shape of an object of the draft's world.
+export interface WorldShape {
+  type: 'box' | 'sphere' | 'cylinder' | 'trimesh' | 'heightfield';
+  size: number[]; // metres; box: sides; sphere: radius; cylinder: radius, height; height field: sides
+  friction: number | null; // null: that of what it touches holds
+  colour: [number, number, number] | null; // red, green, blue, 0 to 1
+}
+
+export interface WorldObject {
+  name: string;
+  file: string; // where it is
+  line: number;
+  editable: boolean; // false: it is in a file of its own
+  group: number | null; // objects of a group have the same number
+  group_size: number;
+  moves: boolean;
+  index: number; // in `objects` of `draft_robot` if it moves, else in `terrain`
+  mass: number | null; // kilograms, of one that moves
+  pose: PoseArray; // in the world
+  shapes: WorldShape[];
+}
+
+export interface WorldDocument {
+  file: string;
+  objects: WorldObject[];
+  rulers: { from: [number, number, number]; to: [number, number, number] }[];
+  start: { position: [number, number, number]; degrees: [number, number, number] }; // degrees about x, then y, then z
+}
+
+// The scenario that viewers make.
+export interface DraftDocument {
+  file: string;
+  revision: number;
+  layout: number; // operations of the world have it: their positions in lists are of this layout
+  undo: string | null;
+  redo: string | null;
+  changed: string[]; // files that differ from the disk
+  has_file: boolean;
+  is_shipped: boolean; // the files ship with Proleg: only a copy can be saved
+  warnings: string[];
+  head: PoseArray; // of the robot, at the start
+  world: WorldDocument;
+}
+
+export interface LibraryParameter {
+  name: string;
+  help: string;
+  unit: string;
+  lowest: number;
+  highest: number;
+  usual: number;
+  whole: boolean;
+}
+
+export interface LibraryItem {
+  name: string;
+  help: string;
+  parameters: LibraryParameter[];
+}
+
+// Where the robot of the draft will be.
+export interface ForesightDocument {
+  revision: number; // of the draft
+  engine: string;
+  seconds: number;
+  path: [number, number, number][]; // of the head's frame, a point each 0.1 s
+  distance: number | null; // metres
+  heading: number | null; // degrees
+  failure: string | null;
+  servo_problem: string | null;
+}
+
 export interface Documents {
+  draft: DraftDocument | null; // null: there is no scenario
+  draft_robot: RobotDocument;
+  draft_meshes: Mesh[];
+  library: LibraryItem[];
+  foresight: ForesightDocument;
   robot: RobotDocument;
   parameters: (Parameter | InternalValue)[];
   session: SessionDocument;
@@ -341,7 +418,37 @@ export interface FileDiffEntry {
   joints: number[];
 }
 
+// The value of `draft.diff`.
+export interface DraftDiff {
+  files: { name: string; is_shipped: boolean; old: string | null; new: string | null }[];
+}
+
+// What all operations of the world have.
+export interface WorldOperation {
+  layout: number;
+  gesture?: number; // operations with the same number are one entry of undo
+}
+
 export interface Operations {
+  'draft.undo': Record<string, never>;
+  'draft.redo': Record<string, never>;
+  'draft.diff': Record<string, never>;
+  'draft.save': Record<string, never>;
+  'draft.save_as': { folder: string };
+  load_draft: Record<string, never>;
+  'world.place': WorldOperation & { object: number; pose: PoseArray; group?: boolean };
+  'world.resize': WorldOperation & { object: number; shape: number; size: number[] };
+  'world.friction': WorldOperation & { object: number; value: number | null };
+  'world.colour': WorldOperation & { object: number; value: [number, number, number] };
+  'world.moves': WorldOperation & { object: number; value: boolean };
+  'world.mass': WorldOperation & { object: number; value: number };
+  'world.rename': WorldOperation & { object: number; name: string };
+  'world.remove': WorldOperation & { object: number; group?: boolean };
+  'world.duplicate': WorldOperation & { object: number; group?: boolean; step: [number, number, number]; count: number };
+  'world.add': WorldOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
+  'world.start': WorldOperation & { position: [number, number, number]; degrees: [number, number, number] };
+  'world.ruler': WorldOperation & { ruler?: number; from: [number, number, number]; to: [number, number, number] };
+  'world.remove_ruler': WorldOperation & { ruler: number };
   'control.take': Record<string, never>;
   'control.answer': { grant: boolean };
   'control.release': Record<string, never>;

@@ -1,0 +1,77 @@
+// The robot of the draft for the panels that show a robot: it stands at its start, and its path is the foresight.
+import { effect, signal } from '@preact/signals-core';
+import { TelemetryHistory } from '../data/telemetry_history.js';
+import { ActionList } from '../state/actions.js';
+import type { PageState } from '../state/page_state.js';
+import { SignalSelection } from '../state/signal_selection.js';
+import { TimeView } from '../state/time_view.js';
+import type { RobotView } from '../view/robot_view.js';
+import type { RobotDocument, Signal, TelemetryDocument } from '../wire/messages.js';
+import { rowLayout } from '../wire/subscription.js';
+
+const micrometre = 1e-6;
+const quaternionUnit = 2 ** 30;
+
+export class DraftView implements RobotView {
+  readonly state = {
+    robot: signal<RobotDocument | null>(null),
+    telemetry: signal<TelemetryDocument | null>(null),
+    bus: signal(null),
+    busSession: signal(null),
+  };
+  readonly history = new TelemetryHistory();
+  readonly time = new TimeView();
+  readonly marks = null;
+  readonly mover = null;
+  readonly poses = null;
+  readonly selection = new SignalSelection();
+  readonly tickRate = 100;
+  readonly wholePath = signal<Float64Array | null>(null);
+  private run = 0;
+
+  constructor(
+    page: PageState,
+    readonly actions: ActionList,
+    readonly startSceneWorker: () => Worker,
+  ) {
+    effect(() => {
+      const robot = page.draftRobot.value;
+      const meshes = page.draftMeshes.value;
+      const head = page.draft.value?.head;
+      if (robot === null || head === undefined) return;
+      this.place(head, robot.joints.length);
+      this.state.robot.value = { ...robot, meshes: [...meshes] };
+    });
+    effect(() => {
+      const path = page.foresight.value?.path ?? [];
+      this.wholePath.value = Float64Array.from(path.flatMap((point) => [...point, 1, 0, 0, 0]));
+    });
+  }
+
+  get sampledRows(): TelemetryHistory {
+    return this.history;
+  }
+
+  get rowsAtCursor(): TelemetryHistory {
+    return this.history;
+  }
+
+  get newestTick(): number {
+    return 0;
+  }
+
+  // One row: the robot at its start, straight.
+  private place(head: readonly number[], joints: number): void {
+    const signals: Signal[] = [
+      { name: 'head', unit: '', scale: 1, count: 7, of: 'robot' },
+      { name: 'angle', unit: 'degree', scale: 1, count: joints, of: 'joint' },
+    ];
+    const values = Int32Array.from([
+      ...head.map((value, i) => Math.round(value / (i < 3 ? micrometre : 1 / quaternionUnit))),
+      ...new Array<number>(joints).fill(0),
+    ]);
+    this.run += 1;
+    const message = { subscription: 0, tick: 0, rows: 1, stride: 1, run: this.run, hasGap: false, width: values.length, values };
+    this.history.append(message, rowLayout(signals));
+  }
+}

@@ -1,0 +1,78 @@
+// The library of objects: an item, its numbers, Add.
+import { useSignal } from '@preact/signals';
+import type { LibraryItem } from '../wire/messages.js';
+import type { MakeApp } from './make_app.js';
+import { NumberField } from './number_field.js';
+
+function ItemForm({ app, item, done }: { app: MakeApp; item: LibraryItem; done(): void }) {
+  const values = useSignal<Record<string, number>>({});
+  const problem = useSignal<string | null>(null);
+  const obstacle = app.obstacle();
+  const add = async () => {
+    problem.value = await app.add(item.name, values.value);
+    if (problem.peek() === null) done();
+  };
+  return (
+    <form
+      class="item-form"
+      aria-label={`New ${item.name}`}
+      onSubmit={(event) => {
+        event.preventDefault();
+        void add();
+      }}
+    >
+      <p class="hint">{item.help}</p>
+      <div class="fields">
+        {item.parameters.map((parameter) => (
+          <NumberField
+            key={parameter.name}
+            label={parameter.name}
+            unit={parameter.unit === 'degree' ? '°' : parameter.unit}
+            title={parameter.help}
+            value={values.value[parameter.name] ?? parameter.usual}
+            commit={(value) => {
+              if (value < parameter.lowest || value > parameter.highest || (parameter.whole && !Number.isInteger(value))) {
+                return `found ${value}, expected ${parameter.whole ? 'a whole number ' : ''}from ${parameter.lowest} to ${parameter.highest}`;
+              }
+              values.value = { ...values.value, [parameter.name]: value };
+              return null;
+            }}
+          />
+        ))}
+      </div>
+      <button type="submit" class="primary" disabled={obstacle !== null} title={obstacle ?? 'It comes in front of the robot.'}>
+        Add {item.name}
+      </button>
+      {problem.value !== null && (
+        <p class="problem" role="alert">
+          {problem.value}
+        </p>
+      )}
+    </form>
+  );
+}
+
+export function LibraryPanel({ app }: { app: MakeApp }) {
+  const chosen = useSignal<string | null>(null);
+  const library = app.page.state.library.value;
+  const item = library.find(({ name }) => name === chosen.value);
+  return (
+    <section class="panel make-panel" aria-label="Library">
+      <div class="panel-head">
+        <h2>Add</h2>
+        {library.map(({ name, help }) => (
+          <button
+            key={name}
+            type="button"
+            title={help}
+            aria-pressed={chosen.value === name}
+            onClick={() => (chosen.value = chosen.value === name ? null : name)}
+          >
+            {name}
+          </button>
+        ))}
+      </div>
+      {item !== undefined && <ItemForm key={item.name} app={app} item={item} done={() => (chosen.value = null)} />}
+    </section>
+  );
+}

@@ -1,0 +1,201 @@
+// The stores of the page Make: the draft of the scenario, the chosen object, and the changes that are on their way.
+import { computed, signal } from '@preact/signals-core';
+import { arrayOf, headingOf } from '../geometry/outline.js';
+import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
+import { ActionList } from '../state/actions.js';
+import type { Stores } from '../view/robot_view.js';
+import type { DraftDocument, Operations, WorldObject, WorldOperation } from '../wire/messages.js';
+import { DraftView } from './draft_view.js';
+
+export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
+
+export type WorldOperationName = Extract<keyof Operations, `world.${string}`>;
+type Arguments<Name extends WorldOperationName> = Omit<Operations[Name], keyof WorldOperation>;
+
+// What is dragged, and where it is now; the program learns of it as fast as it answers.
+interface Drag {
+  gesture: number;
+  head: Pose; // of the robot, when the drag began
+  start: Vector; // of the robot in the file, when the drag began
+  moved: ReadonlyMap<number, Pose>; // objects; -1: the start of the robot
+}
+
+export const startOfRobot = -1;
+
+export class MakeApp {
+  readonly chosen = signal<number | null>(null);
+  readonly drag = signal<Drag | null>(null);
+  readonly isSaving = signal(false); // the changes of the files are shown
+  readonly actions: ActionList;
+  readonly view: DraftView;
+  readonly draft = computed(() => this.page.state.draft.value);
+  readonly objects = computed(() => this.draft.value?.world.objects ?? []);
+  readonly chosenObject = computed(() => {
+    const chosen = this.chosen.value;
+    return chosen === null ? null : (this.objects.value[chosen] ?? null);
+  });
+  private isSending = false;
+  private waiting: (() => Promise<unknown>) | null = null; // the newest step of a drag
+
+  constructor(readonly page: MakeStores) {
+    this.actions = new ActionList(page.actions, (action) => action.group === 'Page' || action.group === 'Robot');
+    this.view = new DraftView(page.state, this.actions, () => page.startSceneWorker());
+    const canChange = () => this.obstacle() === null;
+    const canChangeChosen = () => canChange() && this.chosenObject.value?.editable === true;
+    this.actions.add(
+      { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
+      { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
+      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => void (this.isSaving.value = !this.isSaving.value) },
+      { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
+      { id: 'delete_object', title: 'Delete the chosen object', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: canChangeChosen, run: () => void this.remove() },
+      { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
+    );
+    page.makeActions.value = this.actions;
+  }
+
+  // The reason why nothing can be changed; null: it can.
+  obstacle(): string | null {
+    const { state } = this.page;
+    if (!state.isConnected.value) return 'No connection to the program.';
+    if (this.draft.value === null) return 'There is no scenario.';
+    return state.isHolder.value ? null : 'Take control first (C).';
+  }
+
+  // Requests a change of the world. Returns the reason if it was refused, else null.
+  async change<Name extends WorldOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<string | null> {
+    const layout = this.draft.peek()?.layout ?? 0;
+    const all = { ...words, layout, ...(gesture === undefined ? {} : { gesture }) } as unknown as Operations[Name];
+    try {
+      await this.page.operations.ask(name, all);
+      return null;
+    } catch (error) {
+      return (error as Error).message;
+    }
+  }
+
+  // As change(), with a notice if it was refused.
+  async tell<Name extends WorldOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<boolean> {
+    const refusal = await this.change(name, words, gesture);
+    if (refusal !== null) this.page.state.addNotice('warning', refusal);
+    return refusal === null;
+  }
+
+  // The present pose of an object, also while it is dragged.
+  poseOf(number: number, object: WorldObject): Pose {
+    return this.drag.value?.moved.get(number) ?? poseFromArray(object.pose);
+  }
+
+  beginDrag(): void {
+    const draft = this.draft.peek();
+    if (draft === null) return;
+    const head = poseFromArray(draft.head);
+    this.drag.value = { gesture: this.page.newGesture(), head, start: draft.world.start.position, moved: new Map() };
+  }
+
+  // Moves an object, with its group unless it is moved alone. The answer of the program corrects what is shown.
+  dragObject(number: number, pose: Pose, isAlone: boolean): void {
+    const drag = this.drag.peek();
+    const object = this.objects.peek()[number];
+    if (drag === null || object === undefined) return;
+    const hasGroup = !isAlone && object.group_size > 1;
+    const motion = compose(pose, invert(poseFromArray(object.pose)));
+    const moved = new Map<number, Pose>([[number, pose]]);
+    this.objects.peek().forEach((other, i) => {
+      if (hasGroup && i !== number && other.group === object.group) moved.set(i, compose(motion, poseFromArray(other.pose)));
+    });
+    this.drag.value = { ...drag, moved };
+    this.send(() => this.tell('world.place', { object: number, pose: arrayOf(pose), group: hasGroup }, drag.gesture));
+  }
+
+  // Moves the start of the robot: its head comes to this place.
+  dragStart([x, y, z]: Vector): void {
+    const drag = this.drag.peek();
+    const draft = this.draft.peek();
+    if (drag === null || draft === null) return;
+    const { position, orientation } = drag.head;
+    this.drag.value = { ...drag, moved: new Map([[startOfRobot, { position: [x, y, z], orientation }]]) };
+    const from = drag.start;
+    const to: [number, number, number] = [from[0] + x - position[0], from[1] + y - position[1], from[2] + z - position[2]];
+    this.send(() => this.tell('world.start', { position: to, degrees: draft.world.start.degrees }, drag.gesture));
+  }
+
+  endDrag(): void {
+    const drag = this.drag.peek();
+    // What is shown stays until the last answer has come.
+    const finish = () => {
+      if (this.drag.peek()?.gesture === drag?.gesture) this.drag.value = null;
+    };
+    if (this.isSending) this.whenSent = finish;
+    else finish();
+  }
+  private whenSent: (() => void) | null = null;
+
+  // One step is on its way; of those that come meanwhile the newest goes next.
+  private send(step: () => Promise<unknown>): void {
+    if (this.isSending) {
+      this.waiting = step;
+      return;
+    }
+    this.isSending = true;
+    void step().finally(() => {
+      this.isSending = false;
+      const next = this.waiting;
+      this.waiting = null;
+      if (next !== null) {
+        this.send(next);
+      } else {
+        this.whenSent?.();
+        this.whenSent = null;
+      }
+    });
+  }
+
+  // Turns an object to a heading, in degrees, where it is.
+  turned(object: WorldObject, degrees: number): Pose {
+    const pose = poseFromArray(object.pose);
+    const by = ((degrees - headingOf(pose)) * Math.PI) / 180;
+    return { position: pose.position, orientation: multiply(fromAxisAngle([0, 0, 1], by), pose.orientation) };
+  }
+
+  async remove(): Promise<void> {
+    const chosen = this.chosen.peek();
+    const object = this.chosenObject.peek();
+    if (chosen === null || object === null) return;
+    this.chosen.value = null;
+    await this.tell('world.remove', { object: chosen, group: object.group_size > 1 });
+  }
+
+  async duplicate(step: [number, number, number], count: number): Promise<string | null> {
+    const chosen = this.chosen.peek();
+    const object = this.chosenObject.peek();
+    if (chosen === null || object === null) return null;
+    return this.change('world.duplicate', { object: chosen, group: object.group_size > 1, step, count });
+  }
+
+  // Adds an item of the library in front of the robot, and chooses it. Returns the reason if it was refused.
+  async add(item: string, values: Record<string, number>): Promise<string | null> {
+    const draft = this.draft.peek();
+    if (draft === null) return null;
+    const before = draft.world.objects.filter(({ editable }) => editable).length;
+    const [x, y] = draft.head;
+    const heading = ((draft.world.start.degrees[2] + 90) * Math.PI) / 180; // a robot lies along y
+    const distance = 0.3;
+    const round = (value: number) => Math.round(value * 1000) / 1000;
+    const position: [number, number, number] = [round(x + distance * Math.cos(heading)), round(y + distance * Math.sin(heading)), 0];
+    const refusal = await this.change('world.add', { item, values, position, turn: draft.world.start.degrees[2] });
+    if (refusal === null) this.chosen.value = before;
+    return refusal;
+  }
+
+  async simulate(): Promise<void> {
+    if ((await this.page.operations.tell('load_draft', {})) !== null) this.page.shownPage.value = 'live';
+  }
+}
+
+// What the Save button can do with a draft.
+export function saveObstacle(draft: DraftDocument | null): string | null {
+  if (draft === null) return 'There is no scenario.';
+  if (!draft.has_file) return 'This scenario has no files yet: save it as a new folder.';
+  if (draft.is_shipped) return 'These files ship with Proleg and stay as they are: save a copy.';
+  return draft.changed.length === 0 ? 'The files are as they are here.' : null;
+}

@@ -1,0 +1,243 @@
+// The numbers of the chosen object.
+import { useSignal } from '@preact/signals';
+import { arrayOf, headingOf } from '../geometry/outline.js';
+import { poseFromArray, type Vector } from '../geometry/quaternion.js';
+import type { WorldObject, WorldShape } from '../wire/messages.js';
+import type { MakeApp } from './make_app.js';
+import { NumberField } from './number_field.js';
+
+const sizeLabels: Record<WorldShape['type'], readonly string[]> = {
+  box: ['size x', 'size y', 'size z'],
+  sphere: ['radius'],
+  cylinder: ['radius', 'length'],
+  heightfield: ['size x', 'size y'],
+  trimesh: [],
+};
+
+const axes = ['x', 'y', 'z'] as const;
+
+function toHex(colour: readonly number[]): string {
+  return `#${colour.map((part) => Math.round(255 * part).toString(16).padStart(2, '0')).join('')}`;
+}
+
+function fromHex(text: string): [number, number, number] {
+  const part = (start: number) => Math.round((parseInt(text.slice(start, start + 2), 16) / 255) * 1000) / 1000;
+  return [part(1), part(3), part(5)];
+}
+
+function NameField({ app, number, object }: { app: MakeApp; number: number; object: WorldObject }) {
+  const problem = useSignal<string | null>(null);
+  return (
+    <label class="number-field">
+      <span>name</span>
+      <input
+        type="text"
+        value={object.name}
+        disabled={app.obstacle() !== null}
+        aria-invalid={problem.value !== null}
+        onChange={async (event) => {
+          problem.value = await app.change('world.rename', { object: number, name: event.currentTarget.value.trim() });
+        }}
+      />
+      {problem.value !== null && (
+        <span class="problem" role="alert">
+          {problem.value}
+        </span>
+      )}
+    </label>
+  );
+}
+
+// Copies in a row.
+function CopyForm({ app }: { app: MakeApp }) {
+  const step = useSignal<[number, number, number]>([0.5, 0, 0]);
+  const count = useSignal(1);
+  const problem = useSignal<string | null>(null);
+  const isDisabled = app.obstacle() !== null;
+  return (
+    <fieldset class="copies">
+      <legend>Copies</legend>
+      <NumberField label="how many" value={count.value} decimals={0} isDisabled={isDisabled} commit={(value) => ((count.value = value), null)} />
+      {axes.map((axis, i) => (
+        <NumberField
+          key={axis}
+          label={`step ${axis}`}
+          unit="m"
+          value={step.value[i] as number}
+          isDisabled={isDisabled}
+          commit={(value) => {
+            const next: [number, number, number] = [...step.value];
+            next[i] = value;
+            step.value = next;
+            return null;
+          }}
+        />
+      ))}
+      <button
+        type="button"
+        disabled={isDisabled}
+        title="Each copy is moved by the step from the one before (Ctrl + D: one copy)"
+        onClick={async () => (problem.value = await app.duplicate(step.value, count.value))}
+      >
+        Duplicate
+      </button>
+      {problem.value !== null && (
+        <p class="problem" role="alert">
+          {problem.value}
+        </p>
+      )}
+    </fieldset>
+  );
+}
+
+export function ObjectForm({ app }: { app: MakeApp }) {
+  const number = app.chosen.value;
+  const object = app.chosenObject.value;
+  if (number === null || object === null) {
+    return <p class="hint">Choose an object in the list or in the drawing to see and change its numbers.</p>;
+  }
+  if (!object.editable) {
+    return (
+      <p class="hint">
+        {object.name} is in a file of its own, {object.file}, which other worlds may use, too. It can be changed there.
+      </p>
+    );
+  }
+  const isDisabled = app.obstacle() !== null;
+  const pose = app.poseOf(number, object);
+  const place = (position: Vector) =>
+    app.change('world.place', { object: number, pose: arrayOf({ position, orientation: pose.orientation }), group: object.group_size > 1 });
+  const colour = object.shapes[0]?.colour ?? null;
+  const friction = object.shapes[0]?.friction ?? null;
+  return (
+    <div class="object-form" key={number}>
+      <NameField app={app} number={number} object={object} />
+      {object.group_size > 1 && <p class="hint">One of {object.group_size} parts, which move together. Ctrl and drag moves it alone.</p>}
+      <div class="fields">
+        {axes.map((axis, i) => (
+          <NumberField
+            key={axis}
+            label={axis}
+            unit="m"
+            value={pose.position[i] as number}
+            isDisabled={isDisabled}
+            title={['to the right', 'the way of the robot', 'up'][i] ?? ''}
+            commit={(value) => {
+              const position: [number, number, number] = [...pose.position];
+              position[i] = value;
+              return place(position);
+            }}
+          />
+        ))}
+        <NumberField
+          label="turn"
+          unit="°"
+          value={headingOf(pose)}
+          decimals={2}
+          isDisabled={isDisabled}
+          title="to the left, about the vertical"
+          commit={(value) =>
+            app.change('world.place', { object: number, pose: arrayOf(app.turned(object, value)), group: object.group_size > 1 })
+          }
+        />
+      </div>
+      {object.shapes.map((shape, k) => (
+        <div class="fields" key={k}>
+          {shape.size.map((value, i) => (
+            <NumberField
+              key={i}
+              label={sizeLabels[shape.type][i] ?? 'size'}
+              unit="m"
+              value={value}
+              isDisabled={isDisabled}
+              commit={(next) =>
+                app.change('world.resize', { object: number, shape: k, size: shape.size.map((old, at) => (at === i ? next : old)) })
+              }
+            />
+          ))}
+          {shape.size.length === 0 && <p class="hint">Its shape is a mesh in a file.</p>}
+        </div>
+      ))}
+      <div class="fields">
+        <NumberField
+          label="friction"
+          value={friction ?? 0}
+          isDisabled={isDisabled}
+          title="How slippery it is: 0 is ice, 1 is rubber."
+          commit={(value) => app.change('world.friction', { object: number, value })}
+        />
+        <label class="number-field">
+          <span>colour</span>
+          <input
+            type="color"
+            value={toHex(colour ?? [0.7, 0.7, 0.7])}
+            disabled={isDisabled}
+            onChange={(event) => void app.tell('world.colour', { object: number, value: fromHex(event.currentTarget.value) })}
+          />
+        </label>
+        <label class="switch">
+          <input
+            type="checkbox"
+            checked={object.moves}
+            disabled={isDisabled}
+            onChange={(event) => void app.tell('world.moves', { object: number, value: event.currentTarget.checked })}
+            onKeyDown={(event) => {
+              if (event.key === 'Enter') void app.tell('world.moves', { object: number, value: !object.moves }); // Space is STOP
+            }}
+          />
+          moves when something pushes it
+        </label>
+        {object.mass !== null && (
+          <NumberField
+            label="mass"
+            unit="kg"
+            value={object.mass}
+            isDisabled={isDisabled}
+            commit={(value) => app.change('world.mass', { object: number, value })}
+          />
+        )}
+      </div>
+      <CopyForm app={app} />
+      <button type="button" disabled={isDisabled} onClick={() => void app.remove()} title="Undo brings it back (Delete)">
+        Delete {object.group_size > 1 ? `all ${object.group_size} parts` : object.name}
+      </button>
+    </div>
+  );
+}
+
+// Where the robot starts.
+export function StartForm({ app }: { app: MakeApp }) {
+  const start = app.draft.value?.world.start;
+  if (start === undefined) return null;
+  const isDisabled = app.obstacle() !== null;
+  const change = (position: readonly number[], degrees: readonly number[]) =>
+    app.change('world.start', { position: position as [number, number, number], degrees: degrees as [number, number, number] });
+  const replaced = (values: readonly number[], at: number, value: number) => values.map((old, i) => (i === at ? value : old));
+  return (
+    <div class="fields">
+      {axes.map((axis, i) => (
+        <NumberField
+          key={axis}
+          label={axis}
+          unit="m"
+          value={start.position[i] as number}
+          isDisabled={isDisabled}
+          commit={(value) => change(replaced(start.position, i, value), start.degrees)}
+        />
+      ))}
+      <NumberField
+        label="turn"
+        unit="°"
+        value={start.degrees[2]}
+        decimals={2}
+        isDisabled={isDisabled}
+        title="to the left, about the vertical"
+        commit={(value) => change(start.position, replaced(start.degrees, 2, value))}
+      />
+      <p class="hint">
+        The robot points to {headingOf(poseFromArray(app.draft.value?.head ?? [0, 0, 0, 1, 0, 0, 0])).toFixed(0)}°. In the ground it is
+        lifted onto it.
+      </p>
+    </div>
+  );
+}

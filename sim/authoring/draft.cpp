@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -94,7 +95,7 @@ void DraftChange::take_back(const Step& step, DraftTexts& texts) {
   texts.set(step.file, std::move(text));
 }
 
-Draft::Draft(Scenario scenario, FileSource& disk) : texts_(disk), scenario_(std::move(scenario)) {
+Draft::Draft(Scenario scenario, FileSource& disk) : disk_(&disk), texts_(disk), scenario_(std::move(scenario)) {
   for (const SourceFile& source : scenario_.sources) {
     texts_.set(source.path, source.text);
     saved_.emplace(source.path, source.text);
@@ -229,6 +230,42 @@ std::vector<Draft::ChangedFile> Draft::changed_files() const {
     }
   }
   return changed;
+}
+
+bool Draft::refresh() {
+  constexpr std::size_t large = std::size_t{1} << 20U;  // a mesh; nobody edits it beside this program
+  std::set<std::string> in_history;
+  for (const Entry& entry : history_) {
+    for (const DraftChange::Step& step : entry.steps) {
+      in_history.insert(step.file);
+    }
+  }
+  std::map<std::string, std::string> before;
+  for (const auto& [name, saved] : saved_) {
+    if (in_history.contains(name) || saved.size() > large || texts_.at(name) != saved) {
+      continue;
+    }
+    if (std::optional<std::string> now = disk_->read(name); now && *now != saved && *now != bytes_of_source(saved)) {
+      before.emplace(name, saved);
+      texts_.set(name, std::move(*now));
+    }
+  }
+  if (before.empty()) {
+    return false;
+  }
+  try {
+    scenario_ = read();
+  } catch (const InputError&) {
+    for (auto& [name, text] : before) {
+      texts_.set(name, std::move(text));
+    }
+    return false;
+  }
+  for (const auto& [name, text] : before) {
+    saved_[name] = texts_.at(name);
+  }
+  ++revision_;
+  return true;
 }
 
 void Draft::mark_saved() { saved_ = texts_.all(); }

@@ -110,6 +110,10 @@ class Draft {
 
   /// The files that differ from the disk, by name.
   [[nodiscard]] std::vector<ChangedFile> changed_files() const;
+  /// Takes over what other programs, or other parts of this one, have written into files that the draft has not changed
+  /// and that undo would not change. Files that the reader would refuse, and large ones, stay as they are. Returns
+  /// whether anything has changed.
+  bool refresh();
   /// The present texts are on disk.
   void mark_saved();
   /// The files have been saved under other names, in `renamed` by their names until now, and the draft goes on there.
@@ -129,6 +133,7 @@ class Draft {
   void keep(const std::string& label, std::optional<std::uint64_t> gesture, std::vector<DraftChange::Step> steps);
   void limit_history();
 
+  FileSource* disk_;
   DraftTexts texts_;
   std::map<std::string, std::string> saved_;  ///< texts as they are on disk
   Scenario scenario_;

@@ -2,9 +2,8 @@
 
 // The environment of a draft as a person edits it: a list of objects, rulers, the start of the robot.
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "sim/authoring/draft.hpp"
+#include "sim/authoring/library_items.hpp"
 #include "sim/robot/pose.hpp"
 
 namespace proleg::sim {
@@ -61,38 +61,6 @@ struct WorldContents {
 };
 
 [[nodiscard]] WorldContents read_world_contents(const Draft& draft);
-
-/// An item of the library of objects.
-enum class LibraryItem : std::uint8_t {
-  box,
-  ramp,
-  stairs,
-  cylinder,  ///< lies across the way: a log
-  sphere,
-  hills,  ///< waves of a cosine across the way, as the obstacle of the thesis
-  rough,  ///< a height field of random heights
-};
-
-/// A number of a library item that a person may set before it is added.
-struct LibraryParameter {
-  std::string_view name;
-  std::string_view help;
-  std::string_view unit;
-  double lowest;
-  double highest;
-  double usual;
-  bool is_whole = false;
-};
-
-struct LibraryDeclaration {
-  LibraryItem item;
-  std::string_view name;  ///< also the name of a new object
-  std::string_view help;  ///< a plain sentence
-  std::vector<LibraryParameter> parameters;
-};
-
-/// All items, in the order of LibraryItem.
-[[nodiscard]] const std::vector<LibraryDeclaration>& library();
 
 /// Changes of a world. All of them refer to the world as read_world_contents() gives it for the draft before the
 /// change; a number of an object or a shape that does not exist, an object that cannot be edited, and a value out of

@@ -325,9 +325,8 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
         }
       }
       if (body.is_fixed) {
-        environment.objects.push_back(
-            {std::move(link.name), link.pose, std::move(link.geometries), std::move(link.looks),
-             std::move(body.origin.file), body.origin.line});
+        environment.objects.push_back({std::move(link.name), link.pose, std::move(link.geometries),
+                                       std::move(link.looks), std::move(body.origin.file), body.origin.line});
       } else {
         add_moving_object(std::move(body), environment);
       }

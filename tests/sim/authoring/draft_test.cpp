@@ -128,6 +128,22 @@ TEST_F(DraftTest, AFileThatAChangeNamesBelongsToTheDraftFromThenOn) {
   EXPECT_EQ(draft_.scenario().environment.objects.size(), 5U);
 }
 
+TEST_F(DraftTest, WhatOthersWriteIntoUnchangedFilesIsTakenOver) {
+  EXPECT_FALSE(draft_.refresh());
+  files_.replace("actuation.xml", "value=\"30\"", "value=\"25\"");
+  EXPECT_TRUE(draft_.refresh());
+  EXPECT_NE(draft_.text("actuation.xml").find("value=\"25\""), std::string::npos);
+  EXPECT_TRUE(draft_.changed_files().empty());
+  move_ball(2);
+  files_.replace("environment.xml", "This comment stays.", "By hand.");
+  EXPECT_FALSE(draft_.refresh()) << "the draft has changed it";
+  ASSERT_TRUE(draft_.undo());
+  EXPECT_FALSE(draft_.refresh()) << "redo would change it";
+  files_.replace("actuation.xml", "<actuation>", "<actuation><oops/>");
+  EXPECT_FALSE(draft_.refresh()) << "the reader refuses it";
+  move_ball(3);
+}
+
 TEST_F(DraftTest, FilesThatAreSavedElsewhereKeepTheirHistory) {
   move_ball(2);
   std::map<std::string, std::string> renamed;

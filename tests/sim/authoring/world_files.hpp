@@ -63,8 +63,6 @@ void change_world(Draft& draft, const Change& change, std::optional<std::uint64_
   });
 }
 
-[[nodiscard]] inline std::string text_of(const Draft& draft, const std::string& file) {
-  return draft.text(file);
-}
+[[nodiscard]] inline std::string text_of(const Draft& draft, const std::string& file) { return draft.text(file); }
 
 }  // namespace proleg::sim

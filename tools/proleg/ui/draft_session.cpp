@@ -90,6 +90,7 @@ void DraftSession::publish() {
   for (const sim::Draft::ChangedFile& file : draft.changed_files()) {
     changed.push_back(file.name);
   }
+  present_.set({shared, draft.revision(), options_.has_file && changed.empty()});
   output_.publish("draft", {{"file", one_line(scenario.path)},
                             {"revision", draft.revision()},
                             {"undo", draft.undo_label() ? json(*draft.undo_label()) : json()},
@@ -101,7 +102,6 @@ void DraftSession::publish() {
                             {"head", pose_json(scenario.environment.robot_pose * scenario.robot.links.front().pose)},
                             {"world", world_json(world)},
                             {"layout", layout_since_}});
-  present_.set({shared, draft.revision(), options_.has_file && changed.empty()});
   published_ = draft.revision() + 1;
   is_new_ = false;
 }
@@ -123,15 +123,17 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
     publish();  // the next operation that waits is compared with this layout
     return {{"revision", draft().revision()}};
   }
-  static const std::map<std::string_view, Handler> handlers{{"draft.undo", &DraftSession::undo},
-                                                            {"draft.redo", &DraftSession::redo},
-                                                            {"draft.diff", &DraftSession::diff},
-                                                            {"draft.save", &DraftSession::save},
-                                                            {"draft.save_as", &DraftSession::save_as}};
+  static const std::map<std::string_view, Handler> handlers{
+      {"draft.undo", &DraftSession::undo},       {"draft.redo", &DraftSession::redo},
+      {"draft.refresh", &DraftSession::refresh}, {"draft.diff", &DraftSession::diff},
+      {"draft.save", &DraftSession::save},       {"draft.save_as", &DraftSession::save_as}};
   return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
 void DraftSession::change_world(const host::OperationRequest& operation) {
+  if (draft().refresh()) {
+    publish();
+  }
   const sim::WorldContents world = read_world_contents(draft());
   const WorldOperation change = world_operation(operation.name, operation.arguments, world);
   // Positions in lists that another change has altered would name other objects.
@@ -159,6 +161,8 @@ json DraftSession::redo(const json& /*arguments*/) {
   }
   return {{"revision", draft().revision()}};
 }
+
+json DraftSession::refresh(const json& /*arguments*/) { return {{"changed", draft().refresh()}}; }
 
 json DraftSession::diff(const json& /*arguments*/) {
   constexpr std::size_t most_bytes = 256 * 1024;  // a person reads no more, and an answer has a limit

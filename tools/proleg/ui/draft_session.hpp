@@ -32,7 +32,7 @@ class DraftSession final : private SessionThread {
   ~DraftSession() override;
 
   /// Operations that anybody may use.
-  [[nodiscard]] static std::vector<std::string> free_operations() { return {"draft.diff"}; }
+  [[nodiscard]] static std::vector<std::string> free_operations() { return {"draft.diff", "draft.refresh"}; }
 
  private:
   // SessionThread
@@ -50,6 +50,7 @@ class DraftSession final : private SessionThread {
   using Handler = nlohmann::json (DraftSession::*)(const nlohmann::json&);
   nlohmann::json undo(const nlohmann::json& arguments);
   nlohmann::json redo(const nlohmann::json& arguments);
+  nlohmann::json refresh(const nlohmann::json& arguments);
   nlohmann::json diff(const nlohmann::json& arguments);
   nlohmann::json save(const nlohmann::json& arguments);
   nlohmann::json save_as(const nlohmann::json& arguments);

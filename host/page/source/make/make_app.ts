@@ -1,5 +1,5 @@
 // The stores of the page Make: the draft of the scenario, the chosen object, and the changes that are on their way.
-import { computed, signal } from '@preact/signals-core';
+import { computed, effect, signal } from '@preact/signals-core';
 import { arrayOf, headingOf } from '../geometry/outline.js';
 import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { ActionList } from '../state/actions.js';
@@ -51,6 +51,10 @@ export class MakeApp {
       { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
     );
     page.makeActions.value = this.actions;
+    // Other parts of the program may have written files meanwhile: Apply to file.
+    effect(() => {
+      if (page.shownPage.value === 'make' && page.state.isConnected.value) void page.operations.ask('draft.refresh', {}).catch(() => {});
+    });
   }
 
   // The reason why nothing can be changed; null: it can.

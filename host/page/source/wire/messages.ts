@@ -432,6 +432,7 @@ export interface WorldOperation {
 export interface Operations {
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;
+  'draft.refresh': Record<string, never>;
   'draft.diff': Record<string, never>;
   'draft.save': Record<string, never>;
   'draft.save_as': { folder: string };

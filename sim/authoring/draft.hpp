@@ -94,6 +94,8 @@ class Draft {
   /// A file as it is now. Throws InputError for one that the draft does not have.
   [[nodiscard]] const std::string& text(const std::string& name) const { return texts_.at(name); }
 
+  [[nodiscard]] bool has(const std::string& name) const { return texts_.find(name) != nullptr; }
+
   /// Changes the files by calls of `change`. If the reader refuses the result, or `change` throws, nothing changes and
   /// the InputError says why. label: for undo, "move box". gesture: changes in a row with the same number are one entry
   /// of undo, such as the steps of a drag.

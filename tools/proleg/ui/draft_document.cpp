@@ -85,7 +85,7 @@ sim::Pose pose(const json& arguments) {
 }
 
 std::size_t position_of(const json& arguments, const char* name) {
-  const auto position = whole_argument(arguments, name, "a position in the list");
+  const auto position = argument<std::uint32_t>(arguments, name, "a position in the list");
   if (!position) {
     throw InputError(name, 0, "none", "a position in the list");
   }
@@ -156,10 +156,12 @@ WorldOperation remove(const json& arguments, const sim::WorldContents& world) {
 }
 
 WorldOperation duplicate(const json& arguments, const sim::WorldContents& world) {
-  return {"duplicate " + name_of(arguments, world),
-          [object = position_of(arguments, "object"), group = is_set(arguments, "group"),
-           step = vector(arguments, "step"), count = whole_argument(arguments, "count", "a whole number").value_or(1)](
-              WorldChange& change) { change.duplicate(object, group, step, count); }};
+  return {
+      "duplicate " + name_of(arguments, world),
+      [object = position_of(arguments, "object"), group = is_set(arguments, "group"), step = vector(arguments, "step"),
+       count = argument<std::uint32_t>(arguments, "count", "a whole number").value_or(1)](WorldChange& change) {
+        change.duplicate(object, group, step, count);
+      }};
 }
 
 WorldOperation add(const json& arguments, const sim::WorldContents& /*world*/) {
@@ -185,7 +187,7 @@ WorldOperation start(const json& arguments, const sim::WorldContents& /*world*/)
 }
 
 WorldOperation ruler(const json& arguments, const sim::WorldContents& /*world*/) {
-  const auto number = whole_argument(arguments, "ruler", "a position in the list, or null for a new one");
+  const auto number = argument<std::uint32_t>(arguments, "ruler", "a position in the list, or null for a new one");
   return {number ? "move ruler" : "add ruler",
           [number, from = vector(arguments, "from"), to = vector(arguments, "to")](WorldChange& change) {
             if (number) {

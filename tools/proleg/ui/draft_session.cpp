@@ -28,6 +28,14 @@ json lines_json(const std::vector<std::string>& texts) {
   return lines;
 }
 
+json unsaved_json(const KeptChanges& kept) {
+  json files = json::array();
+  for (const auto& [name, text] : kept.texts) {
+    files.push_back(one_line(name));
+  }
+  return {{"time_ms", kept.time_ms}, {"files", std::move(files)}};
+}
+
 }  // namespace
 
 DraftSession::DraftSession(std::optional<sim::Scenario> scenario, sim::FileSource& disk, DraftSessionOptions options,
@@ -37,6 +45,7 @@ DraftSession::DraftSession(std::optional<sim::Scenario> scenario, sim::FileSourc
     draft_.emplace(std::move(*scenario), disk);
     foresight_.emplace(output);
     output.publish("library", library_json());
+    open_journal();
   }
   publish();
   begin_thread();
@@ -48,7 +57,40 @@ void DraftSession::serve() {
   static_cast<void>(requests_.take_holder());
   take_operations();
   publish();
-  requests_.wait();
+  const auto due = journal_ ? journal_->due() : std::nullopt;
+  if (!due) {
+    requests_.wait();
+  } else if (Clock::now() >= *due) {
+    write_journal();
+  } else {
+    requests_.wait_until(*due);
+  }
+}
+
+void DraftSession::close() {
+  if (journal_ && journal_->due()) {
+    write_journal();
+  }
+}
+
+void DraftSession::open_journal() {
+  const std::string& path = draft_->scenario().path;
+  journal_.emplace(journal_path(path, options_.has_file && !is_shipped(path), options_.folder));
+  try {
+    kept_ = journal_->read(*draft_);
+  } catch (const InputError& error) {
+    output_.notice(host::NoticeLevel::warning,
+                   "unsaved changes of an earlier program cannot be restored: " + one_line(error.what()));
+  }
+}
+
+void DraftSession::write_journal() {
+  try {
+    journal_->write(*draft_);
+  } catch (const std::exception& error) {
+    output_.notice(host::NoticeLevel::warning,
+                   "unsaved changes are lost if this program ends: " + one_line(error.what()));
+  }
 }
 
 sim::Draft& DraftSession::draft() {
@@ -70,6 +112,9 @@ void DraftSession::publish() {
     return;
   }
   const sim::Scenario& scenario = draft.scenario();
+  if (journal_ && published_ != 0) {
+    journal_->note_change(Clock::now());
+  }
   if (published_ != draft.revision() + 1) {
     json robot = robot_document(scenario, "draft");
     // Meshes are large and seldom change.
@@ -98,6 +143,7 @@ void DraftSession::publish() {
                             {"changed", lines_json(changed)},
                             {"has_file", options_.has_file},
                             {"is_shipped", is_shipped(scenario.path)},
+                            {"unsaved", kept_ ? unsaved_json(*kept_) : json()},
                             {"warnings", lines_json(scenario.warnings)},
                             {"head", pose_json(scenario.environment.robot_pose * scenario.robot.links.front().pose)},
                             {"world", world_json(world)},
@@ -125,6 +171,7 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
   }
   static const std::map<std::string_view, Handler> handlers{
       {"draft.undo", &DraftSession::undo},       {"draft.redo", &DraftSession::redo},
+      {"draft.restore", &DraftSession::restore}, {"draft.discard", &DraftSession::discard},
       {"draft.refresh", &DraftSession::refresh}, {"draft.diff", &DraftSession::diff},
       {"draft.save", &DraftSession::save},       {"draft.save_as", &DraftSession::save_as}};
   return (this->*handler_of(handlers, operation.name))(operation.arguments);
@@ -162,13 +209,40 @@ json DraftSession::redo(const json& /*arguments*/) {
   return {{"revision", draft().revision()}};
 }
 
+json DraftSession::restore(const json& /*arguments*/) {
+  if (!kept_) {
+    throw std::runtime_error("there are no unsaved changes of an earlier program");
+  }
+  draft().change("restore unsaved changes", std::nullopt, [this](sim::DraftChange& change) {
+    for (const auto& [name, text] : kept_->texts) {
+      if (draft_->has(name)) {
+        change.apply(name, {0, draft_->text(name), text});
+      } else {
+        change.add_file(name, text);
+      }
+    }
+  });
+  kept_.reset();
+  return {{"revision", draft().revision()}};
+}
+
+json DraftSession::discard(const json& /*arguments*/) {
+  if (!kept_) {
+    throw std::runtime_error("there are no unsaved changes of an earlier program");
+  }
+  kept_.reset();
+  journal_->discard();
+  is_new_ = true;
+  return json::object();
+}
+
 json DraftSession::refresh(const json& /*arguments*/) { return {{"changed", draft().refresh()}}; }
 
 json DraftSession::diff(const json& /*arguments*/) {
-  constexpr std::size_t most_bytes = 256 * 1024;  // a person reads no more, and an answer has a limit
+  constexpr std::size_t most_text = 256 * 1024;  // a person reads no more, and an answer has a limit
   json files = json::array();
   for (const sim::Draft::ChangedFile& file : draft().changed_files()) {
-    const bool is_long = file.text.size() + file.saved.value_or("").size() > most_bytes;
+    const bool is_long = file.text.size() + file.saved.value_or("").size() > most_text;
     files.push_back({{"name", one_line(file.name)},
                      {"is_shipped", is_shipped(file.name)},
                      {"old", is_long || !file.saved ? json() : json(*file.saved)},
@@ -221,6 +295,8 @@ json DraftSession::save_as(const json& arguments) {
   const std::string file = names.at(scenario.sources.front().path);
   draft().rename_files(names, file);
   options_.has_file = true;
+  journal_->discard();
+  journal_.emplace(journal_path(file, true, options_.folder));
   is_new_ = true;
   output_.notice(host::NoticeLevel::info, "saved as " + one_line(file) + "; Save writes there from now on");
   return {{"file", one_line(file)}};

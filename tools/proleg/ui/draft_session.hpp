@@ -12,6 +12,7 @@
 
 #include "sim/authoring/draft.hpp"
 #include "sim/authoring/world.hpp"
+#include "tools/proleg/ui/draft_journal.hpp"
 #include "tools/proleg/ui/foresight.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -39,8 +40,12 @@ class DraftSession final : private SessionThread {
   void serve() override;
   /// The draft stays as it was.
   void fail(const std::string& /*why*/) override {}
+  void close() override;
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
 
+  /// Finds the unsaved changes of an earlier program.
+  void open_journal();
+  void write_journal();
   void publish();
   void note_layout(const sim::WorldContents& world);
   [[nodiscard]] sim::Draft& draft();
@@ -52,6 +57,8 @@ class DraftSession final : private SessionThread {
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json refresh(const nlohmann::json& arguments);
   nlohmann::json diff(const nlohmann::json& arguments);
+  nlohmann::json restore(const nlohmann::json& arguments);
+  nlohmann::json discard(const nlohmann::json& arguments);
   nlohmann::json save(const nlohmann::json& arguments);
   nlohmann::json save_as(const nlohmann::json& arguments);
 
@@ -60,7 +67,9 @@ class DraftSession final : private SessionThread {
   sim::FileSource& disk_;
   std::optional<sim::Draft> draft_;
   std::optional<Foresight> foresight_;
-  std::uint64_t published_ = 0;  ///< revision of the draft, plus 1
+  std::optional<DraftJournal> journal_;
+  std::optional<KeptChanges> kept_;  ///< of an earlier program, until somebody decides about them
+  std::uint64_t published_ = 0;      ///< revision of the draft, plus 1
   std::string published_meshes_;
   std::vector<std::size_t> layout_;  ///< of the lists of the world: what their positions depend on
   std::uint64_t layout_since_ = 0;   ///< revision since which it is the same

@@ -172,9 +172,9 @@ json RecordedSession::rows(const json& arguments) {
   RecordedRun::Request request;
   request.signals =
       argument<std::vector<std::string>>(arguments, "signals", "names of signals").value_or(request.signals);
-  request.from = whole_argument(arguments, "from", tick).value_or(0);
-  request.to = whole_argument(arguments, "to", tick).value_or(0);
-  request.points = whole_argument(arguments, "points", "a whole number").value_or(request.points);
+  request.from = argument<std::uint32_t>(arguments, "from", tick).value_or(0);
+  request.to = argument<std::uint32_t>(arguments, "to", tick).value_or(0);
+  request.points = argument<std::uint32_t>(arguments, "points", "a whole number").value_or(request.points);
   return json::binary(run_of(arguments).run->rows(request));
 }
 

@@ -3,13 +3,14 @@
 // What the sessions behind the page have in common: the way of an operation to its session, the requests that wait for
 // the session's thread, that thread, and the arguments of operations.
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <concepts>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "host/server/robot_session.hpp"
@@ -25,33 +27,50 @@
 
 namespace proleg::tools {
 
-/// An argument of an operation, or nothing. Throws InputError if it has another type. expected: for the message.
+/// Whether a JSON value is a number that the type has. The library converts 1e99 to an integer, too, to any.
+template <std::integral Integer>
+bool is_whole_number(const nlohmann::json& value) {
+  if (value.is_number_unsigned()) {
+    return std::in_range<Integer>(value.get<std::uint64_t>());
+  }
+  return value.is_number_integer() && std::in_range<Integer>(value.get<std::int64_t>());
+}
+
+/// Whether a JSON value can become one of this type without a loss. Types that are no numbers are checked by the
+/// library.
+template <typename Value>
+struct IsExactly {
+  static bool check(const nlohmann::json& value) {
+    if constexpr (std::integral<Value> && !std::same_as<Value, bool>) {
+      return is_whole_number<Value>(value);
+    } else {
+      return true;
+    }
+  }
+};
+template <typename Element>
+struct IsExactly<std::vector<Element>> {
+  static bool check(const nlohmann::json& value) {
+    return std::all_of(value.begin(), value.end(), IsExactly<Element>::check);
+  }
+};
+
+/// An argument of an operation, or nothing. Throws InputError if it has another type, or is a number that the type does
+/// not have. expected: for the message.
 template <typename Value>
 std::optional<Value> argument(const nlohmann::json& arguments, const char* name, const char* expected) {
   const auto found = arguments.find(name);
   if (found == arguments.end() || found->is_null()) {
     return std::nullopt;
   }
+  if (!IsExactly<Value>::check(*found)) {
+    throw InputError(name, 0, shortened(found->dump()), expected);
+  }
   try {
     return found->get<Value>();
   } catch (const nlohmann::json::exception&) {
     throw InputError(name, 0, shortened(found->dump()), expected);
   }
-}
-
-/// A whole number from 0 to 2^32 - 1. Nothing is converted or cut: -1 and 2.5 are errors, too.
-inline std::optional<std::uint32_t> whole_argument(const nlohmann::json& arguments, const char* name,
-                                                   const char* expected) {
-  const auto found = arguments.find(name);
-  if (found == arguments.end() || found->is_null()) {
-    return std::nullopt;
-  }
-  const bool is_natural =
-      found->is_number_unsigned() || (found->is_number_integer() && found->get<std::int64_t>() >= 0);
-  if (!is_natural || found->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError(name, 0, shortened(found->dump()), expected);
-  }
-  return found->get<std::uint32_t>();
 }
 
 /// For the documents of sessions: null if the text is empty.

@@ -307,7 +307,7 @@ json SimulatedSession::record(const json& arguments) {
 
 json SimulatedSession::continue_recording(const json& arguments) {
   const auto file = argument<std::string>(arguments, "file", "the name of a recording");
-  const auto tick = whole_argument(arguments, "tick", "a tick of the recording");
+  const auto tick = argument<std::uint32_t>(arguments, "tick", "a tick of the recording");
   if (!tick) {
     throw InputError("tick", 0, "none", "a tick of the recording");
   }

@@ -65,6 +65,25 @@ function Bar({ app }: { app: MakeApp }) {
   );
 }
 
+// Changes that an earlier program did not save.
+function Unsaved({ app }: { app: MakeApp }) {
+  const unsaved = app.draft.value?.unsaved ?? null;
+  if (unsaved === null) return null;
+  const isDisabled = app.obstacle() !== null;
+  const tell = (name: 'draft.restore' | 'draft.discard') => void app.page.operations.tell(name, {});
+  return (
+    <div class="band info" role="status" data-testid="unsaved">
+      There are changes that were not saved, of {new Date(unsaved.time_ms).toLocaleString()}: {unsaved.files.join(', ')}.{' '}
+      <button type="button" disabled={isDisabled} onClick={() => tell('draft.restore')}>
+        Restore
+      </button>{' '}
+      <button type="button" disabled={isDisabled} onClick={() => tell('draft.discard')}>
+        Discard
+      </button>
+    </div>
+  );
+}
+
 function foresightText(foresight: ForesightDocument): string {
   if (foresight.failure !== null) {
     return `After ${foresight.seconds.toFixed(1)} s: ${foresight.failure}`;
@@ -142,6 +161,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
     <div class="make">
       <Bar app={app} />
       {app.isSaving.value && <SavePanel app={app} />}
+      <Unsaved app={app} />
       {draft.warnings.map((warning) => (
         <div class="band info" role="status" key={warning}>
           {warning}

@@ -313,6 +313,7 @@ export interface DraftDocument {
   redo: string | null;
   changed: string[]; // files that differ from the disk
   has_file: boolean;
+  unsaved: { time_ms: number; files: string[] } | null; // changes that an earlier program did not save
   is_shipped: boolean; // the files ship with Proleg: only a copy can be saved
   warnings: string[];
   head: PoseArray; // of the robot, at the start
@@ -433,6 +434,8 @@ export interface Operations {
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;
   'draft.refresh': Record<string, never>;
+  'draft.restore': Record<string, never>;
+  'draft.discard': Record<string, never>;
   'draft.diff': Record<string, never>;
   'draft.save': Record<string, never>;
   'draft.save_as': { folder: string };

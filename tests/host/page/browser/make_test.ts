@@ -1,7 +1,7 @@
 // The page Make: a world is made by clicks and drags, foreseen, simulated and saved; what it saves is what the command line reads.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, it } from 'node:test';
@@ -165,4 +165,43 @@ describe('the page Make', () => {
       await page().screenshot({ path: `build/page_test/make_${width}.png`, fullPage: true });
     });
   }
+});
+
+describe('unsaved changes', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
+  cpSync('sim/scenarios/travelling_wave', folder, { recursive: true });
+  const start = () => UiProgram.start(join(folder, 'uniform.simulation.xml'), ['--recordings', folder]);
+  const ui = useUi(start, { isPerTest: true, takesControl: true });
+
+  after(() => rmSync(folder, { recursive: true }));
+
+  const journal = join(folder, '.uniform.simulation.xml.unsaved');
+  const kept = () => (existsSync(journal) ? readFileSync(journal, 'utf8') : '');
+
+  it('are kept when the program is killed in the middle of a drag', async () => {
+    const { page } = ui.viewer;
+    await page.keyboard.press('3');
+    await page.getByRole('region', { name: 'Library' }).getByRole('button', { name: 'sphere', exact: true }).click();
+    await page.getByRole('button', { name: 'Add sphere' }).click();
+    const sphere = page.locator('[data-testid=map-top] .object.chosen polygon');
+    await sphere.waitFor();
+    const box = await sphere.boundingBox();
+    assert.ok(box !== null);
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 100, box.y + box.height / 2, { steps: 10 });
+    assert.ok(await waitUntil(() => Promise.resolve(/KinBody name=\\"sphere/.test(kept()))));
+    process.kill(ui.program.pid, 'SIGKILL');
+    await page.getByTestId('connection-band').waitFor();
+  });
+
+  it('are offered at the next start, and can be restored', async () => {
+    const { page } = ui.viewer;
+    await page.keyboard.press('3');
+    await page.getByTestId('unsaved').getByRole('button', { name: 'Restore' }).click();
+    await page.getByRole('region', { name: 'Objects' }).getByRole('button', { name: 'sphere', exact: true }).waitFor();
+    assert.equal(await page.getByTestId('unsaved').count(), 0);
+    await page.keyboard.press('Control+z');
+    assert.ok(await waitUntil(async () => (await page.getByTestId('draft-state').textContent()) === 'saved'), 'undo goes back to the files');
+  });
 });

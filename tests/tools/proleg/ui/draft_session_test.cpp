@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -249,6 +250,71 @@ TEST_F(DraftSessionTest, ItsSimulationIsTheOneOfItsFiles) {
   ASSERT_TRUE(robot_viewers.answer(3).is_done);
   robot_requests.operate({4, "command_line", json::object(), 1, "a test"});
   EXPECT_NE(robot_viewers.answer(4).text.find("simulate " + file_), std::string::npos) << robot_viewers.answer(4).text;
+}
+
+TEST_F(DraftSessionTest, UnsavedChangesOutliveTheProgram) {
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  EXPECT_EQ(draft(0)["unsaved"], json());
+  const json before = add_box();
+  open();  // the program ends and begins again
+  EXPECT_TRUE(std::filesystem::exists(journal));
+  json document = draft(0);
+  ASSERT_EQ(document["revision"], 0);
+  EXPECT_EQ(document["unsaved"]["files"], json({world_file()}));
+  must("draft.restore");
+  document = draft(1);
+  EXPECT_EQ(document["world"], before["world"]);
+  EXPECT_EQ(document["unsaved"], json());
+  must("draft.undo");
+  EXPECT_EQ(draft(2)["world"]["objects"].size(), 1U) << "undo goes back to the files";
+  must("draft.redo");
+  must("draft.save");
+  open();
+  EXPECT_FALSE(std::filesystem::exists(journal)) << "all is saved";
+  EXPECT_EQ(draft(0)["unsaved"], json());
+}
+
+TEST_F(DraftSessionTest, UnsavedChangesCanBeDiscarded) {
+  add_box();
+  open();
+  must("draft.discard");
+  EXPECT_EQ(
+      viewers_.document_when("draft", [](const json& document) { return document["unsaved"].is_null(); })["changed"],
+      json::array());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "mine/.uniform.simulation.xml.unsaved"));
+  EXPECT_FALSE(ask("draft.restore").is_done);
+}
+
+TEST_F(DraftSessionTest, UnsavedChangesOfOtherFilesAreNotRestored) {
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  add_box();
+  session_.reset();
+  std::ofstream(world_file(), std::ios::app) << "<!-- by hand -->\n";
+  open();
+  EXPECT_EQ(draft(0)["unsaved"], json());
+  EXPECT_NE(viewers_.notices().find("has changed since"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(journal + ".old")) << "nothing is lost";
+  session_.reset();
+  for (const char* damage : {"", "{}", "no JSON", R"({"format":1,"process":1e99})", R"({"format":2})",
+                             R"({"format":1,"process":0,"time_ms":1,"files":{"a":{"base":null,"text":5}}})"}) {
+    std::ofstream(journal) << damage;
+    open();
+    EXPECT_EQ(draft(0)["unsaved"], json()) << damage;
+    session_.reset();
+  }
+}
+
+TEST_F(DraftSessionTest, AFullDiskIsSaidOnce) {
+  session_.reset();
+  std::filesystem::create_directory(folder_ / "mine/.uniform.simulation.xml.unsaved");  // nothing can be written there
+  open();
+  add_box();
+  must("world.friction", {{"object", 1}, {"value", 0.25}});
+  session_.reset();
+  const std::string notices = viewers_.notices();
+  const std::size_t first = notices.find("unsaved changes are lost");
+  EXPECT_NE(first, std::string::npos);
+  EXPECT_EQ(notices.find("unsaved changes are lost", first + 1), std::string::npos);
 }
 
 TEST(DraftSessionWithoutAScenario, RefusesEveryChange) {

@@ -279,7 +279,7 @@ TEST(LiveSimulation, AMoveIsSeenAtOnceAndARestartForgetsIt) {
 TEST(LiveSimulation, AMoveThatIsRefusedChangesNothing) {
   LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 20);
-  for (const char* place : {"1e3,0,0,0", "0,0,99,0", "nan,0,0,0", "0,0,0", "0,0,0,0@5", ""}) {
+  for (const char* place : {"1.5e3,0,0,0", "0,0,99,0", "nan,0,0,0", "0,0,0", "0,0,0,0@5", ""}) {
     EXPECT_THROW(live.move(place), InputError) << place;
   }
   advance(live, 20);

@@ -37,6 +37,21 @@ TEST(SessionRouter, RobotRemoteControlRecordingsAndDraftGetTheirOwn) {
   EXPECT_EQ(remote.take_stops(outdated).size(), 1U);
 }
 
+TEST(Argument, IsTakenOnlyIfItsTypeHasIt) {
+  const auto whole = [](const nlohmann::json& value) {
+    return argument<std::uint32_t>({{"number", value}}, "number", "a whole number");
+  };
+  EXPECT_EQ(whole(4294967295U), 4294967295U);
+  EXPECT_EQ(whole(nullptr), std::nullopt);
+  for (const nlohmann::json& value : {nlohmann::json(-1), nlohmann::json(4294967296), nlohmann::json(1e99),
+                                      nlohmann::json(2.0), nlohmann::json("2"), nlohmann::json::array({2})}) {
+    EXPECT_THROW(static_cast<void>(whole(value)), InputError) << value;
+    const nlohmann::json list{{"numbers", nlohmann::json::array({1, value})}};
+    EXPECT_THROW(static_cast<void>(argument<std::vector<std::uint32_t>>(list, "numbers", "whole numbers")), InputError);
+  }
+  EXPECT_EQ(argument<double>({{"number", 1e99}}, "number", "a number"), 1e99);
+}
+
 host::OperationRequest operation(host::RequestId request) {
   return {request, "run", nlohmann::json::object(), 1, "desk"};
 }

@@ -124,8 +124,9 @@ describe('the page Make', () => {
     assert.ok(await waitUntil(async () => (await state()) === 'saved'));
     const saved = readFileSync(worldFile, 'utf8');
     assert.equal(saved.replace(`${lines}\n`, ''), original);
-    const distance = /: (\d\.\d\d) m/.exec(await foresight())?.[1];
+    await page().locator('.foresight-text:not(.old)').waitFor(); // of this revision
     const engine = /ODE/.test(await foresight()) ? 'ode' : 'reduced';
+    const distance = /: (\d\.\d\d) m/.exec(await foresight())?.[1];
     const json = execFileSync(program, ['simulate', scenario, '--engine', engine, '--json'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
     assert.equal((JSON.parse(json) as { measures: { distance: number } }).measures.distance.toFixed(2), distance);
   });

@@ -218,7 +218,7 @@ const std::vector<LibraryDeclaration>& library() {
       {LibraryItem::rough,
        "rough ground",
        "A field of random bumps.",
-       {of_width,
+       {{"width", "Across the way of the robot.", "m", 0.2, 10.0, 1.0},
         {"length", "Along the way of the robot.", "m", 0.2, 10.0, 1.0},
         {"height", "Of the highest bump.", "m", 0.001, 1.0, 0.03},
         {"seed", "Another number makes other bumps.", "", 0.0, 4294967295.0, 1.0, true},

@@ -168,13 +168,12 @@ TEST_F(WorldTest, ObjectsAreRenamedRemovedAndRepeated) {
 TEST_F(WorldTest, EveryItemOfTheLibraryIsAWorldThatCanBeSimulated) {
   for (const LibraryDeclaration& item : library()) {
     SCOPED_TRACE(std::string(item.name));
-    for (const bool is_extreme : {false, true}) {
+    for (const double LibraryParameter::*extreme :
+         {&LibraryParameter::usual, &LibraryParameter::lowest, &LibraryParameter::highest}) {
       Draft draft(files_.scenario(), files_);
       std::map<std::string, double> values;
-      if (is_extreme) {
-        for (const LibraryParameter& parameter : item.parameters) {
-          values[std::string(parameter.name)] = parameter.lowest;
-        }
+      for (const LibraryParameter& parameter : item.parameters) {
+        values[std::string(parameter.name)] = parameter.*extreme;
       }
       change_world(draft, [&](WorldChange& change) { change.add(item.item, values, {0.3, 2, 0}, 90); });
       EXPECT_TRUE(std::ranges::any_of(read_world_contents(draft).objects,

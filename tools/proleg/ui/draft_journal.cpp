@@ -75,20 +75,28 @@ std::optional<KeptChanges> DraftJournal::read(const sim::Draft& draft) {
         is_of_other_ = true;
         return std::nullopt;
       }
+      KeptChanges changes = changes_of(document, draft);
       exists_ = true;
-      return changes_of(document, draft);
+      has_kept_ = true;
+      return changes;
     } catch (const json::exception&) {
       throw InputError(path_.string(), 0, "no unsaved changes", "a file that this program has written");
     }
   } catch (const InputError&) {
-    std::error_code ignored;
-    fs::rename(path_, path_.string() + ".old", ignored);
-    exists_ = false;
+    put_aside();
     throw;
   }
 }
 
+void DraftJournal::put_aside() {
+  std::error_code ignored;
+  fs::rename(path_, path_.string() + ".old", ignored);
+  exists_ = false;
+  has_kept_ = false;
+}
+
 void DraftJournal::discard() {
+  has_kept_ = false;
   if (std::exchange(exists_, false)) {
     std::error_code ignored;
     fs::remove(path_, ignored);
@@ -103,6 +111,9 @@ void DraftJournal::note_change(Clock::time_point now) {
 
 void DraftJournal::write(const sim::Draft& draft) {
   due_.reset();
+  if (has_kept_) {
+    put_aside();
+  }
   const std::vector<sim::Draft::ChangedFile> changed = draft.changed_files();
   if (changed.empty()) {
     discard();
@@ -131,8 +142,12 @@ void DraftJournal::write(const sim::Draft& draft) {
 
 fs::path journal_path(const std::string& scenario, bool is_own_file, const fs::path& folder) {
   const fs::path path(scenario);
-  const std::string name = "." + path.filename().string() + ".unsaved";
-  return is_own_file ? path.parent_path() / name : folder / name;
+  const std::string name = "." + path.filename().string();
+  constexpr std::size_t digits = 8;
+  return is_own_file
+             ? path.parent_path() / (name + ".unsaved")
+             : folder / (name + "." + sha256_hex(fs::absolute(path).lexically_normal().string()).substr(0, digits) +
+                         ".unsaved");
 }
 
 }  // namespace proleg::tools

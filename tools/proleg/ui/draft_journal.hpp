@@ -33,8 +33,11 @@ class DraftJournal {
   /// does not fit: the file is damaged, or the files of the draft have changed since. Then it is kept under another
   /// name. Nothing if there is none, or if another program that still runs uses it.
   [[nodiscard]] std::optional<KeptChanges> read(const sim::Draft& draft);
-  /// Removes what read() has found.
+  /// Removes the file.
   void discard();
+  /// What read() has found is in the draft now, or is not wanted: write() may replace it. Before that it keeps it under
+  /// another name.
+  void forget_kept() { has_kept_ = false; }
 
   /// The draft has changed, or was saved.
   void note_change(Clock::time_point now);
@@ -44,14 +47,18 @@ class DraftJournal {
   void write(const sim::Draft& draft);
 
  private:
+  void put_aside();
+
   std::filesystem::path path_;
   std::optional<Clock::time_point> due_;
   bool is_of_other_ = false;  ///< another program uses the file
   bool has_failed_ = false;
-  bool exists_ = false;
+  bool exists_ = false;    ///< the file
+  bool has_kept_ = false;  ///< the file has changes of an earlier program
 };
 
-/// The journal of the draft of a scenario: beside its top-level file, or for one that is not the user's in the folder.
+/// The journal of the draft of a scenario: beside its top-level file; for one that is not the user's in the folder,
+/// under a name that no other scenario has.
 [[nodiscard]] std::filesystem::path journal_path(const std::string& scenario, bool is_own_file,
                                                  const std::filesystem::path& folder);
 

@@ -223,6 +223,7 @@ json DraftSession::restore(const json& /*arguments*/) {
     }
   });
   kept_.reset();
+  journal_->forget_kept();
   return {{"revision", draft().revision()}};
 }
 

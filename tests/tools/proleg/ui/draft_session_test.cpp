@@ -285,6 +285,17 @@ TEST_F(DraftSessionTest, UnsavedChangesCanBeDiscarded) {
   EXPECT_FALSE(ask("draft.restore").is_done);
 }
 
+TEST_F(DraftSessionTest, UnsavedChangesAboutWhichNobodyDecidesAreKeptAside) {
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  add_box();
+  open();
+  must("world.friction", {{"object", 0}, {"value", 0.25}});
+  must("draft.undo");
+  session_.reset();
+  EXPECT_NE(file_contents(journal + ".old").find("box"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(journal));
+}
+
 TEST_F(DraftSessionTest, UnsavedChangesOfOtherFilesAreNotRestored) {
   const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
   add_box();

@@ -1,0 +1,129 @@
+// Reads arbitrary input as an environment file in a draft, and changes it. An input is bytes of the operations, up to a
+// line "===", then the text. For every input each operation must have its effect or throw an InputError of one line and
+// have none; and undo must return to every earlier text.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "memory_files.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "sim/authoring/draft.hpp"
+#include "sim/authoring/world.hpp"
+#include "tests/support/fuzz_input.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::sim;
+using test::require;
+
+constexpr const char* file = "environment.xml";
+constexpr std::size_t most_operations = 24;
+
+double number(test::FuzzInput& input) { return (static_cast<double>(input.byte()) - 128.0) / 16.0; }
+
+Eigen::Vector3d vector(test::FuzzInput& input) {
+  const double x = number(input);
+  const double y = number(input);
+  return {x, y, number(input)};
+}
+
+void change(WorldChange& world, test::FuzzInput& input) {
+  const std::uint8_t kind = input.byte() % 13;
+  const std::size_t at = input.byte() % 8;
+  const bool group = input.byte() % 2 == 0;
+  switch (kind) {
+    case 0: {
+      const Eigen::Vector3d place = vector(input);
+      const Eigen::Quaterniond turn(number(input), number(input), number(input), 1.0);
+      return world.place(at, {place, turn.normalized()}, group);
+    }
+    case 1: {
+      std::vector<double> size(input.byte() % 4);
+      std::ranges::generate(size, [&] { return number(input); });
+      return world.set_size(at, input.byte() % 3, size);
+    }
+    case 2:
+      return world.set_friction(at, group ? std::nullopt : std::optional(number(input)));
+    case 3:
+      return world.set_colour(at, vector(input) / 8.0);
+    case 4:
+      return world.set_moves(at, group);
+    case 5:
+      return world.set_mass(at, number(input));
+    case 6:
+      return world.rename(at, std::string(input.byte() % 70, static_cast<char>(input.byte())));
+    case 7:
+      return world.remove(at, group);
+    case 8:
+      return world.duplicate(at, group, vector(input), input.byte() % 4);
+    case 9: {
+      const LibraryDeclaration& item = library()[input.byte() % library().size()];
+      std::map<std::string, double> values;
+      for (const LibraryParameter& parameter : item.parameters) {
+        if (input.byte() % 2 == 0) {
+          values[std::string(parameter.name)] = number(input);
+        }
+      }
+      return world.add(item.item, values, vector(input), number(input) * 50.0);
+    }
+    case 10:
+      return group ? world.add_ruler(vector(input), vector(input)) : world.set_ruler(at, vector(input), vector(input));
+    case 11:
+      return world.remove_ruler(at);
+    default:
+      return world.set_start(vector(input), vector(input));
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view all(reinterpret_cast<const char*>(data), size);
+  constexpr std::string_view separator = "===\n";
+  const std::size_t end = all.find(separator);
+  if (end == std::string_view::npos) {
+    return 0;
+  }
+  MemoryFiles files = small_scenario();
+  files.texts[file] = std::string(all.substr(end + separator.size()));
+  std::optional<Draft> draft;
+  try {
+    draft.emplace(files.scenario(), files);
+  } catch (const InputError&) {
+    return 0;  // the scenario reader has a target of its own
+  }
+  test::FuzzInput input(std::span(data, end));
+  std::vector<std::string> states{draft->text(file)};
+  for (std::size_t i = 0; i < most_operations && !input.empty(); ++i) {
+    const WorldContents world = read_world_contents(*draft);
+    try {
+      draft->change("change", std::nullopt, [&](DraftChange& edit) {
+        WorldChange world_change(world, edit);
+        change(world_change, input);
+      });
+    } catch (const InputError& error) {
+      require(draft->text(file) == states.back(), "what is refused changes nothing");
+      const std::string_view message = error.what();
+      require(std::ranges::none_of(message, [](char c) { return static_cast<unsigned char>(c) < 0x20; }),
+              "a message is one line");
+    }
+    if (draft->text(file) != states.back()) {
+      states.push_back(draft->text(file));
+    }
+  }
+  for (std::size_t i = states.size() - 1; i > 0; --i) {
+    require(draft->undo() && draft->text(file) == states[i - 1], "undo returns to the text before");
+  }
+  require(!draft->undo(), "each change is one entry");
+  return 0;
+}

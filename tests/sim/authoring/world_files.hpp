@@ -6,7 +6,7 @@
 
 #include "memory_files.hpp"
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/world.hpp"
+#include "sim/authoring/world_change.hpp"
 
 namespace proleg::sim {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/world.hpp"
+#include "sim/authoring/world_change.hpp"
 
 namespace proleg::tools {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/world.hpp"
+#include "sim/authoring/world_change.hpp"
 #include "tools/proleg/ui/draft_journal.hpp"
 #include "tools/proleg/ui/foresight.hpp"
 #include "tools/proleg/ui/present_draft.hpp"

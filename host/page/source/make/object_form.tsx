@@ -25,6 +25,32 @@ function fromHex(text: string): [number, number, number] {
   return [part(1), part(3), part(5)];
 }
 
+const axisTitles = ['to the right', 'the way of the robot', 'up'] as const;
+
+interface Place {
+  place: Vector;
+  isDisabled: boolean;
+  commit(place: Vector): Promise<string | null>;
+}
+
+function PlaceFields({ place, isDisabled, commit }: Place) {
+  return (
+    <>
+      {axes.map((axis, i) => (
+        <NumberField
+          key={axis}
+          label={axis}
+          unit="m"
+          value={place[i] as number}
+          isDisabled={isDisabled}
+          title={axisTitles[i] as string}
+          commit={(value) => commit(place.map((old, at) => (at === i ? value : old)) as unknown as Vector)}
+        />
+      ))}
+    </>
+  );
+}
+
 function NameField({ app, number, object }: { app: MakeApp; number: number; object: WorldObject }) {
   const problem = useSignal<string | null>(null);
   return (
@@ -114,21 +140,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
       <NameField app={app} number={number} object={object} />
       {object.group_size > 1 && <p class="hint">One of {object.group_size} parts, which move together. Ctrl and drag moves it alone.</p>}
       <div class="fields">
-        {axes.map((axis, i) => (
-          <NumberField
-            key={axis}
-            label={axis}
-            unit="m"
-            value={pose.position[i] as number}
-            isDisabled={isDisabled}
-            title={['to the right', 'the way of the robot', 'up'][i] ?? ''}
-            commit={(value) => {
-              const position: [number, number, number] = [...pose.position];
-              position[i] = value;
-              return place(position);
-            }}
-          />
-        ))}
+        <PlaceFields place={pose.position} isDisabled={isDisabled} commit={place} />
         <NumberField
           label="turn"
           unit="°"
@@ -215,16 +227,7 @@ export function StartForm({ app }: { app: MakeApp }) {
   const replaced = (values: readonly number[], at: number, value: number) => values.map((old, i) => (i === at ? value : old));
   return (
     <div class="fields">
-      {axes.map((axis, i) => (
-        <NumberField
-          key={axis}
-          label={axis}
-          unit="m"
-          value={start.position[i] as number}
-          isDisabled={isDisabled}
-          commit={(value) => change(replaced(start.position, i, value), start.degrees)}
-        />
-      ))}
+      <PlaceFields place={start.position} isDisabled={isDisabled} commit={(position) => change(position, start.degrees)} />
       <NumberField
         label="turn"
         unit="°"

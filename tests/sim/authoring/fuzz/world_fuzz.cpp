@@ -17,7 +17,7 @@
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/world.hpp"
+#include "sim/authoring/world_change.hpp"
 #include "tests/support/fuzz_input.hpp"
 
 namespace {

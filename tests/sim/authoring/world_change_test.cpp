@@ -1,4 +1,4 @@
-#include "sim/authoring/world.hpp"
+#include "sim/authoring/world_change.hpp"
 
 #include <gtest/gtest.h>
 

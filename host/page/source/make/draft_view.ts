@@ -41,6 +41,8 @@ export class DraftView implements RobotView {
       if (robot === null || head === undefined) return;
       this.place(head, robot.joints.length);
       this.state.robot.value = { ...robot, meshes: [...meshes] };
+      // The view forgets the path with the robot; the old one is right until the next comes.
+      this.wholePath.value = this.wholePath.peek()?.slice() ?? null;
     });
     effect(() => {
       const path = page.foresight.value?.path ?? [];

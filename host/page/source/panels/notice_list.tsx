@@ -34,7 +34,7 @@ function NoticeView({ notice }: { notice: Notice }) {
 }
 
 export function NoticeList({ app: { shownPage, state } }: { app: Stores<'shownPage' | 'state'> }) {
-  const isLiveInFront = (shownPage.value === 'live' || state.isAlone.value) && openDialog.value === 'none';
+  const isLiveInFront = (shownPage.value !== 'recordings' || state.isAlone.value) && openDialog.value === 'none';
   const shown = state.noticesFor(isLiveInFront).filter((notice) => !closed.value.has(notice.number)).slice(-mostShown);
   return (
     <ul class="notices" aria-live="polite" aria-label="Notices">

@@ -58,6 +58,16 @@ std::string element_text(std::string_view tag, std::string_view content) {
   return "<" + std::string(tag) + ">" + escaped(content) + "</" + std::string(tag) + ">";
 }
 
+void set_tag(DraftChange& change, const std::string& file, ElementNumber parent, std::string_view tag,
+             const std::string& content) {
+  const XmlText& xml = change.xml(file);
+  if (const auto child = xml.child(parent, tag)) {
+    change.apply(file, xml.set_content(*child, content));
+  } else {
+    change.apply(file, xml.add_last(parent, element_text(tag, content)));
+  }
+}
+
 std::string unindented(const XmlText& xml, ElementNumber element) {
   const std::string_view text = xml.text();
   const std::size_t begin = xml.at(element).tag.begin;

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sim/authoring/draft.hpp"
 #include "sim/authoring/xml_text.hpp"
 
 namespace proleg::sim {
@@ -24,6 +25,10 @@ namespace proleg::sim {
 [[nodiscard]] std::optional<std::string> rotation_text(const Eigen::Quaterniond& rotation);
 /// "<tag>content</tag>"
 [[nodiscard]] std::string element_text(std::string_view tag, std::string_view content);
+
+/// Sets the content of a child of an element, or adds the child as the last one.
+void set_tag(DraftChange& change, const std::string& file, ElementNumber parent, std::string_view tag,
+             const std::string& content);
 
 /// The lines of an element without its indentation, as XmlText::add_behind() takes them.
 [[nodiscard]] std::string unindented(const XmlText& xml, ElementNumber element);

@@ -72,15 +72,6 @@ const WorldObject& WorldChange::editable(std::size_t number) const {
   return found;
 }
 
-/// Sets the content of a child, or adds the child as the last one.
-void WorldChange::set_tag(ElementNumber parent, std::string_view tag, const std::string& content) {
-  if (const auto child = xml().child(parent, tag)) {
-    apply(xml().set_content(*child, content));
-  } else {
-    apply(xml().add_last(parent, element_text(tag, content)));
-  }
-}
-
 /// Gives an element this pose in the frame around it. A rotation that is as it should be keeps its tags.
 void WorldChange::set_pose(ElementNumber element, const Pose& pose) {
   const Pose before = local_pose(xml(), element);
@@ -167,12 +158,12 @@ void WorldChange::write_size(const WorldShape& shape, const std::vector<double>&
     for (const double side : size) {
       halves += (halves.empty() ? "" : " ") + length_text(side / 2.0);
     }
-    set_tag(shape.element, "extents", halves);
+    set_tag_of(shape.element, "extents", halves);
     return;
   }
-  set_tag(shape.element, "radius", length_text(size[0]));
+  set_tag_of(shape.element, "radius", length_text(size[0]));
   if (size.size() > 1) {
-    set_tag(shape.element, "height", length_text(size[1]));
+    set_tag_of(shape.element, "height", length_text(size[1]));
   }
 }
 
@@ -182,7 +173,7 @@ void WorldChange::set_friction(std::size_t number, std::optional<double> frictio
   for (std::size_t i = found.shapes.size(); i-- > 0;) {
     const ElementNumber geom = found.shapes[i].element;
     if (friction) {
-      set_tag(geom, "friction", number_text_of(*friction));
+      set_tag_of(geom, "friction", number_text_of(*friction));
     } else if (const auto tag = xml().child(geom, "friction")) {
       apply(xml().remove(*tag));
     }
@@ -192,7 +183,7 @@ void WorldChange::set_friction(std::size_t number, std::optional<double> frictio
 void WorldChange::set_colour(std::size_t number, const Eigen::Vector3d& colour) {
   const WorldObject& found = editable(number);
   for (std::size_t i = found.shapes.size(); i-- > 0;) {
-    set_tag(found.shapes[i].element, "diffuseColor", vector_text(colour));
+    set_tag_of(found.shapes[i].element, "diffuseColor", vector_text(colour));
   }
 }
 
@@ -221,7 +212,7 @@ void WorldChange::set_mass(std::size_t number, double mass) {
     const XmlText::Element& tag = xml().at(*density);
     apply(xml().replace({tag.tag.begin, tag.end}, element_text("total", number_text_of(mass))));
   } else {
-    set_tag(*element, "total", number_text_of(mass));
+    set_tag_of(*element, "total", number_text_of(mass));
   }
 }
 
@@ -317,8 +308,8 @@ void WorldChange::set_ruler(std::size_t ruler, const Eigen::Vector3d& from, cons
   if (ruler >= world_.rulers.size()) {
     throw InputError("ruler", 0, std::to_string(ruler), "a number below " + std::to_string(world_.rulers.size()));
   }
-  set_tag(world_.rulers[ruler].element, "from", vector_text(from));
-  set_tag(world_.rulers[ruler].element, "to", vector_text(to));
+  set_tag_of(world_.rulers[ruler].element, "from", vector_text(from));
+  set_tag_of(world_.rulers[ruler].element, "to", vector_text(to));
 }
 
 void WorldChange::remove_ruler(std::size_t ruler) {

@@ -13,6 +13,7 @@
 
 #include "sim/authoring/draft.hpp"
 #include "sim/authoring/library_items.hpp"
+#include "sim/authoring/scenario_text.hpp"
 #include "sim/authoring/world_contents.hpp"
 #include "sim/robot/pose.hpp"
 
@@ -53,7 +54,9 @@ class WorldChange {
   [[nodiscard]] const XmlText& xml() { return change_.xml(world_.file); }
   void apply(const TextPatch& patch) { change_.apply(world_.file, patch); }
   void write_size(const WorldShape& shape, const std::vector<double>& size);
-  void set_tag(ElementNumber parent, std::string_view tag, const std::string& content);
+  void set_tag_of(ElementNumber parent, std::string_view tag, const std::string& content) {
+    set_tag(change_, world_.file, parent, tag, content);
+  }
   void set_pose(ElementNumber element, const Pose& pose);
   void add_kinbody(const std::string& lines);
   [[nodiscard]] std::string free_name(const std::string& wanted) const;

@@ -203,7 +203,92 @@ WorldOperation remove_ruler(const json& arguments, const sim::WorldContents& /*w
           [number = position_of(arguments, "ruler")](WorldChange& change) { change.remove_ruler(number); }};
 }
 
+/// The argument `value` of draft.run.
+std::string word(const json& arguments) { return argument<std::string>(arguments, "value", "a word").value_or(""); }
+
+sim::PhysicsEngine engine(const json& arguments) {
+  const std::string text = word(arguments);
+  const std::optional<sim::PhysicsEngine> found = sim::engine_named(text);
+  if (!found) {
+    throw InputError("value", 0, in_quotes(text), sim::engine_words());
+  }
+  return *found;
+}
+
+sim::Solver solver(const json& arguments) {
+  const std::string text = word(arguments);
+  const std::optional<sim::Solver> found = sim::solver_named(text);
+  if (!found) {
+    throw InputError("value", 0, in_quotes(text), "'automatic', 'direct' or 'iterative'");
+  }
+  return *found;
+}
+
+/// Numbers of JSON do not have all seeds.
+std::uint64_t seed(const json& arguments) {
+  const std::string text = word(arguments);
+  const std::optional<std::uint64_t> number = parse_whole<std::uint64_t>(text);
+  if (!number) {
+    throw InputError("value", 0, in_quotes(text), "a whole number from 0 to 18446744073709551615, as a text");
+  }
+  return *number;
+}
+
 }  // namespace
+
+json run_json(const sim::Scenario& scenario) {
+  const sim::EnvironmentModel& environment = scenario.environment;
+  return {{"duration", scenario.duration_s},
+          {"seed", std::to_string(scenario.kernel.seed)},
+          {"tick", scenario.kernel.tick_period_us / 1e3},
+          {"step", scenario.step_s * 1e3},
+          {"solver", sim::word_of(scenario.solver)},
+          {"contact_noise", scenario.contact_noise},
+          {"engine", sim::name_of(environment.engine)},
+          {"gravity", vector_json(environment.gravity)},
+          {"self_collision", environment.self_collision}};
+}
+
+RunOperation run_operation(const json& arguments) {
+  using Change = std::function<void(sim::RunChange&)>;
+  using Reader = Change (*)(const json&);
+  static const std::map<std::string_view, Reader> readers{
+      {"duration",
+       [](const json& words) -> Change {
+         return [value = number(words, "value")](sim::RunChange& run) { run.set_duration(value); };
+       }},
+      {"seed",
+       [](const json& words) -> Change { return [value = seed(words)](sim::RunChange& run) { run.set_seed(value); }; }},
+      {"tick",
+       [](const json& words) -> Change {
+         return [value = number(words, "value")](sim::RunChange& run) { run.set_tick(value); };
+       }},
+      {"step",
+       [](const json& words) -> Change {
+         return [value = number(words, "value")](sim::RunChange& run) { run.set_step(value); };
+       }},
+      {"solver",
+       [](const json& words) -> Change {
+         return [value = solver(words)](sim::RunChange& run) { run.set_solver(value); };
+       }},
+      {"contact_noise",
+       [](const json& words) -> Change {
+         return [value = number(words, "value")](sim::RunChange& run) { run.set_contact_noise(value); };
+       }},
+      {"engine",
+       [](const json& words) -> Change {
+         return [value = engine(words)](sim::RunChange& run) { run.set_engine(value); };
+       }},
+      {"gravity",
+       [](const json& words) -> Change {
+         return [value = vector(words, "value")](sim::RunChange& run) { run.set_gravity(value); };
+       }},
+      {"self_collision", [](const json& words) -> Change {
+         return [value = is_set(words, "value")](sim::RunChange& run) { run.set_self_collision(value); };
+       }}};
+  const std::string name = argument<std::string>(arguments, "name", "the name of a value").value_or("");
+  return {name, handler_of(readers, name)(arguments)};
+}
 
 json world_json(const sim::WorldContents& world) {
   json objects = json::array();

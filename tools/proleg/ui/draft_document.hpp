@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/authoring/draft.hpp"
+#include "sim/authoring/run_change.hpp"
 #include "sim/authoring/world_change.hpp"
 
 namespace proleg::tools {
@@ -16,6 +17,18 @@ namespace proleg::tools {
 
 /// The document `library`.
 [[nodiscard]] nlohmann::json library_json();
+
+/// How the draft is run, a part of the document `draft`.
+[[nodiscard]] nlohmann::json run_json(const sim::Scenario& scenario);
+
+/// What the operation `draft.run` asks for.
+struct RunOperation {
+  std::string label;  ///< for undo: "duration"
+  std::function<void(sim::RunChange&)> change;
+};
+
+/// Reads the operation. Throws InputError for a value that does not exist, or of the wrong kind.
+[[nodiscard]] RunOperation run_operation(const nlohmann::json& arguments);
 
 /// What an operation of a world asks for.
 struct WorldOperation {

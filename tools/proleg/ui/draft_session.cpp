@@ -146,6 +146,7 @@ void DraftSession::publish() {
                             {"unsaved", kept_ ? unsaved_json(*kept_) : json()},
                             {"warnings", lines_json(scenario.warnings)},
                             {"head", pose_json(scenario.environment.robot_pose * scenario.robot.links.front().pose)},
+                            {"run", run_json(scenario)},
                             {"world", world_json(world)},
                             {"layout", layout_since_}});
   published_ = draft.revision() + 1;
@@ -172,8 +173,9 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{
       {"draft.undo", &DraftSession::undo},       {"draft.redo", &DraftSession::redo},
       {"draft.restore", &DraftSession::restore}, {"draft.discard", &DraftSession::discard},
-      {"draft.refresh", &DraftSession::refresh}, {"draft.diff", &DraftSession::diff},
-      {"draft.save", &DraftSession::save},       {"draft.save_as", &DraftSession::save_as}};
+      {"draft.refresh", &DraftSession::refresh}, {"draft.run", &DraftSession::change_run},
+      {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
+      {"draft.save_as", &DraftSession::save_as}};
   return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
@@ -193,6 +195,17 @@ void DraftSession::change_world(const host::OperationRequest& operation) {
     sim::WorldChange world_change(world, edit);
     change.change(world_change);
   });
+}
+
+json DraftSession::change_run(const json& arguments) {
+  const RunOperation operation = run_operation(arguments);
+  const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
+  const sim::Scenario before = draft().scenario();
+  draft().change(operation.label, gesture, [&](sim::DraftChange& edit) {
+    sim::RunChange change(before, edit);
+    operation.change(change);
+  });
+  return {{"revision", draft().revision()}};
 }
 
 json DraftSession::undo(const json& /*arguments*/) {

@@ -53,6 +53,7 @@ class DraftSession final : private SessionThread {
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
 
   using Handler = nlohmann::json (DraftSession::*)(const nlohmann::json&);
+  nlohmann::json change_run(const nlohmann::json& arguments);
   nlohmann::json undo(const nlohmann::json& arguments);
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json refresh(const nlohmann::json& arguments);

@@ -84,6 +84,21 @@ export class MakeApp {
     return refusal === null;
   }
 
+  // Requests another value of the run. Returns the reason if it was refused, else null.
+  async changeRun(words: Operations['draft.run']): Promise<string | null> {
+    try {
+      await this.page.operations.ask('draft.run', words);
+      return null;
+    } catch (error) {
+      return (error as Error).message;
+    }
+  }
+
+  // As changeRun(), with a notice if it was refused.
+  async tellRun(words: Operations['draft.run']): Promise<void> {
+    await this.page.operations.tell('draft.run', words);
+  }
+
   // The present pose of an object, also while it is dragged.
   poseOf(number: number, object: WorldObject): Pose {
     return this.drag.value?.moved.get(number) ?? poseFromArray(object.pose);

@@ -4,6 +4,7 @@ import type { ForesightDocument, WorldObject } from '../wire/messages.js';
 import { LibraryPanel } from './library_panel.js';
 import { MakeApp, type MakeStores } from './make_app.js';
 import { ObjectForm, StartForm } from './object_form.js';
+import { RunForm } from './run_form.js';
 import { SavePanel } from './save_panel.js';
 import { WorldMap } from './world_map.js';
 
@@ -189,6 +190,10 @@ export function MakePage({ app: page }: { app: MakeStores }) {
         <section class="panel make-panel" aria-label="Start of the robot">
           <h2>Start of the robot</h2>
           <StartForm app={app} />
+        </section>
+        <section class="panel make-panel" aria-label="Run">
+          <h2>Run</h2>
+          <RunForm app={app} />
         </section>
       </div>
     </div>

@@ -304,6 +304,19 @@ export interface WorldDocument {
   start: { position: [number, number, number]; degrees: [number, number, number] }; // degrees about x, then y, then z
 }
 
+// How the draft is run.
+export interface RunDocument {
+  duration: number; // seconds
+  seed: string; // numbers of JSON do not have all seeds
+  tick: number; // milliseconds
+  step: number; // milliseconds
+  solver: 'automatic' | 'direct' | 'iterative';
+  contact_noise: number; // 0 to 1
+  engine: 'ode' | 'reduced' | 'mujoco';
+  gravity: [number, number, number]; // m/s^2
+  self_collision: boolean;
+}
+
 // The scenario that viewers make.
 export interface DraftDocument {
   file: string;
@@ -317,6 +330,7 @@ export interface DraftDocument {
   is_shipped: boolean; // the files ship with Proleg: only a copy can be saved
   warnings: string[];
   head: PoseArray; // of the robot, at the start
+  run: RunDocument;
   world: WorldDocument;
 }
 
@@ -433,6 +447,7 @@ export interface WorldOperation {
 export interface Operations {
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;
+  'draft.run': { [Name in keyof RunDocument]: { name: Name; value: RunDocument[Name] } }[keyof RunDocument];
   'draft.refresh': Record<string, never>;
   'draft.restore': Record<string, never>;
   'draft.discard': Record<string, never>;

@@ -105,6 +105,20 @@ describe('the page Make', () => {
     assert.ok(await waitUntil(async () => (await rowCount()) === 2));
   });
 
+  it('changes how the scenario is run, and says what cannot be', async () => {
+    const run = page().getByRole('region', { name: 'Run' });
+    const tick = run.getByRole('textbox', { name: 'tick in ms' });
+    await tick.fill('7,3');
+    await tick.press('Enter');
+    await run.getByRole('alert').filter({ hasText: 'a whole number of steps' }).waitFor();
+    await tick.fill('20');
+    await tick.press('Enter');
+    assert.ok(await waitUntil(async () => (await state()) === '2 files changed'));
+    await page().getByTestId('map-top').focus();
+    await page().keyboard.press('Control+z');
+    assert.ok(await waitUntil(async () => (await tick.inputValue()) === '10'));
+  });
+
   it('simulates the draft on the page Live before it is saved', async () => {
     await page().getByRole('button', { name: 'Simulate' }).click();
     assert.equal(await page().getByRole('navigation').getByRole('button', { name: 'Live' }).getAttribute('aria-current'), 'page');

@@ -103,6 +103,33 @@ TEST_F(DraftSessionTest, AnObjectIsAddedMovedAndTakenBack) {
   EXPECT_EQ(ask("draft.undo").text, "there is nothing to undo");
 }
 
+TEST_F(DraftSessionTest, TheRunIsChangedValueByValue) {
+  const json run = draft(0)["run"];
+  EXPECT_EQ(run["engine"], "ode");
+  EXPECT_EQ(run["tick"], 10.0);
+  const std::vector<std::pair<const char*, json>> values{
+      {"duration", 12.5},       {"seed", "18446744073709551615"}, {"tick", 20.0},        {"step", 0.5},
+      {"solver", "direct"},     {"contact_noise", 0.25},          {"engine", "reduced"}, {"gravity", {0.0, 0.0, -1.62}},
+      {"self_collision", false}};
+  for (const auto& [name, value] : values) {
+    const json answer = must("draft.run", {{"name", name}, {"value", value}});
+    EXPECT_EQ(draft(answer["revision"])["run"][name], value) << name;
+  }
+  for (const json& bad : std::vector<json>{{{"name", "colour"}, {"value", 1}},
+                                           {{"value", 1}},
+                                           {{"name", "duration"}},
+                                           {{"name", "duration"}, {"value", -1}},
+                                           {{"name", "duration"}, {"value", "long"}},
+                                           {{"name", "seed"}, {"value", 5}},
+                                           {{"name", "seed"}, {"value", "-5"}},
+                                           {{"name", "engine"}, {"value", "fast"}},
+                                           {{"name", "solver"}, {"value", ""}},
+                                           {{"name", "gravity"}, {"value", {1, 2}}},
+                                           {{"name", "self_collision"}, {"value", 1}}}) {
+    EXPECT_FALSE(ask("draft.run", bad).is_done) << bad;
+  }
+}
+
 TEST_F(DraftSessionTest, SavesWhatHasChangedAndNothingElse) {
   const std::string before = file_contents(world_file());
   add_box();

@@ -1,0 +1,125 @@
+// How the scenario is run, and what each value costs.
+import { useSignal } from '@preact/signals';
+import type { RunDocument } from '../wire/messages.js';
+import type { MakeApp } from './make_app.js';
+import { NumberField } from './number_field.js';
+
+const engineTexts: Record<RunDocument['engine'], string> = {
+  ode: 'ODE: any robot, any world',
+  reduced: 'reduced: chains on level ground and steps; the same bits on every computer, and twenty times as fast',
+  mujoco: 'MuJoCo: a second opinion, if the program has it',
+};
+
+const solverTexts: Record<RunDocument['solver'], string> = {
+  automatic: 'automatic: direct up to 8 links',
+  direct: 'direct: exact, slow for long robots',
+  iterative: 'iterative: fast for long robots, not exact',
+};
+
+function Choice<Value extends string>({ label, value, texts, isDisabled, commit }: {
+  label: string;
+  value: Value;
+  texts: Record<Value, string>;
+  isDisabled: boolean;
+  commit(value: Value): void;
+}) {
+  return (
+    <label class="number-field">
+      <span>{label}</span>
+      <select value={value} disabled={isDisabled} onChange={(event) => commit(event.currentTarget.value as Value)}>
+        {(Object.keys(texts) as Value[]).map((name) => (
+          <option key={name} value={name}>
+            {texts[name]}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+function SeedField({ app, seed, isDisabled }: { app: MakeApp; seed: string; isDisabled: boolean }) {
+  const problem = useSignal<string | null>(null);
+  return (
+    <label class="number-field" title="Another number is another world of noise; the same number repeats the run.">
+      <span>seed</span>
+      <input
+        type="text"
+        inputMode="numeric"
+        size={8}
+        value={seed}
+        disabled={isDisabled}
+        aria-invalid={problem.value !== null}
+        onChange={async (event) => (problem.value = await app.changeRun({ name: 'seed', value: event.currentTarget.value.trim() }))}
+      />
+      {problem.value !== null && (
+        <span class="problem" role="alert">
+          {problem.value}
+        </span>
+      )}
+    </label>
+  );
+}
+
+export function RunForm({ app }: { app: MakeApp }) {
+  const run = app.draft.value?.run;
+  if (run === undefined) return null;
+  const isDisabled = app.obstacle() !== null;
+  return (
+    <div class="fields">
+      <Choice label="engine" value={run.engine} texts={engineTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'engine', value })} />
+      <NumberField
+        label="duration"
+        unit="s"
+        title="How long proleg simulate runs it. The page Live has no end."
+        value={run.duration}
+        isDisabled={isDisabled}
+        commit={(value) => app.changeRun({ name: 'duration', value })}
+      />
+      <NumberField
+        label="tick"
+        unit="ms"
+        title="How often the modules compute the gait. Shorter is smoother, and more load on the bus."
+        value={run.tick}
+        isDisabled={isDisabled}
+        commit={(value) => app.changeRun({ name: 'tick', value })}
+      />
+      <NumberField
+        label="step"
+        unit="ms"
+        title="Of the physics. Shorter is more exact and takes longer; a tick is a whole number of steps."
+        value={run.step}
+        isDisabled={isDisabled}
+        commit={(value) => app.changeRun({ name: 'step', value })}
+      />
+      <NumberField
+        label="gravity"
+        unit="m/s²"
+        title="Downwards. Earth: 9.81, Moon: 1.62."
+        value={-run.gravity[2]}
+        isDisabled={isDisabled}
+        commit={(value) => app.changeRun({ name: 'gravity', value: [run.gravity[0], run.gravity[1], -value] })}
+      />
+      <SeedField app={app} seed={run.seed} isDisabled={isDisabled} />
+      <NumberField
+        label="contact noise"
+        title="How often a touch sensor is wrong: 0 never, 1 always."
+        value={run.contact_noise}
+        isDisabled={isDisabled}
+        commit={(value) => app.changeRun({ name: 'contact_noise', value })}
+      />
+      <Choice label="solver" value={run.solver} texts={solverTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'solver', value })} />
+      <label class="switch">
+        <input
+          type="checkbox"
+          checked={run.self_collision}
+          disabled={isDisabled}
+          onChange={(event) => void app.tellRun({ name: 'self_collision', value: event.currentTarget.checked })}
+          onKeyDown={(event) => {
+            if (event.key === 'Enter') void app.tellRun({ name: 'self_collision', value: !run.self_collision }); // Space is STOP
+          }}
+        />
+        links touch each other
+      </label>
+    </div>
+  );
+}

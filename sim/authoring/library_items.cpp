@@ -111,10 +111,8 @@ std::string rough(const Values& values) {
   Pcg32 random(static_cast<std::uint64_t>(values.at("seed")), 1);
   const int nodes_x = columns / cells_of_hill + 2;
   const int nodes_y = rows / cells_of_hill + 2;
-  std::vector<double> nodes;
-  for (int i = 0; i < nodes_x * nodes_y; ++i) {
-    nodes.push_back(std::ldexp(static_cast<double>(random.next()), -32));
-  }
+  std::vector<double> nodes(static_cast<std::size_t>(nodes_x) * static_cast<std::size_t>(nodes_y));
+  std::ranges::generate(nodes, [&random] { return std::ldexp(static_cast<double>(random.next()), -32); });
   const auto blend = [](double share) { return (1.0 - std::cos(std::numbers::pi * share)) / 2.0; };
   std::string heights;
   for (int y = 0; y < rows; ++y) {

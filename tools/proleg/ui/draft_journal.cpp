@@ -1,9 +1,10 @@
 #include "tools/proleg/ui/draft_journal.hpp"
 
-#include <signal.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>

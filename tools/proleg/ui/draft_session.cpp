@@ -306,7 +306,7 @@ json DraftSession::save_as(const json& arguments) {
   const sim::Scenario& scenario = draft().scenario();
   const std::map<std::string, std::string> names =
       copy_sources(scenario.sources, folder_of_copy(options_.folder, name.value_or("")));
-  const std::string file = names.at(scenario.sources.front().path);
+  const std::string& file = names.at(scenario.sources.front().path);
   draft().rename_files(names, file);
   options_.has_file = true;
   journal_->discard();

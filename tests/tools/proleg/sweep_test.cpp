@@ -116,14 +116,17 @@ TEST_F(CommandLine, ASweepWarnsOfRunsWhoseServosCannotFollow) {
 
 class SweepOnASlope : public CommandLine {
  protected:
-  /// A flat floor on which gravity pulls the robot along its body: with little friction it slides off.
+  /// A flat floor of 16 m on which gravity pulls the robot along its body: with little friction it slides off.
   void SetUp() override {
     CommandLine::SetUp();
     const std::string shipped = source_path("/sim/scenarios/travelling_wave/");
     std::string environment = read_file(shipped + "flat.environment.xml");
-    const std::string gravity = "<gravity>0 0 ";
-    ASSERT_NE(environment.find(gravity), std::string::npos);
-    environment.replace(environment.find(gravity), gravity.size(), "<gravity>0 40 ");
+    const auto replace = [&](const std::string& from, const std::string& to) {
+      ASSERT_NE(environment.find(from), std::string::npos) << from;
+      environment.replace(environment.find(from), from.size(), to);
+    };
+    replace("<gravity>0 0 ", "<gravity>0 40 ");
+    replace("<extents>1000 1000 ", "<extents>8 8 ");
     std::ofstream(file("slope.environment.xml")) << environment;
     std::ofstream(file("slope.simulation.xml"))
         << "<simulation><robot>" + shipped + "caterpillar.robot.xml</robot><actuation>" + shipped +

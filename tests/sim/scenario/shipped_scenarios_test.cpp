@@ -175,7 +175,7 @@ TEST_P(Obstacle, HasTwoStepsUpAndTwoDownAcrossTheWholeWay) {
   };
   const std::vector<StaticObject>& objects = scenario_.environment.objects;
   ASSERT_EQ(objects.size(), 3U) << "each body is an object";
-  const std::vector<Step> steps{{-8, 8, 0}, {0.5, 1.7, 0.03}, {0.9, 1.3, 0.06}};
+  const std::vector<Step> steps{{-1000, 1000, 0}, {0.5, 1.7, 0.03}, {0.9, 1.3, 0.06}};
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Geometry& geometry = objects[i].geometries.at(0);
     const Eigen::Vector3d middle = (objects[i].pose * geometry.pose).position;

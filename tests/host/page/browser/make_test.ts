@@ -121,7 +121,7 @@ describe('the page Make', () => {
 
   it('simulates the draft on the page Live before it is saved', async () => {
     await page().getByRole('button', { name: 'Simulate' }).click();
-    assert.equal(await page().getByRole('navigation').getByRole('button', { name: 'Live' }).getAttribute('aria-current'), 'page');
+    await page().getByRole('navigation').locator('[aria-current=page]', { hasText: 'Live' }).waitFor();
     await page().keyboard.press('x');
     await page().getByText('is of a draft that is not saved').first().waitFor();
     await page().keyboard.press('x');

@@ -44,10 +44,9 @@ std::string shown(std::string_view line) {
 
 /// A line of a text, without its line end.
 TextRange line_around(std::string_view text, std::size_t position) {
-  const std::size_t before = text.substr(0, position).rfind('\n');
   const std::size_t end = std::min(text.find('\n', position), text.size());
   const bool has_return = end > position && text[end - 1] == '\r';
-  return {before == std::string_view::npos ? 0 : before + 1, has_return ? end - 1 : end};
+  return {line_begin(text, position), has_return ? end - 1 : end};
 }
 
 class Editor {

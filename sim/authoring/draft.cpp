@@ -233,7 +233,7 @@ std::vector<Draft::ChangedFile> Draft::changed_files() const {
 }
 
 bool Draft::refresh() {
-  constexpr std::size_t large = std::size_t{1} << 20U;  // a mesh; nobody edits it beside this program
+  constexpr std::size_t large = std::size_t{1} << 20U;  // a mesh
   std::set<std::string> in_history;
   for (const Entry& entry : history_) {
     for (const DraftChange::Step& step : entry.steps) {
@@ -242,7 +242,8 @@ bool Draft::refresh() {
   }
   std::map<std::string, std::string> before;
   for (const auto& [name, saved] : saved_) {
-    if (in_history.contains(name) || saved.size() > large || texts_.at(name) != saved) {
+    const std::string* const text = texts_.find(name);
+    if (in_history.contains(name) || saved.size() > large || text == nullptr || *text != saved) {
       continue;
     }
     if (std::optional<std::string> now = disk_->read(name); now && *now != saved && *now != bytes_of_source(saved)) {

@@ -93,7 +93,6 @@ class Draft {
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
   /// A file as it is now. Throws InputError for one that the draft does not have.
   [[nodiscard]] const std::string& text(const std::string& name) const { return texts_.at(name); }
-
   [[nodiscard]] bool has(const std::string& name) const { return texts_.find(name) != nullptr; }
 
   /// Changes the files by calls of `change`. If the reader refuses the result, or `change` throws, nothing changes and

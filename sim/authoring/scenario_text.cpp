@@ -11,7 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-/// The shortest text of a number that is rounded to a multiple of `unit`, which is 1 over a whole number.
+/// The shortest text of a number that is rounded to a multiple of 1 / per_unit.
 std::string rounded_text(double value, double per_unit) {
   const double rounded = std::round(value * per_unit) / per_unit;
   return exact_text(rounded == 0.0 ? 0.0 : rounded);  // no -0
@@ -69,10 +69,8 @@ void set_tag(DraftChange& change, const std::string& file, ElementNumber parent,
 }
 
 std::string unindented(const XmlText& xml, ElementNumber element) {
-  const std::string_view text = xml.text();
   const std::size_t begin = xml.at(element).tag.begin;
-  const std::size_t before = text.substr(0, begin).rfind('\n');
-  const std::size_t column = begin - (before == std::string_view::npos ? 0 : before + 1);
+  const std::size_t column = begin - line_begin(xml.text(), begin);
   std::string result;
   TextLines lines(xml.bytes(element));
   while (const std::optional<std::string_view> line = lines.next()) {

@@ -55,16 +55,12 @@ std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShap
 
 }  // namespace
 
-const WorldObject& WorldChange::object(std::size_t number) const {
+const WorldObject& WorldChange::editable(std::size_t number) const {
   if (number >= world_.objects.size()) {
     throw InputError("object", 0, std::to_string(number),
                      "a number below " + std::to_string(world_.objects.size()) + ", of an object of the world");
   }
-  return world_.objects[number];
-}
-
-const WorldObject& WorldChange::editable(std::size_t number) const {
-  const WorldObject& found = object(number);
+  const WorldObject& found = world_.objects[number];
   if (!found.body) {
     throw InputError("object", 0, in_quotes(found.name) + " is in " + found.file,
                      "an object of " + world_.file + "; other worlds may use that file, too");
@@ -305,18 +301,18 @@ void WorldChange::add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& 
 }
 
 void WorldChange::set_ruler(std::size_t ruler, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  if (ruler >= world_.rulers.size()) {
-    throw InputError("ruler", 0, std::to_string(ruler), "a number below " + std::to_string(world_.rulers.size()));
-  }
-  set_tag_of(world_.rulers[ruler].element, "from", vector_text(from));
-  set_tag_of(world_.rulers[ruler].element, "to", vector_text(to));
+  const ElementNumber element = element_of_ruler(ruler);
+  set_tag_of(element, "from", vector_text(from));
+  set_tag_of(element, "to", vector_text(to));
 }
 
-void WorldChange::remove_ruler(std::size_t ruler) {
+void WorldChange::remove_ruler(std::size_t ruler) { apply(xml().remove(element_of_ruler(ruler))); }
+
+ElementNumber WorldChange::element_of_ruler(std::size_t ruler) const {
   if (ruler >= world_.rulers.size()) {
     throw InputError("ruler", 0, std::to_string(ruler), "a number below " + std::to_string(world_.rulers.size()));
   }
-  apply(xml().remove(world_.rulers[ruler].element));
+  return world_.rulers[ruler].element;
 }
 
 void WorldChange::set_start(const Eigen::Vector3d& position, const Eigen::Vector3d& degrees) {

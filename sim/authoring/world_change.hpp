@@ -49,8 +49,8 @@ class WorldChange {
   void set_start(const Eigen::Vector3d& position, const Eigen::Vector3d& degrees);
 
  private:
-  [[nodiscard]] const WorldObject& object(std::size_t number) const;
   [[nodiscard]] const WorldObject& editable(std::size_t number) const;
+  [[nodiscard]] ElementNumber element_of_ruler(std::size_t ruler) const;
   [[nodiscard]] const XmlText& xml() { return change_.xml(world_.file); }
   void apply(const TextPatch& patch) { change_.apply(world_.file, patch); }
   void write_size(const WorldShape& shape, const std::vector<double>& size);

@@ -18,8 +18,8 @@ namespace proleg::sim {
 struct WorldShape {
   ElementNumber element = 0;
   std::string type;  ///< "box", "sphere", "cylinder", "trimesh" or "heightfield"
-  std::vector<double>
-      size;  ///< m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y
+  /// m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y; mesh: nothing
+  std::vector<double> size;
   std::optional<double> friction;
   std::optional<Eigen::Vector3d> colour;  ///< red, green, blue, 0 to 1
   Pose pose;                              ///< in the object

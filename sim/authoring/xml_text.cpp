@@ -16,12 +16,6 @@ constexpr std::string_view indentation_step = "  ";
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(blanks) == std::string_view::npos; }
 
-/// Where the line of a position begins.
-std::size_t line_begin(std::string_view text, std::size_t position) {
-  const std::size_t before = text.substr(0, position).rfind('\n');
-  return before == std::string_view::npos ? 0 : before + 1;
-}
-
 /// The value of an attribute as a parser reads it.
 std::string unescaped(std::string_view value, char quote) {
   tinyxml2::XMLDocument document;

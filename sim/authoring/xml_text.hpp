@@ -1,7 +1,7 @@
 #pragma once
 
 // An XML file that is edited as text: each edit changes the bytes of its element and no other. Comments, the order of
-// tags and attributes, and tags that nobody here knows stay.
+// tags and attributes, and unknown tags stay.
 
 #include <cstddef>
 #include <optional>

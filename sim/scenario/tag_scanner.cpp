@@ -24,6 +24,11 @@ int line_at(std::string_view text, std::size_t position) {
   return 1 + static_cast<int>(std::ranges::count(text.substr(0, position), '\n'));
 }
 
+std::size_t line_begin(std::string_view text, std::size_t position) {
+  const std::size_t before = text.substr(0, position).rfind('\n');
+  return before == std::string_view::npos ? 0 : before + 1;
+}
+
 std::optional<TextTag> TagScanner::next() {
   while (true) {
     move_to(std::min(text_.find('<', position_), text_.size()));

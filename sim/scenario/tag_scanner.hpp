@@ -11,6 +11,9 @@ namespace proleg::sim {
 /// The line of a position in a text, from 1.
 [[nodiscard]] int line_at(std::string_view text, std::size_t position);
 
+/// Where the line of a position begins.
+[[nodiscard]] std::size_t line_begin(std::string_view text, std::size_t position);
+
 /// A tag as it stands in the text of an XML file.
 struct TextTag {
   enum class Kind : std::uint8_t { start, end, empty };

@@ -19,8 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
 /// A length in m, rounded to whole micrometres.
 double to_micrometres(double metres) { return std::round(metres * 1e6) / 1e6; }
 
@@ -253,6 +251,8 @@ void ParameterTable::set_file(const sim::Scenario& file) {
 std::size_t ParameterTable::position(const ParameterPlace& place) const {
   return (std::size_t{place.slot} * max_parameters + place.number) * joints_ + place.joint;
 }
+
+json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 json pose_json(const sim::Pose& pose) {
   const Eigen::Quaterniond& turn = pose.orientation;

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {
@@ -64,6 +66,8 @@ class ParameterTable {
   std::vector<Values> values_;
 };
 
+/// A vector as [x, y, z].
+[[nodiscard]] nlohmann::json vector_json(const Eigen::Vector3d& vector);
 /// A pose as [x, y, z, qw, qx, qy, qz].
 [[nodiscard]] nlohmann::json pose_json(const sim::Pose& pose);
 

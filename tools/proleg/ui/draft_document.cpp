@@ -20,8 +20,6 @@ namespace {
 using nlohmann::json;
 using sim::WorldChange;
 
-json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
 json shape_json(const sim::WorldShape& shape) {
   return {{"type", shape.type},
           {"size", shape.size},

@@ -1,17 +1,18 @@
 #include "tools/proleg/ui/draft_journal.hpp"
 
-#include <sys/types.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
@@ -29,7 +30,18 @@ std::int64_t now_ms() {
       .count();
 }
 
-bool is_running(pid_t process) { return process > 0 && (kill(process, 0) == 0 || errno == EPERM); }
+/// A file of the kernel, which has no size.
+std::string contents(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+/// Whether the process with this identity still runs, and is not this one.
+bool is_another_program(const std::string& identity) {
+  const auto process = parse_whole<pid_t>(std::string_view(identity).substr(0, identity.find(' ')));
+  return process && *process != getpid() && process_identity(*process) == identity;
+}
 
 /// Throws nlohmann::json::exception for another text.
 KeptChanges changes_of(const json& document, const sim::Draft& draft) {
@@ -55,6 +67,17 @@ KeptChanges changes_of(const json& document, const sim::Draft& draft) {
 
 }  // namespace
 
+std::string process_identity(pid_t process) {
+  const std::string state = contents("/proc/" + std::to_string(process) + "/stat");
+  const std::vector<std::string_view> fields = words(std::string_view(state).substr(state.rfind(')') + 1));
+  constexpr std::size_t start_time = 19;  // field 22, of which two stand before the name's end (proc(5))
+  if (fields.size() <= start_time) {
+    return {};
+  }
+  return std::to_string(process) + " " + std::string(fields[start_time]) + " " +
+         std::string(trimmed(contents("/proc/sys/kernel/random/boot_id")));
+}
+
 std::optional<KeptChanges> DraftJournal::read(const sim::Draft& draft) {
   sim::DiskFiles disk;
   const std::optional<std::string> text = disk.read(path_);
@@ -67,12 +90,10 @@ std::optional<KeptChanges> DraftJournal::read(const sim::Draft& draft) {
       if (document.at("format") != journal_format) {
         throw InputError(path_.string(), 0, "changes in another format", "those of this version");
       }
-      const json& written_by = document.at("process");
-      if (!is_whole_number<pid_t>(written_by) || !is_whole_number<std::int64_t>(document.at("time_ms"))) {
+      if (!is_whole_number<std::int64_t>(document.at("time_ms"))) {
         throw InputError(path_.string(), 0, "no unsaved changes", "a file that this program has written");
       }
-      const auto process = written_by.get<pid_t>();
-      if (process != getpid() && is_running(process)) {
+      if (is_another_program(document.at("process").get<std::string>())) {
         is_of_other_ = true;
         return std::nullopt;
       }
@@ -130,8 +151,11 @@ void DraftJournal::write(const sim::Draft& draft) {
     if (bytes > most_bytes) {
       throw FileError(path_, "cannot keep unsaved changes of " + std::to_string(bytes >> 20U) + " MiB");
     }
-    write_file(path_,
-               json{{"format", journal_format}, {"process", getpid()}, {"time_ms", now_ms()}, {"files", files}}.dump());
+    write_file(path_, json{{"format", journal_format},
+                           {"process", process_identity(getpid())},
+                           {"time_ms", now_ms()},
+                           {"files", files}}
+                          .dump());
     exists_ = true;
     has_failed_ = false;
   } catch (const FileError&) {

@@ -2,6 +2,8 @@
 
 // Unsaved changes of a draft on disk, in case the program ends before they are saved.
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +21,10 @@ struct KeptChanges {
   std::int64_t time_ms = 0;                  ///< when they were written, since 1970
   std::map<std::string, std::string> texts;  ///< of the files that were changed, by name
 };
+
+/// A text that no other process has had or will have, not even one with the same number, also after a restart of the
+/// computer. Empty if there is no such process.
+[[nodiscard]] std::string process_identity(pid_t process);
 
 class DraftJournal {
  public:

@@ -54,7 +54,6 @@ DraftSession::DraftSession(std::optional<sim::Scenario> scenario, sim::FileSourc
 DraftSession::~DraftSession() { end_thread(); }
 
 void DraftSession::serve() {
-  static_cast<void>(requests_.take_holder());
   take_operations();
   publish();
   const auto due = journal_ ? journal_->due() : std::nullopt;
@@ -108,25 +107,26 @@ void DraftSession::publish() {
     return;
   }
   const sim::Draft& draft = *draft_;
-  if (published_ == draft.revision() + 1 && !is_new_) {
+  const bool is_changed = published_ != draft.revision();
+  if (!is_changed && !is_new_) {
     return;
   }
   const sim::Scenario& scenario = draft.scenario();
-  if (journal_ && published_ != 0) {
+  if (published_) {
     journal_->note_change(Clock::now());
   }
-  if (published_ != draft.revision() + 1) {
+  if (is_changed) {
     json robot = robot_document(scenario, "draft");
-    // Meshes are large and seldom change.
+    // Meshes are large: they are sent only if they differ.
     json meshes = std::exchange(robot["meshes"], json::array());
-    if (std::string text = meshes.dump(); text != published_meshes_ || published_ == 0) {
+    if (std::string text = meshes.dump(); text != published_meshes_) {
       published_meshes_ = std::move(text);
       output_.publish("draft_meshes", meshes);
     }
     output_.publish("draft_robot", robot);
   }
   const auto shared = std::make_shared<const sim::Scenario>(scenario);
-  if (published_ != draft.revision() + 1) {
+  if (is_changed) {
     foresight_->look_at(shared, draft.revision());
   }
   const sim::WorldContents world = read_world_contents(draft);
@@ -149,7 +149,7 @@ void DraftSession::publish() {
                             {"run", run_json(scenario)},
                             {"world", world_json(world)},
                             {"layout", layout_since_}});
-  published_ = draft.revision() + 1;
+  published_ = draft.revision();
   is_new_ = false;
 }
 
@@ -271,7 +271,8 @@ void DraftSession::require_unchanged_on_disk(const sim::Draft::ChangedFile& file
                      "a copy of your own: Save as");
   }
   const std::optional<std::string> on_disk = disk_.read(file.name);
-  if (file.saved ? on_disk != file.saved : on_disk.has_value()) {
+  // A Save that failed in the middle may have written it.
+  if (on_disk != file.saved && on_disk != file.text) {
     throw InputError(file.name, 0,
                      file.saved ? "a file that has changed since this program read it" : "a file that exists",
                      file.saved ? "the same file; Save as keeps both" : "a new name");
@@ -288,7 +289,7 @@ json DraftSession::save(const json& /*arguments*/) {
     require_unchanged_on_disk(file);
     outputs.push_back({"draft.save", file.name, "file", [](const std::filesystem::path&) { return true; }, true});
   }
-  // All can be written, or none is.
+  // None is written if one of them may not be written; a disk can be full in the middle.
   check_outputs(outputs);
   for (const sim::Draft::ChangedFile& file : changed) {
     write_file(file.name, sim::bytes_of_source(file.text));

@@ -69,8 +69,8 @@ class DraftSession final : private SessionThread {
   std::optional<sim::Draft> draft_;
   std::optional<Foresight> foresight_;
   std::optional<DraftJournal> journal_;
-  std::optional<KeptChanges> kept_;  ///< of an earlier program, until somebody decides about them
-  std::uint64_t published_ = 0;      ///< revision of the draft, plus 1
+  std::optional<KeptChanges> kept_;         ///< of an earlier program, until somebody decides about them
+  std::optional<std::uint64_t> published_;  ///< revision of the draft
   std::string published_meshes_;
   std::vector<std::size_t> layout_;  ///< of the lists of the world: what their positions depend on
   std::uint64_t layout_since_ = 0;   ///< revision since which it is the same

@@ -25,8 +25,8 @@ constexpr double seconds_between_points = 0.1;
 constexpr int lower_priority = 10;
 
 json point_json(const sim::Pose& pose) {
-  const auto millimetres = [](double metres) { return std::round(metres * 1e4) / 1e4; };
-  return {millimetres(pose.position.x()), millimetres(pose.position.y()), millimetres(pose.position.z())};
+  const auto rounded = [](double metres) { return std::round(metres * 1e4) / 1e4; };  // to 0.1 mm
+  return {rounded(pose.position.x()), rounded(pose.position.y()), rounded(pose.position.z())};
 }
 
 }  // namespace

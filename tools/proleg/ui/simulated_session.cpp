@@ -172,10 +172,14 @@ void SimulatedSession::require_sound() const {
   }
 }
 
-void SimulatedSession::require_file() const {
+void SimulatedSession::require_saved_draft() const {
   if (is_unsaved_draft_) {
     throw std::runtime_error("this simulation is of a draft that is not saved; save it in Make, and simulate it again");
   }
+}
+
+void SimulatedSession::require_file() const {
+  require_saved_draft();
   if (!options_.has_file) {
     throw std::runtime_error(
         "this robot has no file yet; Save as writes its files, as `proleg new robot --joints 5` does");
@@ -389,9 +393,7 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   if (repeated_ != nullptr && repeated_->losses().any()) {
     throw std::runtime_error("the frames that were lost in " + repeated_->name() + " are in no option of a command");
   }
-  if (is_unsaved_draft_) {
-    require_file();
-  }
+  require_saved_draft();
   std::string text = options_.command;
   for (const std::string& word : live_->repeating_words()) {
     text += " --set " + word;

@@ -126,6 +126,7 @@ class SimulatedSession final : private SessionThread {
   /// Refuses what has no meaning now.
   void require_possible(const std::string& operation) const;
   void require_sound() const;
+  void require_saved_draft() const;
   void require_file() const;
 
   // The operations: take their arguments and return the value of the answer, or throw.

@@ -12,7 +12,7 @@ export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'oper
 export type WorldOperationName = Extract<keyof Operations, `world.${string}`>;
 type Arguments<Name extends WorldOperationName> = Omit<Operations[Name], keyof WorldOperation>;
 
-// What is dragged, and where it is now; the program learns of it as fast as it answers.
+// What is dragged, and where it is now. The program gets the next step when it has answered the one before.
 interface Drag {
   gesture: number;
   head: Pose; // of the robot, when the drag began
@@ -36,6 +36,7 @@ export class MakeApp {
   });
   private isSending = false;
   private waiting: (() => Promise<unknown>) | null = null; // the newest step of a drag
+  private whenSent: (() => void) | null = null; // what is done when no step is on its way
 
   constructor(readonly page: MakeStores) {
     this.actions = new ActionList(page.actions, (action) => action.group === 'Page' || action.group === 'Robot');
@@ -147,7 +148,6 @@ export class MakeApp {
     if (this.isSending) this.whenSent = finish;
     else finish();
   }
-  private whenSent: (() => void) | null = null;
 
   // One step is on its way; of those that come meanwhile the newest goes next.
   private send(step: () => Promise<unknown>): void {

@@ -16,6 +16,12 @@ const solverTexts: Record<RunDocument['solver'], string> = {
   iterative: 'iterative: fast for long robots, not exact',
 };
 
+const lengths = [
+  { name: 'duration', unit: 's', title: 'How long proleg simulate runs it. The page Live has no end.' },
+  { name: 'tick', unit: 'ms', title: 'How often the modules compute the gait. Shorter is smoother, and more load on the bus.' },
+  { name: 'step', unit: 'ms', title: 'Of the physics. Shorter is more exact and takes longer; a tick is a whole number of steps.' },
+] as const;
+
 function Choice<Value extends string>({ label, value, texts, isDisabled, commit }: {
   label: string;
   value: Value;
@@ -67,30 +73,17 @@ export function RunForm({ app }: { app: MakeApp }) {
   return (
     <div class="fields">
       <Choice label="engine" value={run.engine} texts={engineTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'engine', value })} />
-      <NumberField
-        label="duration"
-        unit="s"
-        title="How long proleg simulate runs it. The page Live has no end."
-        value={run.duration}
-        isDisabled={isDisabled}
-        commit={(value) => app.changeRun({ name: 'duration', value })}
-      />
-      <NumberField
-        label="tick"
-        unit="ms"
-        title="How often the modules compute the gait. Shorter is smoother, and more load on the bus."
-        value={run.tick}
-        isDisabled={isDisabled}
-        commit={(value) => app.changeRun({ name: 'tick', value })}
-      />
-      <NumberField
-        label="step"
-        unit="ms"
-        title="Of the physics. Shorter is more exact and takes longer; a tick is a whole number of steps."
-        value={run.step}
-        isDisabled={isDisabled}
-        commit={(value) => app.changeRun({ name: 'step', value })}
-      />
+      {lengths.map(({ name, unit, title }) => (
+        <NumberField
+          key={name}
+          label={name}
+          unit={unit}
+          title={title}
+          value={run[name]}
+          isDisabled={isDisabled}
+          commit={(value) => app.changeRun({ name, value })}
+        />
+      ))}
       <NumberField
         label="gravity"
         unit="m/s²"

@@ -17,6 +17,8 @@ const keySteps = { fine: 0.01, usual: 0.1 }; // metres
 const turnStep = 5; // degrees
 const handleDistance = 46; // pixels
 const snap = 0.01; // metres; Alt: none
+const smallestDrag = 4; // pixels: a press with a trembling hand moves nothing
+const background = -2; // in the place of the number of an object
 
 interface View {
   centre: Point; // metres
@@ -182,9 +184,8 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
       view.value = { ...now, centre: [now.centre[0] - way[0] / now.scale, now.centre[1] + way[1] / now.scale] };
       return;
     }
-    // A press with a trembling hand moves nothing.
     const at = worldAt(event);
-    if (!held.hasMoved && Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * now.scale < 4) return;
+    if (!held.hasMoved && Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * now.scale < smallestDrag) return;
     held.hasMoved = true;
     if (held.kind === 'turn') {
       const [x, y] = flat('top', held.pose.position);
@@ -208,9 +209,9 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     const held = grip.current;
     if (held !== null && held.kind !== 'view') app.endDrag();
     if (pointers.size === 0) {
-      if (held?.kind === 'view' && !held.hasMoved && held.number === -2 && event.type === 'pointerup') {
+      if (held?.kind === 'view' && !held.hasMoved && held.number === background && event.type === 'pointerup') {
         const at = worldAt(event);
-        if (Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * (view.peek() ?? shown).scale < 4) app.chosen.value = null;
+        if (Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * (view.peek() ?? shown).scale < smallestDrag) app.chosen.value = null;
       }
       grip.current = null;
     }
@@ -260,7 +261,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
         data-arrows=""
         data-testid={`map-${plane}`}
         tabindex={0}
-        onPointerDown={(event) => press(event, 'view', -2, { position: [0, 0, 0], orientation: [1, 0, 0, 0] })}
+        onPointerDown={(event) => press(event, 'view', background, { position: [0, 0, 0], orientation: [1, 0, 0, 0] })}
         onPointerMove={drag}
         onPointerUp={release}
         onPointerCancel={release}

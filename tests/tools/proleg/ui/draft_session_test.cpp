@@ -1,6 +1,7 @@
 #include "tools/proleg/ui/draft_session.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -342,7 +343,35 @@ TEST_F(DraftSessionTest, UnsavedChangesOfOtherFilesAreNotRestored) {
   }
 }
 
-TEST_F(DraftSessionTest, AFullDiskIsSaidOnce) {
+TEST_F(DraftSessionTest, UnsavedChangesOfAProgramThatStillRunsAreLeftToIt) {
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  add_box();
+  session_.reset();
+  json document = json::parse(file_contents(journal));
+  const std::string parent = process_identity(getppid());
+  ASSERT_NE(parent, "");
+  document["process"] = parent;
+  std::ofstream(journal) << document;
+  open();
+  EXPECT_EQ(draft(0)["unsaved"], json());
+  add_box();
+  session_.reset();
+  EXPECT_EQ(json::parse(file_contents(journal)), document) << "it is that program's";
+  // The number of a process that has ended may belong to another one today.
+  document["process"] = std::to_string(getppid()) + " 1 another boot";
+  std::ofstream(journal) << document;
+  open();
+  EXPECT_EQ(draft(0)["unsaved"]["files"], json({world_file()}));
+  EXPECT_EQ(process_identity(-1), "");
+}
+
+TEST_F(DraftSessionTest, ASaveThatFailedInTheMiddleCanBeRepeated) {
+  add_box();
+  std::ofstream(world_file()) << must("draft.diff")["files"][0]["new"].get<std::string>();
+  EXPECT_EQ(must("draft.save")["written"], 1);
+}
+
+TEST_F(DraftSessionTest, AJournalThatCannotBeWrittenIsSaidOnce) {
   session_.reset();
   std::filesystem::create_directory(folder_ / "mine/.uniform.simulation.xml.unsaved");  // nothing can be written there
   open();

@@ -185,16 +185,20 @@ std::vector<ActuationEdit> actuation_edits(const Scenario& file, const Scenario&
   return Editor(file, wanted).run();
 }
 
-std::string edited(std::string text, std::span<const ActuationEdit> edits) {
-  std::vector<const ActuationEdit*> from_the_end;
+std::vector<const ActuationEdit*> from_the_end(std::span<const ActuationEdit> edits) {
+  std::vector<const ActuationEdit*> ordered;
   for (const ActuationEdit& edit : edits) {
-    from_the_end.push_back(&edit);
+    ordered.push_back(&edit);
   }
   // Tags that are added at one place keep their order.
-  std::ranges::reverse(from_the_end);
-  std::ranges::stable_sort(from_the_end, std::ranges::greater{},
+  std::ranges::reverse(ordered);
+  std::ranges::stable_sort(ordered, std::ranges::greater{},
                            [](const ActuationEdit* edit) { return edit->patch.position; });
-  for (const ActuationEdit* edit : from_the_end) {
+  return ordered;
+}
+
+std::string edited(std::string text, std::span<const ActuationEdit> edits) {
+  for (const ActuationEdit* edit : from_the_end(edits)) {
     apply(edit->patch, text);
   }
   return text;

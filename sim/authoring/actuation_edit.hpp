@@ -33,6 +33,9 @@ struct ActuationEdit {
 /// one other value; else each joint that wants another value gets a tag of its own.
 [[nodiscard]] std::vector<ActuationEdit> actuation_edits(const Scenario& file, const Scenario& wanted);
 
+/// The edits in the order in which their patches can be applied one after the other: the last place first.
+[[nodiscard]] std::vector<const ActuationEdit*> from_the_end(std::span<const ActuationEdit> edits);
+
 /// The text with the edits.
 [[nodiscard]] std::string edited(std::string text, std::span<const ActuationEdit> edits);
 

@@ -42,6 +42,10 @@ const std::string& DraftTexts::at(const std::string& name) const {
   return *text;
 }
 
+DraftChange::DraftChange(Draft& draft) : draft_(draft), texts_(draft.texts_) {}
+
+Scenario DraftChange::scenario() const { return draft_.read(); }
+
 const XmlText& DraftChange::xml(const std::string& name) {
   std::unique_ptr<XmlText>& parsed = parsed_[name];
   if (parsed == nullptr) {
@@ -57,6 +61,13 @@ void DraftChange::apply(const std::string& name, const TextPatch& patch) {
   steps_.push_back({name, patch});
   parsed_.erase(name);
   apply_step(steps_.back(), texts_);
+}
+
+void DraftChange::apply_all(const std::string& name, std::vector<TextPatch> patches) {
+  std::ranges::sort(patches, std::ranges::greater{}, &TextPatch::position);
+  for (const TextPatch& patch : patches) {
+    apply(name, patch);
+  }
 }
 
 void DraftChange::add_file(const std::string& name, std::string text) {
@@ -95,7 +106,8 @@ void DraftChange::take_back(const Step& step, DraftTexts& texts) {
   texts.set(step.file, std::move(text));
 }
 
-Draft::Draft(Scenario scenario, FileSource& disk) : disk_(&disk), texts_(disk), scenario_(std::move(scenario)) {
+Draft::Draft(Scenario scenario, FileSource& disk, std::uint64_t revision)
+    : disk_(&disk), texts_(disk), scenario_(std::move(scenario)), revision_(revision) {
   for (const SourceFile& source : scenario_.sources) {
     texts_.set(source.path, source.text);
     saved_.emplace(source.path, source.text);
@@ -118,7 +130,7 @@ Scenario Draft::read() {
 
 void Draft::change(const std::string& label, std::optional<std::uint64_t> gesture,
                    const std::function<void(DraftChange&)>& change) {
-  DraftChange collected(texts_);
+  DraftChange collected(*this);
   try {
     change(collected);
     if (collected.steps_.empty()) {
@@ -271,7 +283,10 @@ bool Draft::refresh() {
 
 void Draft::mark_saved() { saved_ = texts_.all(); }
 
-void Draft::rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path) {
+void Draft::rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path,
+                         FileSource& disk) {
+  disk_ = &disk;
+  texts_.set_disk(disk);
   const auto new_name = [&renamed](const std::string& name) {
     const auto found = renamed.find(name);
     return found == renamed.end() ? name : found->second;

@@ -36,6 +36,7 @@ class DraftTexts final : public FileSource {
   [[nodiscard]] const std::string& at(const std::string& name) const;
   void set(const std::string& name, std::string text) { texts_.insert_or_assign(name, std::move(text)); }
   void erase(const std::string& name) { texts_.erase(name); }
+  void set_disk(FileSource& disk) { disk_ = &disk; }
   [[nodiscard]] const std::map<std::string, std::string>& all() const { return texts_; }
 
  private:
@@ -43,19 +44,29 @@ class DraftTexts final : public FileSource {
   std::map<std::string, std::string> texts_;
 };
 
+class Draft;
+
 /// What one change does to the files. Each call takes effect at once, so that the next one sees it.
 class DraftChange {
  public:
+  /// The scenario after the calls before. Throws InputError if the reader refuses it.
+  [[nodiscard]] Scenario scenario() const;
+  /// The text of a file after the calls before; null if the draft has no such file. Valid until the next apply().
+  [[nodiscard]] const std::string* text(const std::string& name) const { return texts_.find(name); }
+  /// The same, also of a file that only the disk has.
+  [[nodiscard]] std::optional<std::string> read(const std::string& name) const { return texts_.read(name); }
   /// A file after the calls before. Throws InputError for a file that the draft does not have, or that is no XML. Valid
   /// until the next apply() to this file.
   [[nodiscard]] const XmlText& xml(const std::string& name);
   void apply(const std::string& name, const TextPatch& patch);
+  /// Patches of the same xml(name), of places that do not overlap. Faster than one after the other.
+  void apply_all(const std::string& name, std::vector<TextPatch> patches);
   /// Adds a file. Throws InputError if the draft, or the disk, has one of this name.
   void add_file(const std::string& name, std::string text);
 
  private:
   friend class Draft;
-  explicit DraftChange(DraftTexts& texts) : texts_(texts) {}
+  explicit DraftChange(Draft& draft);
 
   struct Step {
     std::string file;
@@ -70,6 +81,7 @@ class DraftChange {
   static void apply_step(const Step& step, DraftTexts& texts);
   static void take_back(const Step& step, DraftTexts& texts);
 
+  Draft& draft_;
   DraftTexts& texts_;
   std::vector<Step> steps_;
   std::map<std::string, std::unique_ptr<XmlText>> parsed_;
@@ -85,7 +97,8 @@ class Draft {
   };
 
   /// scenario: as it was read, with its sources. disk: where files are that a change names; must outlive the draft.
-  Draft(Scenario scenario, FileSource& disk);
+  /// revision: where the count of changes begins.
+  Draft(Scenario scenario, FileSource& disk, std::uint64_t revision = 0);
 
   /// The scenario as the reader has it from the present texts.
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
@@ -118,10 +131,13 @@ class Draft {
   /// The present texts are on disk.
   void mark_saved();
   /// The files have been saved under other names, in `renamed` by their names until now, and the draft goes on there.
-  /// path: of the top-level file from now on. Undo stays.
-  void rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path);
+  /// path: of the top-level file from now on. disk: where they are. Undo stays.
+  void rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path,
+                    FileSource& disk);
 
  private:
+  friend class DraftChange;
+
   struct Entry {
     std::string label;
     std::optional<std::uint64_t> gesture;

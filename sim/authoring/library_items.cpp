@@ -224,6 +224,11 @@ const std::vector<LibraryDeclaration>& library() {
   return items;
 }
 
+const LibraryDeclaration* find_library_item(std::string_view name) {
+  const auto found = std::ranges::find(library(), name, &LibraryDeclaration::name);
+  return found == library().end() ? nullptr : &*found;
+}
+
 std::string item_text(LibraryItem item, const std::map<std::string, double>& values, const std::string& name,
                       const Eigen::Vector3d& position, double turn_degrees) {
   std::string text = "<KinBody name=\"" + escaped(name) + "\">\n";

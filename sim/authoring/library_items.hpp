@@ -44,6 +44,9 @@ struct LibraryDeclaration {
 /// All items, in the order of LibraryItem.
 [[nodiscard]] const std::vector<LibraryDeclaration>& library();
 
+/// The item with this name; null if there is none.
+[[nodiscard]] const LibraryDeclaration* find_library_item(std::string_view name);
+
 /// A <KinBody> of a library item, for XmlText::add_behind(). values: of all its parameters. position: m, of the middle
 /// of its front edge, or of its middle, on the ground; it is turned about the vertical there.
 [[nodiscard]] std::string item_text(LibraryItem item, const std::map<std::string, double>& values,

@@ -11,7 +11,7 @@ namespace proleg::sim {
 namespace {
 
 constexpr std::array<std::string_view, 3> solvers{"automatic", "direct", "iterative"};
-constexpr std::string_view properties = "simulationProperties";
+constexpr std::string_view properties_tag = "simulationProperties";
 
 }  // namespace
 
@@ -28,11 +28,11 @@ std::optional<Solver> solver_named(std::string_view word) {
 
 void RunChange::set_property(std::string_view tag, const std::string& content) {
   const std::string file = name_of(scenario_.path);
-  if (!change_.xml(file).child(0, properties)) {
-    change_.apply(
-        file, change_.xml(file).add_last(0, "<" + std::string(properties) + ">\n</" + std::string(properties) + ">"));
+  if (!change_.xml(file).child(0, properties_tag)) {
+    change_.apply(file, change_.xml(file).add_last(
+                            0, "<" + std::string(properties_tag) + ">\n</" + std::string(properties_tag) + ">"));
   }
-  set_tag(change_, file, change_.xml(file).child(0, properties).value(), tag, content);
+  set_tag(change_, file, change_.xml(file).child(0, properties_tag).value(), tag, content);
 }
 
 ElementNumber RunChange::physics() {
@@ -48,10 +48,10 @@ void RunChange::set_physics(std::string_view tag, const std::string& content) {
   const std::string& file = scenario_.environment_file;
   const ElementNumber engine = physics();
   if (change_.xml(file).children(engine).empty()) {
-    const std::string name = std::string(name_of(scenario_.environment.engine)) + "properties";
+    const std::string name = std::string(name_of(scenario_.environment.engine)) + "properties_tag";
     change_.apply(file, change_.xml(file).add_last(engine, "<" + name + ">\n</" + name + ">"));
   }
-  // All engines read the properties of each other (docs/scenario-files.md).
+  // All engines read the properties_tag of each other (docs/scenario-files.md).
   set_tag(change_, file, change_.xml(file).children(engine).front(), tag, content);
 }
 

@@ -18,17 +18,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::array<std::string_view, 3> rotation_tags{"rotationaxis", "quat", "rotationmat"};
-
-bool is_one_of(const XmlText& xml, ElementNumber element, std::span<const std::string_view> tags) {
-  return std::ranges::any_of(tags, [&](std::string_view tag) { return xml.is(element, tag); });
-}
-
-Pose local_pose(const XmlText& xml, ElementNumber element) {
-  const XmlDocument document(xml.name(), std::string(xml.bytes(element)), nullptr);
-  return read_pose(document.root(xml.at(element).tag.name));
-}
-
 /// The lowest point of an object's boxes, spheres and cylinders, in m; nothing if it has other shapes.
 std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShape>& shapes) {
   std::optional<double> lowest;
@@ -68,57 +57,17 @@ const WorldObject& WorldChange::editable(std::size_t number) const {
   return found;
 }
 
-/// Gives an element this pose in the frame around it. A rotation that is as it should be keeps its tags.
-void WorldChange::set_pose(ElementNumber element, const Pose& pose) {
-  const Pose before = local_pose(xml(), element);
-  const std::string position = vector_text(pose.position);
-  if (const auto translations = xml().children(element, "translation"); !translations.empty()) {
-    for (std::size_t i = translations.size(); i-- > 1;) {
-      apply(xml().remove(translations[i]));
-    }
-    apply(xml().set_content(translations.front(), position));
-  } else if (!pose.position.isZero(1e-9)) {
-    apply(xml().add_first(element, element_text("Translation", position)));
-  }
-  constexpr double same_angle = 1e-9;  // rad
-  if (before.orientation.angularDistance(pose.orientation) < same_angle) {
-    return;
-  }
-  std::vector<ElementNumber> rotations;
-  for (const ElementNumber child : xml().children(element)) {
-    if (is_one_of(xml(), child, rotation_tags)) {
-      rotations.push_back(child);
-    }
-  }
-  const std::optional<std::string> rotation = rotation_text(pose.orientation);
-  for (std::size_t i = rotations.size(); i-- > (rotation ? 1U : 0U);) {
-    apply(xml().remove(rotations[i]));
-  }
-  if (!rotation) {
-    return;
-  }
-  const std::string tag = element_text("RotationAxis", *rotation);
-  if (!rotations.empty()) {
-    const XmlText::Element& first = xml().at(rotations.front());
-    apply(xml().replace({first.tag.begin, first.end}, tag));
-  } else if (const auto translation = xml().child(element, "translation")) {
-    apply(xml().add_behind(*translation, tag));
-  } else {
-    apply(xml().add_first(element, tag));
-  }
-}
-
 void WorldChange::place(std::size_t number, const Pose& pose, bool with_group) {
   const WorldObject& found = editable(number);
   if (with_group && found.group) {
     // The whole group turns and moves as its body does.
-    const Pose of_group = local_pose(xml(), *found.group);
-    set_pose(*found.group, pose * found.pose.inverse() * of_group);
+    const Pose of_group = pose_of(xml(), *found.group);
+    set_pose(change_, world_.file, *found.group, pose * found.pose.inverse() * of_group);
     return;
   }
-  const Pose local = local_pose(xml(), *found.body);
+  const Pose local = pose_of(xml(), *found.body);
   const Pose frame = found.pose * local.inverse();
-  set_pose(*found.body, frame.inverse() * pose);
+  set_pose(change_, world_.file, *found.body, frame.inverse() * pose);
 }
 
 void WorldChange::set_size(std::size_t number, std::size_t shape_number, const std::vector<double>& size) {
@@ -167,12 +116,7 @@ void WorldChange::set_friction(std::size_t number, std::optional<double> frictio
   const WorldObject& found = editable(number);
   // From the last on, because tags that are added or removed change the numbers of those behind them.
   for (std::size_t i = found.shapes.size(); i-- > 0;) {
-    const ElementNumber geom = found.shapes[i].element;
-    if (friction) {
-      set_tag_of(geom, "friction", number_text_of(*friction));
-    } else if (const auto tag = xml().child(geom, "friction")) {
-      apply(xml().remove(*tag));
-    }
+    set_friction_of(change_, world_.file, found.shapes[i].element, friction);
   }
 }
 
@@ -200,16 +144,7 @@ void WorldChange::set_mass(std::size_t number, double mass) {
                      "object " + in_quotes(found.name) + (found.moves ? " without a <Mass>" : ", which does not move"),
                      "an object that moves and has a mass of its own");
   }
-  if (xml().child(*element, "inertia")) {
-    throw InputError("mass", 0, "an <inertia> in line " + std::to_string(xml().at(*element).tag.line),
-                     "a mass whose inertia follows from its shape");
-  }
-  if (const auto density = xml().child(*element, "density")) {
-    const XmlText::Element& tag = xml().at(*density);
-    apply(xml().replace({tag.tag.begin, tag.end}, element_text("total", number_text_of(mass))));
-  } else {
-    set_tag_of(*element, "total", number_text_of(mass));
-  }
+  set_mass_of(change_, world_.file, *element, mass);
 }
 
 void WorldChange::rename(std::size_t number, const std::string& name) {
@@ -254,7 +189,7 @@ void WorldChange::duplicate(std::size_t number, bool with_group, const Eigen::Ve
   const WorldObject& found = editable(number);
   const bool whole = found.group && (with_group || found.group_size == 1);
   const ElementNumber original = whole ? *found.group : *found.body;
-  const Pose local = local_pose(xml(), original);
+  const Pose local = pose_of(xml(), original);
   const Pose frame = whole ? Pose{} : found.pose * local.inverse();
   // From the last copy on, each directly behind the original.
   for (unsigned i = count; i > 0; --i) {
@@ -263,7 +198,7 @@ void WorldChange::duplicate(std::size_t number, bool with_group, const Eigen::Ve
     const ElementNumber copy = next_sibling(xml(), original);
     Pose moved = local;
     moved.position += frame.inverse().orientation * (static_cast<double>(i) * step);
-    set_pose(copy, moved);
+    set_pose(change_, world_.file, copy, moved);
   }
 }
 

@@ -57,7 +57,6 @@ class WorldChange {
   void set_tag_of(ElementNumber parent, std::string_view tag, const std::string& content) {
     set_tag(change_, world_.file, parent, tag, content);
   }
-  void set_pose(ElementNumber element, const Pose& pose);
   void add_kinbody(const std::string& lines);
   [[nodiscard]] std::string free_name(const std::string& wanted) const;
 

@@ -126,6 +126,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   }
 
   const auto robot_file = open("robot");
+  scenario.robot_file = robot_file->name();
   RobotDescription robot = read_robot(*robot_file, scenario.step_s, sources, scenario.remarks);
   scenario.robot = std::move(robot.model);
   scenario.joint_limits = std::move(robot.kernel_limits);

@@ -60,6 +60,7 @@ struct Scenario {
   Overrides overrides;  ///< what replaced values of the files; it has been applied
 
   std::vector<SourceFile> sources;    ///< every file, the top-level file first
+  std::string robot_file;             ///< path of the source that has the robot
   std::string actuation_file;         ///< path of the source that has the start values
   std::string environment_file;       ///< path of the source that has the environment
   std::vector<std::string> remarks;   ///< for the user: the joint map, tags without effect

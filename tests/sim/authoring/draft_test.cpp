@@ -152,7 +152,7 @@ TEST_F(DraftTest, FilesThatAreSavedElsewhereKeepTheirHistory) {
   for (const SourceFile& source : draft_.scenario().sources) {
     renamed[source.path] = "copy/" + source.path;
   }
-  draft_.rename_files(renamed, "copy/top.xml");
+  draft_.rename_files(renamed, "copy/top.xml", files_);
   EXPECT_TRUE(draft_.changed_files().empty());
   EXPECT_EQ(draft_.scenario().environment_file, "copy/environment.xml");
   ASSERT_TRUE(draft_.undo());

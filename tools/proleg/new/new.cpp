@@ -14,10 +14,10 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
+#include "sim/authoring/new_scenario.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/new/new_files.hpp"
-#include "tools/proleg/new/robot_files.hpp"
 
 namespace {
 
@@ -40,11 +40,11 @@ struct NewOptions {
   std::string out = "robot";
 };
 
-const RobotKind& parse_kind(const std::string& word) {
-  const RobotKind* const kind = word.empty() ? &robot_kinds().front() : find_robot_kind(word);
+const sim::RobotKind& parse_kind(const std::string& word) {
+  const sim::RobotKind* const kind = word.empty() ? &sim::robot_kinds().front() : sim::find_robot_kind(word);
   if (kind == nullptr) {
     std::vector<std::string> names;
-    for (const RobotKind& known : robot_kinds()) {
+    for (const sim::RobotKind& known : sim::robot_kinds()) {
       names.emplace_back(known.name);
     }
     throw InputError("--kind", 0, in_quotes(word), "one of " + listed(names));
@@ -84,30 +84,30 @@ int write_robot(const NewOptions& options) {
   if (!options.joints && options.kind.empty()) {
     throw BadInput("--joints is required without --kind");
   }
-  const RobotKind& kind = parse_kind(options.kind);
+  const sim::RobotKind& kind = parse_kind(options.kind);
   const std::uint32_t joints = options.joints ? parse_joints(*options.joints) : kind.joints;
   const std::string axes = options.axes.value_or(std::string(kind.axes.substr(0, joints)));
-  const std::vector<NewFile> files = robot_files(kind, axes_of_joints(axes, joints));
+  const std::vector<sim::SourceFile> files = sim::new_scenario_files(kind, axes_of_joints(axes, joints));
   const std::filesystem::path folder = options.out;
   write_new_files(folder, files);
-  std::cout << "run it:  proleg simulate " << shell_argument((folder / files.front().name).string()) << '\n';
+  std::cout << "run it:  proleg simulate " << shell_argument((folder / files.front().path).string()) << '\n';
   return exit_success;
 }
 
 }  // namespace
 
-void proleg::tools::write_new_files(const std::filesystem::path& folder, std::span<const NewFile> files) {
+void proleg::tools::write_new_files(const std::filesystem::path& folder, std::span<const sim::SourceFile> files) {
   if (folder.empty()) {
     throw InputError("--out", 0, "an empty name", "the name of a folder");
   }
-  for (const NewFile& file : files) {
-    if (std::filesystem::exists(folder / file.name)) {
-      throw BadInput((folder / file.name).string() +
+  for (const sim::SourceFile& file : files) {
+    if (std::filesystem::exists(folder / file.path)) {
+      throw BadInput((folder / file.path).string() +
                      ": found an existing file, expected none; --out FOLDER names another folder");
     }
   }
-  for (const NewFile& file : files) {
-    const std::filesystem::path path = folder / file.name;
+  for (const sim::SourceFile& file : files) {
+    const std::filesystem::path path = folder / file.path;
     create_folder(path.parent_path());
     write_file(path, file.text);
     std::cout << "written  " << path.string() << '\n';
@@ -132,8 +132,8 @@ int main(int argc, char** argv) {
       .required()
       .value_name("");
   std::string kinds = "kind of robot:";
-  for (const RobotKind& kind : robot_kinds()) {
-    kinds.append(&kind == &robot_kinds().front() ? " " : "; ").append(kind.name).append(" (").append(kind.help);
+  for (const sim::RobotKind& kind : sim::robot_kinds()) {
+    kinds.append(&kind == &sim::robot_kinds().front() ? " " : "; ").append(kind.name).append(" (").append(kind.help);
     kinds += ")";
   }
   command_line.add_option("--kind", options.kind, kinds).value_name("KIND");

@@ -18,9 +18,9 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/crc32.hpp"
 #include "shared/gait/registry.hpp"
+#include "sim/authoring/new_scenario.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"
-#include "tools/proleg/new/robot_files.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -49,16 +49,16 @@ std::string filled(std::string_view text, const AlgorithmPlace& place) {
 
 /// The files: one source with a small algorithm that moves a robot, its test, CMakeLists.txt, README.md, and in robot/
 /// the files of a robot of five joints that it moves.
-std::vector<NewFile> algorithm_files(const AlgorithmPlace& place) {
-  std::vector<NewFile> files{{"README.md", filled(algorithm_readme_text(), place)},
-                             {place.name + ".cpp", filled(algorithm_source_text(), place)},
-                             {place.name + "_test.cpp", filled(algorithm_test_text(), place)},
-                             {"CMakeLists.txt", filled(algorithm_cmake_text(), place)}};
-  for (NewFile& file : robot_files(robot_kinds().front(), "ppppp")) {
-    if (file.name == "robot.actuation.xml") {
+std::vector<sim::SourceFile> algorithm_files(const AlgorithmPlace& place) {
+  std::vector<sim::SourceFile> files{{"README.md", filled(algorithm_readme_text(), place)},
+                                     {place.name + ".cpp", filled(algorithm_source_text(), place)},
+                                     {place.name + "_test.cpp", filled(algorithm_test_text(), place)},
+                                     {"CMakeLists.txt", filled(algorithm_cmake_text(), place)}};
+  for (sim::SourceFile& file : sim::new_scenario_files(sim::robot_kinds().front(), "ppppp")) {
+    if (file.path == "robot.actuation.xml") {
       file.text = filled(algorithm_actuation_text(), place);
     }
-    files.push_back({"robot/" + file.name, std::move(file.text)});
+    files.push_back({"robot/" + file.path, std::move(file.text)});
   }
   return files;
 }

@@ -1,20 +1,16 @@
 #pragma once
 
-// The subcommands of `proleg new`, the shipped files that they copy (CMake makes strings of the program of them), and
-// how they write files.
+// The subcommands of `proleg new`, the texts of a new algorithm (CMake makes strings of the program of them), and how
+// they write files.
 
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 
-namespace proleg::tools {
+#include "sim/scenario/scenario.hpp"
 
-// Files of the shipped travelling_wave that a new robot has too.
-[[nodiscard]] std::string_view floor_text();    ///< flat.environment.xml
-[[nodiscard]] std::string_view tail_text();     ///< modules/tail.kinbody.xml
-[[nodiscard]] std::string_view segment_text();  ///< modules/segment.kinbody.xml
-[[nodiscard]] std::string_view head_text();     ///< modules/head.kinbody.xml
+namespace proleg::tools {
 
 // The files in algorithm_template/. @NAME@, @ID@, @SOURCE@ (the checkout) and @FOLDER@ stand for texts that
 // `proleg new algorithm` fills in.
@@ -30,13 +26,8 @@ int new_algorithm(int argc, char** argv);
 /// proleg new obstacle: writes an environment file with hills. argv[0] is "obstacle". Returns the exit status.
 int new_obstacle(int argc, char** argv);
 
-struct NewFile {
-  std::string name;  ///< path relative to the folder
-  std::string text;
-};
-
-/// Writes all files, and a line for each on standard output. Throws BadInput, before it writes a file, if one of them
-/// exists; and InputError if the folder has no name.
-void write_new_files(const std::filesystem::path& folder, std::span<const NewFile> files);
+/// Writes all files, whose paths are relative to the folder, and a line for each on standard output. Throws BadInput,
+/// before it writes a file, if one of them exists; and InputError if the folder has no name.
+void write_new_files(const std::filesystem::path& folder, std::span<const sim::SourceFile> files);
 
 }  // namespace proleg::tools

@@ -184,7 +184,8 @@ Obstacle parse_obstacle(const Options& options) {
 }
 
 int write(const Options& options) {
-  const std::array<NewFile, 1> files{NewFile{"obstacle.environment.xml", obstacle_text(parse_obstacle(options))}};
+  const std::array<sim::SourceFile, 1> files{
+      sim::SourceFile{"obstacle.environment.xml", obstacle_text(parse_obstacle(options))}};
   write_new_files(options.out, files);
   std::cout << "use it:  <environment>" << options.out
             << "/obstacle.environment.xml</environment> in a top-level file\n";

@@ -1,43 +1,27 @@
 #pragma once
 
-// The documents of a draft, and the changes that its operations ask for (docs/page-interface.md).
+// The documents of a draft (docs/page-interface.md).
 
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
 
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/run_change.hpp"
-#include "sim/authoring/world_change.hpp"
+#include "sim/authoring/robot_contents.hpp"
+#include "sim/authoring/world_contents.hpp"
 
 namespace proleg::tools {
 
-/// The world of a draft, a part of the document `draft`.
+// Parts of the document `draft`.
+
 [[nodiscard]] nlohmann::json world_json(const sim::WorldContents& world);
-
-/// The document `library`.
-[[nodiscard]] nlohmann::json library_json();
-
-/// How the draft is run, a part of the document `draft`.
+[[nodiscard]] nlohmann::json robot_json(const sim::RobotContents& robot, const sim::Scenario& scenario);
+[[nodiscard]] nlohmann::json behaviour_json(const sim::Scenario& scenario);
 [[nodiscard]] nlohmann::json run_json(const sim::Scenario& scenario);
 
-/// What the operation `draft.run` asks for.
-struct RunOperation {
-  std::string label;  ///< for undo: "duration"
-  std::function<void(sim::RunChange&)> change;
-};
-
-/// Reads the operation. Throws InputError for a value that does not exist, or of the wrong kind.
-[[nodiscard]] RunOperation run_operation(const nlohmann::json& arguments);
-
-/// What an operation of a world asks for.
-struct WorldOperation {
-  std::string label;  ///< for undo: "move box"
-  std::function<void(sim::WorldChange&)> change;
-};
-
-/// Reads an operation. Throws InputError for one that does not exist, and for arguments of the wrong kind.
-[[nodiscard]] WorldOperation world_operation(const std::string& name, const nlohmann::json& arguments,
-                                             const sim::WorldContents& world);
+/// The document `library`: what a world can get.
+[[nodiscard]] nlohmann::json library_json();
+/// The document `parts`: what a robot can get.
+[[nodiscard]] nlohmann::json parts_json();
+/// The document `algorithms`: what an actuation module can do.
+[[nodiscard]] nlohmann::json algorithms_json();
 
 }  // namespace proleg::tools

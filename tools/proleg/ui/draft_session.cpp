@@ -4,15 +4,21 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
+#include "tools/proleg/ui/draft_arguments.hpp"
 #include "tools/proleg/ui/draft_document.hpp"
+#include "tools/proleg/ui/draft_operations.hpp"
+#include "tools/proleg/ui/new_draft.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 
 namespace proleg::tools {
@@ -28,6 +34,28 @@ json lines_json(const std::vector<std::string>& texts) {
   return lines;
 }
 
+constexpr std::string_view run_operation_name = "draft.run";
+
+DraftOperation operation_of(const host::OperationRequest& operation, const sim::Draft& draft) {
+  const auto read = operation.name == run_operation_name                 ? nullptr
+                    : operation.name.starts_with(world_operations)       ? world_operation
+                    : operation.name.starts_with(draft_robot_operations) ? robot_operation
+                                                                         : behaviour_operation;
+  return read == nullptr ? run_operation(operation.arguments, draft) : read(operation.name, operation.arguments, draft);
+}
+
+/// Throws InputError for a file that is no scenario of the folder and none that ships with Proleg.
+void require_scenario_in(const std::string& file, const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  const std::filesystem::path top = error ? std::filesystem::path() : std::filesystem::canonical(folder, error);
+  const bool is_inside = !error && std::ranges::mismatch(top, real).in1 == top.end();
+  if (!file.ends_with(".simulation.xml") || error || !(is_inside || is_shipped(real))) {
+    throw InputError("file", 0, in_quotes(one_line(file)),
+                     "a *.simulation.xml file in the folder of the project, or one that ships with Proleg");
+  }
+}
+
 json unsaved_json(const KeptChanges& kept) {
   json files = json::array();
   for (const auto& [name, text] : kept.texts) {
@@ -38,14 +66,14 @@ json unsaved_json(const KeptChanges& kept) {
 
 }  // namespace
 
-DraftSession::DraftSession(std::optional<sim::Scenario> scenario, sim::FileSource& disk, DraftSessionOptions options,
+DraftSession::DraftSession(std::optional<sim::Scenario> scenario, DraftSessionOptions options,
                            SessionRequests& requests, PresentDraft& present, host::SessionOutput& output)
-    : SessionThread(requests, output), options_(std::move(options)), present_(present), disk_(disk) {
+    : SessionThread(requests, output), options_(std::move(options)), present_(present) {
+  output_.publish("library", library_json());
+  output_.publish("parts", parts_json());
+  output_.publish("algorithms", algorithms_json());
   if (scenario) {
-    draft_.emplace(std::move(*scenario), disk);
-    foresight_.emplace(output);
-    output.publish("library", library_json());
-    open_journal();
+    begin(std::move(*scenario), options_.has_file);
   }
   publish();
   begin_thread();
@@ -72,6 +100,21 @@ void DraftSession::close() {
   }
 }
 
+void DraftSession::begin(sim::Scenario scenario, bool has_file) {
+  close();
+  const std::uint64_t revision = draft_ ? draft_->revision() + 1 : 0;
+  options_.has_file = has_file;
+  draft_.emplace(std::move(scenario), has_file ? static_cast<sim::FileSource&>(disk_) : nothing_, revision);
+  if (!foresight_) {
+    foresight_.emplace(output_);
+  }
+  kept_.reset();
+  published_.reset();
+  is_layout_new_ = true;
+  is_new_ = true;
+  open_journal();
+}
+
 void DraftSession::open_journal() {
   const std::string& path = draft_->scenario().path;
   journal_.emplace(journal_path(path, options_.has_file && !is_shipped(path), options_.folder));
@@ -94,7 +137,7 @@ void DraftSession::write_journal() {
 
 sim::Draft& DraftSession::draft() {
   if (!draft_) {
-    throw std::runtime_error("there is no scenario to change; start `proleg ui` with one, or without FILE");
+    throw std::runtime_error("there is no scenario to change; make a new one, or open one");
   }
   return *draft_;
 }
@@ -112,7 +155,7 @@ void DraftSession::publish() {
     return;
   }
   const sim::Scenario& scenario = draft.scenario();
-  if (published_) {
+  if (published_) {  // what is opened has not changed
     journal_->note_change(Clock::now());
   }
   if (is_changed) {
@@ -130,7 +173,8 @@ void DraftSession::publish() {
     foresight_->look_at(shared, draft.revision());
   }
   const sim::WorldContents world = read_world_contents(draft);
-  note_layout(world);
+  const sim::RobotContents contents = read_robot_contents(draft);
+  note_layout(world, contents);
   std::vector<std::string> changed;
   for (const sim::Draft::ChangedFile& file : draft.changed_files()) {
     changed.push_back(file.name);
@@ -146,6 +190,8 @@ void DraftSession::publish() {
                             {"unsaved", kept_ ? unsaved_json(*kept_) : json()},
                             {"warnings", lines_json(scenario.warnings)},
                             {"head", pose_json(scenario.environment.robot_pose * scenario.robot.links.front().pose)},
+                            {"robot", robot_json(contents, scenario)},
+                            {"behaviour", behaviour_json(scenario)},
                             {"run", run_json(scenario)},
                             {"world", world_json(world)},
                             {"layout", layout_since_}});
@@ -153,72 +199,82 @@ void DraftSession::publish() {
   is_new_ = false;
 }
 
-void DraftSession::note_layout(const sim::WorldContents& world) {
-  std::vector<std::size_t> layout{world.rulers.size()};
+void DraftSession::note_layout(const sim::WorldContents& world, const sim::RobotContents& robot) {
+  std::vector<std::size_t> layout{world.rulers.size(), robot.joints.size(), robot.sensors.size(),
+                                  sim::used_slots(draft_->scenario()).size()};
   for (const sim::WorldObject& object : world.objects) {
     layout.push_back(object.shapes.size());
   }
-  if (layout != layout_) {
+  if (std::exchange(is_layout_new_, false) || layout != layout_) {
     layout_ = std::move(layout);
     layout_since_ = draft_->revision();
   }
 }
 
 json DraftSession::carry_out(const host::OperationRequest& operation) {
-  if (operation.name.starts_with(world_operations)) {
-    change_world(operation);
-    publish();  // the next operation that waits is compared with this layout
-    return {{"revision", draft().revision()}};
-  }
   static const std::map<std::string_view, Handler> handlers{
+      {"draft.new", &DraftSession::make_new},    {"draft.open", &DraftSession::open},
       {"draft.undo", &DraftSession::undo},       {"draft.redo", &DraftSession::redo},
       {"draft.restore", &DraftSession::restore}, {"draft.discard", &DraftSession::discard},
-      {"draft.refresh", &DraftSession::refresh}, {"draft.run", &DraftSession::change_run},
-      {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
-      {"draft.save_as", &DraftSession::save_as}};
+      {"draft.refresh", &DraftSession::refresh}, {"draft.diff", &DraftSession::diff},
+      {"draft.save", &DraftSession::save},       {"draft.save_as", &DraftSession::save_as}};
+  if (operation.name == run_operation_name || !operation.name.starts_with(draft_operations)) {
+    return change_draft(operation);
+  }
   return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
-void DraftSession::change_world(const host::OperationRequest& operation) {
+json DraftSession::change_draft(const host::OperationRequest& operation) {
+  const json& arguments = operation.arguments;
   if (draft().refresh()) {
     publish();
   }
-  const sim::WorldContents world = read_world_contents(draft());
-  const WorldOperation change = world_operation(operation.name, operation.arguments, world);
-  // Positions in lists that another change has altered would name other objects.
-  const auto layout = argument<std::uint64_t>(operation.arguments, "layout", "the layout of the draft");
-  const auto gesture = argument<std::uint64_t>(operation.arguments, "gesture", "a whole number");
-  if (layout != layout_since_) {
-    throw std::runtime_error("the objects of the world have changed meanwhile; look at them again");
-  }
-  draft().change(change.label, gesture, [&](sim::DraftChange& edit) {
-    sim::WorldChange world_change(world, edit);
-    change.change(world_change);
-  });
-}
-
-json DraftSession::change_run(const json& arguments) {
-  const RunOperation operation = run_operation(arguments);
+  const bool has_positions = operation.name != run_operation_name;
+  const DraftOperation change = operation_of(operation, draft());
+  const auto layout = argument<std::uint64_t>(arguments, "layout", "the layout of the draft");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  const sim::Scenario before = draft().scenario();
-  draft().change(operation.label, gesture, [&](sim::DraftChange& edit) {
-    sim::RunChange change(before, edit);
-    operation.change(change);
-  });
+  // Positions in lists that another change has altered would name other parts.
+  if (has_positions && layout != layout_since_) {
+    throw std::runtime_error("the parts of the draft have changed meanwhile; look at them again");
+  }
+  draft().change(change.label, gesture, change.change);
+  is_layout_new_ = is_layout_new_ || change.moves_positions;
+  publish();  // the next operation that waits is compared with this layout
   return {{"revision", draft().revision()}};
 }
 
+json DraftSession::make_new(const json& arguments) {
+  begin(new_scenario(arguments), false);
+  return {{"revision", draft().revision()}};
+}
+
+json DraftSession::open(const json& arguments) {
+  const std::string file = text(arguments, "file");
+  require_scenario_in(file, options_.folder);
+  begin(sim::read_scenario(file, disk_), true);
+  return {{"revision", draft().revision()}};
+}
+
+/// Joints may have changed places: their positions mean something else.
+void DraftSession::note_robot(const std::string& before) {
+  is_layout_new_ = is_layout_new_ || before != draft().text(draft().scenario().robot_file);
+}
+
 json DraftSession::undo(const json& /*arguments*/) {
+  const std::string robot = draft().text(draft().scenario().robot_file);
   if (!draft().undo()) {
     throw std::runtime_error("there is nothing to undo");
   }
+  note_robot(robot);
   return {{"revision", draft().revision()}};
 }
 
 json DraftSession::redo(const json& /*arguments*/) {
+  const std::string robot = draft().text(draft().scenario().robot_file);
   if (!draft().redo()) {
     throw std::runtime_error("there is nothing to redo");
   }
+  note_robot(robot);
   return {{"revision", draft().revision()}};
 }
 
@@ -308,7 +364,7 @@ json DraftSession::save_as(const json& arguments) {
   const std::map<std::string, std::string> names =
       copy_sources(scenario.sources, folder_of_copy(options_.folder, name.value_or("")));
   const std::string& file = names.at(scenario.sources.front().path);
-  draft().rename_files(names, file);
+  draft().rename_files(names, file, disk_);
   options_.has_file = true;
   journal_->discard();
   journal_.emplace(journal_path(file, true, options_.folder));

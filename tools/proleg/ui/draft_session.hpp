@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/world_change.hpp"
+#include "sim/authoring/robot_contents.hpp"
+#include "sim/authoring/world_contents.hpp"
 #include "tools/proleg/ui/draft_journal.hpp"
 #include "tools/proleg/ui/foresight.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
@@ -20,16 +21,16 @@
 namespace proleg::tools {
 
 struct DraftSessionOptions {
-  std::filesystem::path folder;  ///< where `draft.save_as` makes folders
+  std::filesystem::path folder;  ///< where `draft.save_as` makes folders, and whose scenarios can be opened
   bool has_file = false;         ///< the scenario is on disk
 };
 
 class DraftSession final : private SessionThread {
  public:
-  /// scenario: nothing: there is no draft. disk: where its files are. present: gets each state of the draft. They, the
+  /// scenario: nothing: there is no draft until somebody opens one. present: gets each state of the draft. It, the
   /// requests and the output must outlive the session.
-  DraftSession(std::optional<sim::Scenario> scenario, sim::FileSource& disk, DraftSessionOptions options,
-               SessionRequests& requests, PresentDraft& present, host::SessionOutput& output);
+  DraftSession(std::optional<sim::Scenario> scenario, DraftSessionOptions options, SessionRequests& requests,
+               PresentDraft& present, host::SessionOutput& output);
   ~DraftSession() override;
 
   /// Operations that anybody may use.
@@ -43,17 +44,21 @@ class DraftSession final : private SessionThread {
   void close() override;
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
 
-  /// Finds the unsaved changes of an earlier program.
+  /// The draft is this scenario from now on. Unsaved changes of the one before stay in its journal.
+  void begin(sim::Scenario scenario, bool has_file);
+  /// Finds the unsaved changes of an earlier program, or of this one before it opened another scenario.
   void open_journal();
   void write_journal();
   void publish();
-  void note_layout(const sim::WorldContents& world);
+  void note_layout(const sim::WorldContents& world, const sim::RobotContents& robot);
   [[nodiscard]] sim::Draft& draft();
-  void change_world(const host::OperationRequest& operation);
+  nlohmann::json change_draft(const host::OperationRequest& operation);
+  void note_robot(const std::string& before);
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
 
   using Handler = nlohmann::json (DraftSession::*)(const nlohmann::json&);
-  nlohmann::json change_run(const nlohmann::json& arguments);
+  nlohmann::json make_new(const nlohmann::json& arguments);
+  nlohmann::json open(const nlohmann::json& arguments);
   nlohmann::json undo(const nlohmann::json& arguments);
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json refresh(const nlohmann::json& arguments);
@@ -65,14 +70,16 @@ class DraftSession final : private SessionThread {
 
   DraftSessionOptions options_;
   PresentDraft& present_;
-  sim::FileSource& disk_;
+  sim::DiskFiles disk_;
+  sim::SourceTexts nothing_;  ///< in the place of the disk for a draft that has no files yet
   std::optional<sim::Draft> draft_;
   std::optional<Foresight> foresight_;
   std::optional<DraftJournal> journal_;
   std::optional<KeptChanges> kept_;         ///< of an earlier program, until somebody decides about them
   std::optional<std::uint64_t> published_;  ///< revision of the draft
   std::string published_meshes_;
-  std::vector<std::size_t> layout_;  ///< of the lists of the world: what their positions depend on
+  std::vector<std::size_t> layout_;  ///< of the lists of the draft: what their positions depend on
+  bool is_layout_new_ = false;       ///< a change has moved positions
   std::uint64_t layout_since_ = 0;   ///< revision since which it is the same
   bool is_new_ = true;               ///< something beside the revision has changed
 };

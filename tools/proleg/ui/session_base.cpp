@@ -1,5 +1,7 @@
 #include "tools/proleg/ui/session_base.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <deque>
 #include <exception>
@@ -12,9 +14,12 @@
 namespace proleg::tools {
 
 void SessionRouter::operate(const host::OperationRequest& request) {
+  const bool is_for_draft =
+      std::ranges::any_of(std::array{draft_operations, world_operations, draft_robot_operations, behaviour_operations},
+                          [&](std::string_view begin) { return request.name.starts_with(begin); });
   if (request.name.starts_with(recording_operations)) {
     recordings_.operate(request);
-  } else if (request.name.starts_with(draft_operations) || request.name.starts_with(world_operations)) {
+  } else if (is_for_draft) {
     draft_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {
     remote_.operate(request);

@@ -102,7 +102,10 @@ const Handler& handler_of(const std::map<std::string_view, Handler>& handlers, c
 inline constexpr std::string_view recording_operations = "recording.";
 inline constexpr std::string_view remote_operations = "remote.";
 inline constexpr std::string_view draft_operations = "draft.";
-inline constexpr std::string_view world_operations = "world.";  ///< of a draft, too
+// Of a draft, too:
+inline constexpr std::string_view world_operations = "world.";
+inline constexpr std::string_view draft_robot_operations = "robot.";
+inline constexpr std::string_view behaviour_operations = "behaviour.";
 
 /// Four sessions behind one page: a robot, its remote control, recordings, and a draft. The name of an operation says
 /// which of them it is for; STOP and the holder of control go to the robot, then to the remote control.

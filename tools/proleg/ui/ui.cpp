@@ -17,6 +17,7 @@
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/authoring/new_scenario.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/sources.hpp"
@@ -25,7 +26,6 @@
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
-#include "tools/proleg/new/robot_files.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
@@ -57,17 +57,17 @@ struct UiOptions {
 class NewRobot final : public sim::FileSource {
  public:
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
-    for (const NewFile& file : files_) {
-      if (path.lexically_normal() == std::filesystem::path(file.name)) {
+    for (const sim::SourceFile& file : files_) {
+      if (path.lexically_normal() == std::filesystem::path(file.path)) {
         return file.text;
       }
     }
     return std::nullopt;
   }
-  [[nodiscard]] const std::string& name() const { return files_.front().name; }
+  [[nodiscard]] const std::string& name() const { return files_.front().path; }
 
  private:
-  std::vector<NewFile> files_ = robot_files(robot_kinds().front(), "ppppp");
+  std::vector<sim::SourceFile> files_ = sim::new_scenario_files(sim::robot_kinds().front(), "ppppp");
 };
 
 /// The scenario; for a simulation as its files have it, because the session applies the settings.
@@ -186,7 +186,6 @@ int serve(UiOptions& options) {
   const RecordedSessionOptions recordings = recordings_of(options);
   std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
   NewRobot new_robot;
-  sim::DiskFiles disk;
   std::optional<ScenarioRun> run;
   if (recordings.is_alone) {
     refuse_robot_options(options);
@@ -220,8 +219,7 @@ int serve(UiOptions& options) {
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   PresentDraft present_draft;
-  const DraftSession draft(run ? std::optional(run->scenario) : std::nullopt,
-                           has_file ? static_cast<sim::FileSource&>(disk) : new_robot, {options.recordings, has_file},
+  const DraftSession draft(run ? std::optional(run->scenario) : std::nullopt, {recordings.folder, has_file},
                            draft_requests, present_draft, page);
   const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;

@@ -4,13 +4,18 @@ import { arrayOf, headingOf } from '../geometry/outline.js';
 import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { ActionList } from '../state/actions.js';
 import type { Stores } from '../view/robot_view.js';
-import type { DraftDocument, Operations, WorldObject, WorldOperation } from '../wire/messages.js';
+import type { DraftDocument, NewScenario, Operations, PartOperation, WorldObject } from '../wire/messages.js';
 import { DraftView } from './draft_view.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
-export type WorldOperationName = Extract<keyof Operations, `world.${string}`>;
-type Arguments<Name extends WorldOperationName> = Omit<Operations[Name], keyof WorldOperation>;
+// Operations that name parts of the draft by their positions.
+export type PartOperationName = Extract<keyof Operations, `world.${string}` | `robot.${string}` | `behaviour.${string}`>;
+type Arguments<Name extends PartOperationName> = Omit<Operations[Name], keyof PartOperation>;
+
+// The parts of the draft that can be shown beside the drawings.
+export const partNames = ['robot', 'behaviour', 'world', 'run'] as const;
+export type PartName = (typeof partNames)[number];
 
 // What is dragged, and where it is now. The program gets the next step when it has answered the one before.
 interface Drag {
@@ -25,7 +30,10 @@ export const startOfRobot = -1;
 export class MakeApp {
   readonly chosen = signal<number | null>(null);
   readonly drag = signal<Drag | null>(null);
-  readonly isSaving = signal(false); // the changes of the files are shown
+  readonly panel = signal<'none' | 'new' | 'save'>('none'); // what is open below the bar
+  readonly part = signal<PartName>('world');
+  readonly chosenJoints = signal<readonly number[]>([]); // kernel order
+  readonly chosenModule = signal(0); // an actuation module
   readonly actions: ActionList;
   readonly view: DraftView;
   readonly draft = computed(() => this.page.state.draft.value);
@@ -41,14 +49,15 @@ export class MakeApp {
   constructor(readonly page: MakeStores) {
     this.actions = new ActionList(page.actions, (action) => action.group === 'Page' || action.group === 'Robot');
     this.view = new DraftView(page.state, this.actions, () => page.startSceneWorker());
-    const canChange = () => this.obstacle() === null;
+    const canChange = () => this.obstacle() === null && this.draft.value !== null;
     const canChangeChosen = () => canChange() && this.chosenObject.value?.editable === true;
     this.actions.add(
+      { id: 'draft_new', title: 'New: a robot, its gait and its world', group: 'Make', keys: ['N'], run: () => this.toggle('new') },
       { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
       { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
-      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => void (this.isSaving.value = !this.isSaving.value) },
+      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => this.toggle('save') },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
-      { id: 'delete_object', title: 'Delete the chosen object', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: canChangeChosen, run: () => void this.remove() },
+      { id: 'delete_object', title: 'Delete the chosen object, or joint', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: () => (this.part.value === 'robot' ? canChange() && this.chosenJoints.value.length === 1 : canChangeChosen()), run: () => void (this.part.peek() === 'robot' ? this.removeJoint() : this.remove()) },
       { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
     );
     page.makeActions.value = this.actions;
@@ -58,16 +67,20 @@ export class MakeApp {
     });
   }
 
+  // Opens a panel below the bar, or closes it.
+  toggle(panel: 'new' | 'save'): void {
+    this.panel.value = this.panel.peek() === panel ? 'none' : panel;
+  }
+
   // The reason why nothing can be changed; null: it can.
   obstacle(): string | null {
     const { state } = this.page;
     if (!state.isConnected.value) return 'No connection to the program.';
-    if (this.draft.value === null) return 'There is no scenario.';
     return state.isHolder.value ? null : 'Take control first (C).';
   }
 
-  // Requests a change of the world. Returns the reason if it was refused, else null.
-  async change<Name extends WorldOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<string | null> {
+  // Requests a change of a part. Returns the reason if it was refused, else null.
+  async change<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<string | null> {
     const layout = this.draft.peek()?.layout ?? 0;
     const all = { ...words, layout, ...(gesture === undefined ? {} : { gesture }) } as unknown as Operations[Name];
     try {
@@ -79,7 +92,7 @@ export class MakeApp {
   }
 
   // As change(), with a notice if it was refused.
-  async tell<Name extends WorldOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<boolean> {
+  async tell<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<boolean> {
     const refusal = await this.change(name, words, gesture);
     if (refusal !== null) this.page.state.addNotice('warning', refusal);
     return refusal === null;
@@ -204,6 +217,41 @@ export class MakeApp {
     const refusal = await this.change('world.add', { item, values, position, turn: draft.world.start.degrees[2] });
     if (refusal === null) this.chosen.value = before;
     return refusal;
+  }
+
+  // Removes the chosen joint with its link.
+  async removeJoint(): Promise<void> {
+    const joint = this.chosenJoints.peek()[0];
+    if (joint === undefined) return;
+    this.chosenJoints.value = [];
+    await this.tell('robot.remove', { joint });
+  }
+
+  // Makes the draft a new scenario. Of several calls in a row the newest counts. answered: with the reason of a refusal,
+  // or null.
+  makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
+    this.chosen.value = null;
+    this.chosenJoints.value = [];
+    this.chosenModule.value = 0;
+    this.send(() => this.page.operations.ask('draft.new', words).then(() => answered(null), (error: Error) => answered(error.message)));
+  }
+
+  // Writes a new scenario into a new folder, and starts it on the page Live. Returns the reason of a refusal, or null.
+  async createNew(words: NewScenario, folder: string): Promise<string | null> {
+    const { operations } = this.page;
+    try {
+      await operations.ask('draft.new', words);
+      await operations.ask('draft.save_as', { folder });
+      this.panel.value = 'none';
+      if (this.page.state.robot.value?.kind !== 'bus') {
+        await operations.ask('load_draft', {});
+        this.page.shownPage.value = 'live';
+        await operations.ask('run', {});
+      }
+      return null;
+    } catch (error) {
+      return (error as Error).message;
+    }
   }
 
   async simulate(): Promise<void> {

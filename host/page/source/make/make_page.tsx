@@ -1,12 +1,15 @@
-// The page Make: the world of the scenario, from above, from the side and in 3D, and where the robot will go in it.
+// The page Make: the scenario from above, from the side and in 3D, where the robot will go in it, and its parts: robot,
+// behaviour, world, run.
 import { ScenePanel } from '../panels/scene_panel.js';
-import type { ForesightDocument, WorldObject } from '../wire/messages.js';
-import { LibraryPanel } from './library_panel.js';
-import { MakeApp, type MakeStores } from './make_app.js';
-import { ObjectForm, StartForm } from './object_form.js';
+import type { ForesightDocument } from '../wire/messages.js';
+import { BehaviourPart } from './behaviour_part.js';
+import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
+import { NewPanel } from './new_panel.js';
+import { RobotPart } from './robot_part.js';
 import { RunForm } from './run_form.js';
 import { SavePanel } from './save_panel.js';
 import { WorldMap } from './world_map.js';
+import { WorldPart } from './world_part.js';
 
 let make: MakeApp | null = null; // the only one of the page; it stays when another page is shown
 
@@ -22,8 +25,11 @@ function Bar({ app }: { app: MakeApp }) {
         {draft?.file.split('/').at(-1)}
       </h1>
       <span class="hint" data-testid="draft-state">
-        {count === 0 ? 'saved' : count === 1 ? '1 file changed' : `${count} files changed`}
+        {draft?.has_file === false ? 'not saved yet' : count === 0 ? 'saved' : count === 1 ? '1 file changed' : `${count} files changed`}
       </span>
+      <button type="button" aria-pressed={app.panel.value === 'new'} title="A robot, its gait and its world in four steps (N)" onClick={() => app.toggle('new')}>
+        New …
+      </button>
       <button
         type="button"
         disabled={obstacle !== null || draft?.undo === null}
@@ -42,9 +48,9 @@ function Bar({ app }: { app: MakeApp }) {
       </button>
       <button
         type="button"
-        aria-pressed={app.isSaving.value}
+        aria-pressed={app.panel.value === 'save'}
         title="Shows the changes, and writes them (Ctrl + S)"
-        onClick={() => (app.isSaving.value = !app.isSaving.value)}
+        onClick={() => app.toggle('save')}
       >
         Save …
       </button>
@@ -120,31 +126,55 @@ function Foresight({ app }: { app: MakeApp }) {
   );
 }
 
-function isFirstOfGroup(objects: readonly WorldObject[], number: number): boolean {
-  const { group, group_size: size } = objects[number] as WorldObject;
-  return size === 1 || objects.findIndex((other) => other.group === group) === number;
+const partTitles: Record<PartName, string> = { robot: 'Robot', behaviour: 'Behaviour', world: 'World', run: 'Run' };
+
+// Which part of the draft is at the side of the drawings.
+function PartTabs({ app }: { app: MakeApp }) {
+  return (
+    <div class="tabs" role="tablist" aria-label="Parts">
+      {partNames.map((name) => (
+        <button
+          key={name}
+          type="button"
+          role="tab"
+          id={`tab-${name}`}
+          aria-selected={app.part.value === name}
+          aria-controls="make-part"
+          tabIndex={app.part.value === name ? 0 : -1}
+          onClick={() => (app.part.value = name)}
+          onKeyDown={(event) => {
+            const by = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+            if (by === 0) return;
+            event.preventDefault();
+            event.stopPropagation();
+            const next = partNames[(partNames.indexOf(name) + by + partNames.length) % partNames.length] as PartName;
+            app.part.value = next;
+            document.getElementById(`tab-${next}`)?.focus();
+          }}
+        >
+          {partTitles[name]}
+        </button>
+      ))}
+    </div>
+  );
 }
 
-// An object, or a group of them.
-function ObjectRow({ app, object, number }: { app: MakeApp; object: WorldObject; number: number }) {
-  const chosen = app.chosenObject.value;
-  const isChosen = app.chosen.value === number || (chosen !== null && object.group_size > 1 && chosen.group === object.group);
-  const kind = !object.editable
-    ? `in ${object.file.split('/').at(-1)}`
-    : object.group_size > 1
-      ? `${object.group_size} parts`
-      : object.shapes.map(({ type }) => type).join(', ');
-  return (
-    <li>
-      <button type="button" aria-pressed={isChosen} onClick={() => (app.chosen.value = isChosen ? null : number)}>
-        {object.name}
-      </button>
-      <span class="hint">
-        {kind}
-        {object.moves ? ', moves' : ''}
-      </span>
-    </li>
-  );
+function Part({ app }: { app: MakeApp }) {
+  switch (app.part.value) {
+    case 'robot':
+      return <RobotPart app={app} />;
+    case 'behaviour':
+      return <BehaviourPart app={app} />;
+    case 'world':
+      return <WorldPart app={app} />;
+    case 'run':
+      return (
+        <section class="panel make-panel" aria-label="Run">
+          <h2>Run</h2>
+          <RunForm app={app} />
+        </section>
+      );
+  }
 }
 
 export function MakePage({ app: page }: { app: MakeStores }) {
@@ -153,15 +183,20 @@ export function MakePage({ app: page }: { app: MakeStores }) {
   const draft = app.draft.value;
   if (draft === null) {
     return (
-      <p class="wait">
-        There is no scenario to change. Start <code>proleg ui</code> with one, or without a file.
-      </p>
+      <div class="make">
+        <div class="make-bar">
+          <h1 class="name">Make</h1>
+          <span class="hint">There is no scenario yet: make a new one.</span>
+        </div>
+        <NewPanel app={app} />
+      </div>
     );
   }
   return (
     <div class="make">
       <Bar app={app} />
-      {app.isSaving.value && <SavePanel app={app} />}
+      {app.panel.value === 'save' && <SavePanel app={app} />}
+      {app.panel.value === 'new' && <NewPanel app={app} />}
       <Unsaved app={app} />
       {draft.warnings.map((warning) => (
         <div class="band info" role="status" key={warning}>
@@ -177,24 +212,10 @@ export function MakePage({ app: page }: { app: MakeStores }) {
         <ScenePanel app={app.view} />
       </div>
       <div class="make-side">
-        <LibraryPanel app={app} />
-        <section class="panel make-panel" aria-label="Objects">
-          <h2>Objects</h2>
-          <ul class="objects">
-            {draft.world.objects.map((object, number) =>
-              isFirstOfGroup(draft.world.objects, number) ? <ObjectRow key={number} app={app} object={object} number={number} /> : null,
-            )}
-          </ul>
-          <ObjectForm app={app} />
-        </section>
-        <section class="panel make-panel" aria-label="Start of the robot">
-          <h2>Start of the robot</h2>
-          <StartForm app={app} />
-        </section>
-        <section class="panel make-panel" aria-label="Run">
-          <h2>Run</h2>
-          <RunForm app={app} />
-        </section>
+        <PartTabs app={app} />
+        <div class="make-part" role="tabpanel" id="make-part" aria-labelledby={`tab-${app.part.value}`}>
+          <Part app={app} />
+        </div>
       </div>
     </div>
   );

@@ -2,9 +2,10 @@
 import { useSignal } from '@preact/signals';
 import { arrayOf, headingOf } from '../geometry/outline.js';
 import { poseFromArray, type Vector } from '../geometry/quaternion.js';
-import type { WorldObject, WorldShape } from '../wire/messages.js';
+import type { WorldShape } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
 import { NumberField } from './number_field.js';
+import { TextField } from './text_field.js';
 
 const sizeLabels: Record<WorldShape['type'], readonly string[]> = {
   box: ['size x', 'size y', 'size z'],
@@ -48,29 +49,6 @@ function PlaceFields({ place, isDisabled, commit }: Place) {
         />
       ))}
     </>
-  );
-}
-
-function NameField({ app, number, object }: { app: MakeApp; number: number; object: WorldObject }) {
-  const problem = useSignal<string | null>(null);
-  return (
-    <label class="number-field">
-      <span>name</span>
-      <input
-        type="text"
-        value={object.name}
-        disabled={app.obstacle() !== null}
-        aria-invalid={problem.value !== null}
-        onChange={async (event) => {
-          problem.value = await app.change('world.rename', { object: number, name: event.currentTarget.value.trim() });
-        }}
-      />
-      {problem.value !== null && (
-        <span class="problem" role="alert">
-          {problem.value}
-        </span>
-      )}
-    </label>
   );
 }
 
@@ -137,7 +115,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
   const friction = object.shapes[0]?.friction ?? null;
   return (
     <div class="object-form" key={number}>
-      <NameField app={app} number={number} object={object} />
+      <TextField label="name" value={object.name} isDisabled={isDisabled} commit={(name) => app.change('world.rename', { object: number, name })} />
       {object.group_size > 1 && <p class="hint">One of {object.group_size} parts, which move together. Ctrl and drag moves it alone.</p>}
       <div class="fields">
         <PlaceFields place={pose.position} isDisabled={isDisabled} commit={place} />

@@ -1,8 +1,9 @@
 // How the scenario is run, and what each value costs.
-import { useSignal } from '@preact/signals';
 import type { RunDocument } from '../wire/messages.js';
+import { ChoiceField } from './choice_field.js';
 import type { MakeApp } from './make_app.js';
 import { NumberField } from './number_field.js';
+import { TextField } from './text_field.js';
 
 const engineTexts: Record<RunDocument['engine'], string> = {
   ode: 'ODE: any robot, any world',
@@ -22,57 +23,13 @@ const lengths = [
   { name: 'step', unit: 'ms', title: 'Of the physics. Shorter is more exact and takes longer; a tick is a whole number of steps.' },
 ] as const;
 
-function Choice<Value extends string>({ label, value, texts, isDisabled, commit }: {
-  label: string;
-  value: Value;
-  texts: Record<Value, string>;
-  isDisabled: boolean;
-  commit(value: Value): void;
-}) {
-  return (
-    <label class="number-field">
-      <span>{label}</span>
-      <select value={value} disabled={isDisabled} onChange={(event) => commit(event.currentTarget.value as Value)}>
-        {(Object.keys(texts) as Value[]).map((name) => (
-          <option key={name} value={name}>
-            {texts[name]}
-          </option>
-        ))}
-      </select>
-    </label>
-  );
-}
-
-function SeedField({ app, seed, isDisabled }: { app: MakeApp; seed: string; isDisabled: boolean }) {
-  const problem = useSignal<string | null>(null);
-  return (
-    <label class="number-field" title="Another number is another world of noise; the same number repeats the run.">
-      <span>seed</span>
-      <input
-        type="text"
-        inputMode="numeric"
-        size={8}
-        value={seed}
-        disabled={isDisabled}
-        aria-invalid={problem.value !== null}
-        onChange={async (event) => (problem.value = await app.changeRun({ name: 'seed', value: event.currentTarget.value.trim() }))}
-      />
-      {problem.value !== null && (
-        <span class="problem" role="alert">
-          {problem.value}
-        </span>
-      )}
-    </label>
-  );
-}
-
 export function RunForm({ app }: { app: MakeApp }) {
   const run = app.draft.value?.run;
   if (run === undefined) return null;
   const isDisabled = app.obstacle() !== null;
   return (
     <div class="fields">
-      <Choice label="engine" value={run.engine} texts={engineTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'engine', value })} />
+      <ChoiceField label="engine" value={run.engine} texts={engineTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'engine', value })} />
       {lengths.map(({ name, unit, title }) => (
         <NumberField
           key={name}
@@ -92,7 +49,15 @@ export function RunForm({ app }: { app: MakeApp }) {
         isDisabled={isDisabled}
         commit={(value) => app.changeRun({ name: 'gravity', value: [run.gravity[0], run.gravity[1], -value] })}
       />
-      <SeedField app={app} seed={run.seed} isDisabled={isDisabled} />
+      <TextField
+        label="seed"
+        isNumeric
+        size={8}
+        value={run.seed}
+        isDisabled={isDisabled}
+        title="Another number is another world of noise; the same number repeats the run."
+        commit={(value) => app.changeRun({ name: 'seed', value })}
+      />
       <NumberField
         label="contact noise"
         title="How often a touch sensor is wrong: 0 never, 1 always."
@@ -100,7 +65,7 @@ export function RunForm({ app }: { app: MakeApp }) {
         isDisabled={isDisabled}
         commit={(value) => app.changeRun({ name: 'contact_noise', value })}
       />
-      <Choice label="solver" value={run.solver} texts={solverTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'solver', value })} />
+      <ChoiceField label="solver" value={run.solver} texts={solverTexts} isDisabled={isDisabled} commit={(value) => void app.tellRun({ name: 'solver', value })} />
       <label class="switch">
         <input
           type="checkbox"

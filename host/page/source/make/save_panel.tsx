@@ -49,7 +49,7 @@ export function SavePanel({ app }: { app: MakeApp }) {
   const finish = (asked: Promise<unknown>) =>
     asked.then(
       () => {
-        app.isSaving.value = false;
+        app.panel.value = 'none';
       },
       (error: Error) => (problem.value = error.message),
     );

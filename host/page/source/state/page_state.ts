@@ -6,7 +6,9 @@ import type {
   BusDocument,
   DraftDocument,
   ForesightDocument,
+  AlgorithmDocument,
   LibraryItem,
+  PartsDocument,
   Mesh,
   ControlDocument,
   InternalValue,
@@ -57,6 +59,8 @@ export class PageState {
   readonly draftRobot = signal<RobotDocument | null>(null);
   readonly draftMeshes = signal<readonly Mesh[]>([]);
   readonly library = signal<readonly LibraryItem[]>([]);
+  readonly parts = signal<PartsDocument | null>(null);
+  readonly algorithms = signal<readonly AlgorithmDocument[]>([]);
   readonly foresight = signal<ForesightDocument | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
@@ -149,6 +153,12 @@ export class PageState {
         case 'library':
           this.library.value = message.value;
           break;
+        case 'parts':
+          this.parts.value = message.value;
+          return;
+        case 'algorithms':
+          this.algorithms.value = message.value;
+          return;
         case 'foresight':
           this.foresight.value = message.value;
           break;

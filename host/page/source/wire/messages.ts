@@ -330,8 +330,106 @@ export interface DraftDocument {
   is_shipped: boolean; // the files ship with Proleg: only a copy can be saved
   warnings: string[];
   head: PoseArray; // of the robot, at the start
+  robot: DraftRobot;
+  behaviour: BehaviourDocument;
   run: RunDocument;
   world: WorldDocument;
+}
+
+export interface DraftJoint {
+  name: string;
+  editable: boolean; // it is in the robot's file
+  axis: [number, number, number]; // as in the file: 1 0 0 is pitch, 0 0 1 yaw
+  limits: [number, number]; // degrees
+  torque: number; // Nm
+  speed: number; // rad/s
+}
+
+export interface DraftLink {
+  name: string;
+  file: string;
+  same: number; // links that have the same <Body>, and change with it
+  mass: number; // kg
+  friction: number | null;
+}
+
+export interface DraftSensor {
+  name: string;
+  kind: string;
+  part: number; // number of its link, or of its joint
+  part_name: string;
+  pose: PoseArray; // in the frame of its link
+  extents?: [number, number, number] | null; // of a TactileSensor, metres
+  input?: 'front' | 'rear' | null;
+  minangle?: number; // of a laser, degrees
+  maxangle?: number;
+  resolution?: number;
+  maxrange?: number; // metres
+  scantime?: number; // seconds
+}
+
+export interface ServoDocument {
+  gain: number; // 1/s
+  period: number; // ms
+  command_speed: number; // degrees/s
+  latency: number; // ms
+}
+
+// Joints and links from the head.
+export interface DraftRobot {
+  file: string;
+  name: string;
+  joints: DraftJoint[];
+  links: DraftLink[];
+  sensors: DraftSensor[];
+  servo: ServoDocument;
+  obstacle: string | null; // why links cannot be added or removed
+}
+
+export interface BehaviourModule {
+  algorithm: string;
+  joints: number[]; // that it moves, in kernel order
+  values: Record<string, string[]>; // of each parameter, for each of its joints
+}
+
+export interface BehaviourDocument {
+  file: string;
+  modules: BehaviourModule[];
+}
+
+export interface RobotKind {
+  name: string;
+  help: string;
+  axes: string; // from the tail, repeated: p (pitch), y (yaw)
+  joints: number;
+}
+
+// What a robot can get.
+export interface PartsDocument {
+  kinds: RobotKind[];
+  sensors: { kind: string; help: string; at_joint: boolean }[];
+  places: string[]; // of sensors on a link
+  most_joints: number;
+  most_modules: number;
+}
+
+export interface AlgorithmParameter {
+  name: string;
+  help: string;
+  unit: string;
+  minimum: string;
+  maximum: string;
+  default: string;
+}
+
+// What an actuation module can do.
+export interface AlgorithmDocument {
+  name: string;
+  id: number;
+  help: string;
+  broadcasts: boolean;
+  is_user: boolean;
+  parameters: AlgorithmParameter[];
 }
 
 export interface LibraryParameter {
@@ -367,6 +465,8 @@ export interface Documents {
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
   library: LibraryItem[];
+  parts: PartsDocument;
+  algorithms: AlgorithmDocument[];
   foresight: ForesightDocument;
   robot: RobotDocument;
   parameters: (Parameter | InternalValue)[];
@@ -438,13 +538,26 @@ export interface DraftDiff {
   files: { name: string; is_shipped: boolean; old: string | null; new: string | null }[];
 }
 
-// What all operations of the world have.
-export interface WorldOperation {
+// What all operations have that name parts of the draft by their positions.
+export interface PartOperation {
   layout: number;
   gesture?: number; // operations with the same number are one entry of undo
 }
 
+// What a new scenario begins with. What is missing is as usual.
+export interface NewScenario {
+  kind?: string;
+  axes?: string; // for each joint from the tail: p or y
+  name?: string;
+  algorithm?: string;
+  item?: string; // of the library, in front of the robot
+  values?: Record<string, number>;
+  friction?: number; // of the ground
+}
+
 export interface Operations {
+  'draft.new': NewScenario;
+  'draft.open': { file: string };
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;
   'draft.run': { [Name in keyof RunDocument]: { name: Name; value: RunDocument[Name] } }[keyof RunDocument];
@@ -455,19 +568,45 @@ export interface Operations {
   'draft.save': Record<string, never>;
   'draft.save_as': { folder: string };
   load_draft: Record<string, never>;
-  'world.place': WorldOperation & { object: number; pose: PoseArray; group?: boolean };
-  'world.resize': WorldOperation & { object: number; shape: number; size: number[] };
-  'world.friction': WorldOperation & { object: number; value: number | null };
-  'world.colour': WorldOperation & { object: number; value: [number, number, number] };
-  'world.moves': WorldOperation & { object: number; value: boolean };
-  'world.mass': WorldOperation & { object: number; value: number };
-  'world.rename': WorldOperation & { object: number; name: string };
-  'world.remove': WorldOperation & { object: number; group?: boolean };
-  'world.duplicate': WorldOperation & { object: number; group?: boolean; step: [number, number, number]; count: number };
-  'world.add': WorldOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
-  'world.start': WorldOperation & { position: [number, number, number]; degrees: [number, number, number] };
-  'world.ruler': WorldOperation & { ruler?: number; from: [number, number, number]; to: [number, number, number] };
-  'world.remove_ruler': WorldOperation & { ruler: number };
+  'world.place': PartOperation & { object: number; pose: PoseArray; group?: boolean };
+  'world.resize': PartOperation & { object: number; shape: number; size: number[] };
+  'world.friction': PartOperation & { object: number; value: number | null };
+  'world.colour': PartOperation & { object: number; value: [number, number, number] };
+  'world.moves': PartOperation & { object: number; value: boolean };
+  'world.mass': PartOperation & { object: number; value: number };
+  'world.rename': PartOperation & { object: number; name: string };
+  'world.remove': PartOperation & { object: number; group?: boolean };
+  'world.duplicate': PartOperation & { object: number; group?: boolean; step: [number, number, number]; count: number };
+  'world.add': PartOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
+  'world.start': PartOperation & { position: [number, number, number]; degrees: [number, number, number] };
+  'world.ruler': PartOperation & { ruler?: number; from: [number, number, number]; to: [number, number, number] };
+  'world.remove_ruler': PartOperation & { ruler: number };
+  'robot.axis': PartOperation & { joints: readonly number[]; value: readonly [number, number, number] };
+  'robot.limits': PartOperation & { joints: readonly number[]; lower: number; upper: number };
+  'robot.torque': PartOperation & { joints: readonly number[]; value: number };
+  'robot.speed': PartOperation & { joints: readonly number[]; value: number };
+  'robot.rename_joint': PartOperation & { joint: number; name: string };
+  'robot.rename': PartOperation & { name: string };
+  'robot.servo': PartOperation & { name: keyof ServoDocument; value: number };
+  'robot.mass': PartOperation & { link: number; value: number };
+  'robot.friction': PartOperation & { link: number; value: number | null };
+  'robot.duplicate': PartOperation & { joint: number };
+  'robot.remove': PartOperation & { joint: number };
+  'robot.count': PartOperation & { value: number };
+  'robot.order': PartOperation & { order: readonly number[] };
+  'robot.kind': PartOperation & { kind: string; link: number | null };
+  'robot.add_sensor': PartOperation & { kind: string; part: number; place?: string };
+  'robot.remove_sensor': PartOperation & { sensor: number };
+  'robot.rename_sensor': PartOperation & { sensor: number; name: string };
+  'robot.place_sensor': PartOperation & { sensor: number; pose: PoseArray };
+  'robot.sensor_part': PartOperation & { sensor: number; part: number };
+  'robot.set_sensor': PartOperation & { sensor: number; name: string; value: string };
+  'behaviour.add': PartOperation & { algorithm: string; joints: readonly number[] };
+  'behaviour.duplicate': PartOperation & { module: number; joints: readonly number[] };
+  'behaviour.remove': PartOperation & { module: number };
+  'behaviour.algorithm': PartOperation & { module: number; algorithm: string };
+  'behaviour.joints': PartOperation & { module: number; joints: readonly number[] };
+  'behaviour.set': PartOperation & { module: number; parameter: string; joints: readonly number[]; value: string };
   'control.take': Record<string, never>;
   'control.answer': { grant: boolean };
   'control.release': Record<string, never>;

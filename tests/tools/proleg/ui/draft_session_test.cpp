@@ -33,12 +33,14 @@ class DraftSessionTest : public ::testing::Test {
   void open(bool has_file = true) {
     session_.reset();
     requests_.emplace();
-    session_.emplace(sim::read_scenario(file_, disk_), disk_, DraftSessionOptions{folder_ / "", has_file}, *requests_,
+    session_.emplace(sim::read_scenario(file_, disk_), DraftSessionOptions{folder_ / "", has_file}, *requests_,
                      present_, viewers_);
   }
 
   Viewers::Answer ask(const std::string& name, json arguments = json::object()) {
-    if (name.starts_with("world.") && !arguments.contains("layout")) {
+    const bool has_positions =
+        name.starts_with("world.") || name.starts_with("robot.") || name.starts_with("behaviour.");
+    if (has_positions && !arguments.contains("layout")) {
       arguments["layout"] = viewers_.document("draft")["layout"];
     }
     requests_->operate({++request_, name, std::move(arguments), 1, "a test"});
@@ -384,12 +386,157 @@ TEST_F(DraftSessionTest, AJournalThatCannotBeWrittenIsSaidOnce) {
   EXPECT_EQ(notices.find("unsaved changes are lost", first + 1), std::string::npos);
 }
 
+TEST_F(DraftSessionTest, TheRobotIsChangedPartByPart) {
+  const json robot = draft(0)["robot"];
+  ASSERT_EQ(robot["joints"].size(), 5U);
+  EXPECT_EQ(robot["joints"][0]["name"], "J5") << "from the head";
+  EXPECT_EQ(robot["links"][1]["same"], 4);
+  EXPECT_EQ(robot["obstacle"], json());
+  must("robot.axis", {{"joints", {0, 2}}, {"value", {0, 0, 1}}});
+  must("robot.limits", {{"joints", {0}}, {"lower", -30}, {"upper", 45}});
+  must("robot.servo", {{"name", "latency"}, {"value", 4}});
+  must("robot.duplicate", {{"joint", 4}});
+  must("robot.add_sensor", {{"kind", "Inclinometer"}, {"part", 0}});
+  const json now = draft(must("robot.rename", {{"name", "worm"}})["revision"])["robot"];
+  EXPECT_EQ(now["name"], "worm");
+  EXPECT_EQ(now["joints"].size(), 6U);
+  EXPECT_EQ(now["joints"][0]["limits"], json({-30.0, 45.0}));
+  EXPECT_EQ(now["joints"][2]["axis"], json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(now["servo"]["latency"], 4.0);
+  EXPECT_EQ(now["sensors"][0]["part_name"], "Head");
+  EXPECT_EQ(viewers_.document("draft_robot")["links"].size(), 7U);
+  EXPECT_EQ(viewers_.document("draft")["behaviour"]["modules"][0]["joints"].size(), 6U) << "its gait has grown with it";
+}
+
+TEST_F(DraftSessionTest, TheBehaviourIsModulesOfJoints) {
+  const json before = draft(0)["behaviour"];
+  ASSERT_EQ(before["modules"].size(), 1U);
+  EXPECT_EQ(before["modules"][0]["values"]["amplitude"][0], "40");
+  must("behaviour.add", {{"algorithm", "DirectJointAccess"}, {"joints", {0}}});
+  must("behaviour.set", {{"module", 1}, {"parameter", "angle"}, {"joints", {0}}, {"value", "-12.5"}});
+  must("behaviour.joints", {{"module", 0}, {"joints", {1, 2, 3, 4}}});
+  const json answer = must("behaviour.algorithm", {{"module", 0}, {"algorithm", "PatternGenerator_serpenoid"}});
+  const json now = draft(answer["revision"])["behaviour"];
+  EXPECT_EQ(now["modules"][0]["algorithm"], "PatternGenerator_serpenoid");
+  EXPECT_EQ(now["modules"][0]["joints"], json({1, 2, 3, 4}));
+  EXPECT_EQ(now["modules"][1]["values"]["angle"], json({"-12.5"}));
+  for (const auto& [name, bad] : std::vector<std::pair<const char*, json>>{
+           {"behaviour.add", {{"algorithm", "nothing"}, {"joints", {0}}}},
+           {"behaviour.add", {{"algorithm", 7}, {"joints", {0}}}},
+           {"behaviour.joints", {{"module", 0}, {"joints", {99}}}},
+           {"behaviour.joints", {{"module", 0}, {"joints", {-1}}}},
+           {"behaviour.set", {{"module", 0}, {"parameter", "amplitude"}, {"joints", {1}}, {"value", "much"}}},
+           {"behaviour.set", {{"module", 9}, {"parameter", "amplitude"}, {"joints", {1}}, {"value", "1"}}},
+           {"behaviour.fly", json::object()}}) {
+    EXPECT_FALSE(ask(name, bad).is_done) << name << bad;
+  }
+}
+
+TEST_F(DraftSessionTest, APositionThatMeansAnotherPartIsRefused) {
+  must("robot.axis", {{"joints", {0}}, {"value", {0, 0, 1}}});
+  const json layout = draft(1)["layout"];
+  const json order = json::array({1, 0, 2, 3, 4});
+  must("robot.order", {{"order", order}});
+  EXPECT_NE(ask("robot.axis", {{"joints", {0}}, {"value", {1, 0, 1}}, {"layout", layout}}).text.find("meanwhile"),
+            std::string::npos);
+  const json later = draft(2)["layout"];
+  must("draft.undo");
+  EXPECT_NE(ask("robot.axis", {{"joints", {0}}, {"value", {1, 0, 1}}, {"layout", later}}).text.find("meanwhile"),
+            std::string::npos)
+      << "undo has exchanged them again";
+}
+
+TEST_F(DraftSessionTest, ANewScenarioIsWhatItsArgumentsSay) {
+  const json answer = must("draft.new", {{"kind", "cubo"},
+                                         {"axes", "pypy"},
+                                         {"name", "worm"},
+                                         {"algorithm", "PatternGenerator_serpenoid"},
+                                         {"item", "stairs"},
+                                         {"friction", 0.5}});
+  json document = draft(answer["revision"]);
+  EXPECT_FALSE(document["has_file"]);
+  EXPECT_EQ(document["robot"]["name"], "worm");
+  EXPECT_EQ(document["robot"]["joints"].size(), 4U);
+  ASSERT_EQ(document["behaviour"]["modules"].size(), 1U);
+  EXPECT_EQ(document["behaviour"]["modules"][0]["algorithm"], "PatternGenerator_serpenoid");
+  EXPECT_EQ(document["behaviour"]["modules"][0]["joints"].size(), 4U);
+  EXPECT_EQ(document["world"]["objects"][0]["shapes"][0]["friction"], 0.5);
+  EXPECT_GT(document["world"]["objects"].size(), 2U);
+  EXPECT_EQ(document["undo"], json());
+  EXPECT_FALSE(ask("draft.save").is_done) << "it has no files yet";
+  const std::string file = must("draft.save_as", {{"folder", "worm"}})["file"];
+  const sim::Scenario saved = sim::read_scenario(file, disk_);
+  EXPECT_EQ(saved.robot.joints.size(), 4U);
+  must("world.remove", {{"object", 1}, {"group", true}});
+  EXPECT_EQ(must("draft.save")["written"], 1) << "Save goes on where Save as has written";
+}
+
+TEST_F(DraftSessionTest, ANewScenarioOfEachKindHasItsUsualForm) {
+  std::uint64_t revision = 0;
+  const json parts = viewers_.document("parts");
+  for (const json& kind : parts["kinds"]) {
+    const json answer = must("draft.new", {{"kind", kind["name"]}});
+    EXPECT_GT(answer["revision"], revision) << "a count that never goes back";
+    revision = answer["revision"];
+    EXPECT_EQ(draft(revision)["robot"]["joints"].size(), kind["joints"]) << kind;
+  }
+  for (const json& bad : std::vector<json>{{{"kind", "whale"}},
+                                           {{"axes", ""}},
+                                           {{"axes", "pxp"}},
+                                           {{"axes", std::string(65, 'p')}},
+                                           {{"axes", 5}},
+                                           {{"algorithm", "nothing"}},
+                                           {{"item", "volcano"}},
+                                           {{"friction", -1}},
+                                           {{"name", std::string(100, 'x')}}}) {
+    const json before = viewers_.document("draft")["revision"];
+    EXPECT_FALSE(ask("draft.new", bad).is_done) << bad;
+    EXPECT_EQ(viewers_.document("draft")["revision"], before) << "the draft stays as it was";
+  }
+}
+
+TEST_F(DraftSessionTest, OpensScenariosOfItsFolderAndShippedOnes) {
+  const std::string shipped = source_path("/sim/scenarios/robots/snake/robot.simulation.xml");
+  json document = draft(must("draft.open", {{"file", shipped}})["revision"]);
+  EXPECT_EQ(document["robot"]["joints"].size(), 8U);
+  EXPECT_TRUE(document["is_shipped"]);
+  document = draft(must("draft.open", {{"file", file_}})["revision"]);
+  EXPECT_EQ(document["file"], file_);
+  std::filesystem::create_symlink(source_path("/tests/sim/scenario/thesis"), folder_ / "out");
+  for (const std::filesystem::path& bad : std::vector<std::filesystem::path>{
+           "/etc/passwd", "", folder_ / "mine/../../nothing.simulation.xml", folder_ / "out/MFIdemo.simulation.xml",
+           folder_ / "mine/caterpillar.robot.xml", source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml")}) {
+    EXPECT_FALSE(ask("draft.open", {{"file", bad.string()}}).is_done) << bad;
+  }
+}
+
+TEST_F(DraftSessionTest, UnsavedChangesAreOfferedWhenTheirScenarioIsOpenedAgain) {
+  add_box();
+  must("draft.open", {{"file", source_path("/sim/scenarios/robots/snake/robot.simulation.xml")}});
+  const json document = draft(must("draft.open", {{"file", file_}})["revision"]);
+  EXPECT_EQ(document["changed"], json::array());
+  EXPECT_EQ(document["unsaved"]["files"], json({world_file()}));
+  must("draft.restore");
+  EXPECT_EQ(draft(document["revision"].get<std::uint64_t>() + 1)["world"]["objects"].size(), 2U);
+}
+
+TEST(DraftSessionWithoutAScenario, MakesOne) {
+  const TemporaryFolder folder;
+  Viewers viewers;
+  PresentDraft present;
+  SessionRequests requests;
+  const DraftSession session({}, {folder / ""}, requests, present, viewers);
+  requests.operate({1, "draft.new", json::object(), 1, "a test"});
+  EXPECT_TRUE(viewers.answer(1).is_done);
+  EXPECT_EQ(
+      viewers.document_when("draft", [](const json& draft) { return !draft.is_null(); })["robot"]["joints"].size(), 5U);
+}
+
 TEST(DraftSessionWithoutAScenario, RefusesEveryChange) {
   Viewers viewers;
   PresentDraft present;
   SessionRequests requests;
-  sim::DiskFiles disk;
-  const DraftSession session({}, disk, {}, requests, present, viewers);
+  const DraftSession session({}, {}, requests, present, viewers);
   requests.operate({1, "world.add", {{"item", "box"}}, 1, "a test"});
   EXPECT_NE(viewers.answer(1).text.find("there is no scenario to change"), std::string::npos);
   EXPECT_EQ(viewers.document("draft"), json());

@@ -1,6 +1,6 @@
 #pragma once
 
-// The files of a new robot, for `proleg new robot`, and the kinds of robots that its option --kind names.
+// The kinds of modular robots that Proleg knows, and the files of their modules.
 
 #include <cstddef>
 #include <span>
@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/proleg/new/new_files.hpp"
+#include "sim/scenario/scenario.hpp"
 
-namespace proleg::tools {
+namespace proleg::sim {
 
 /// A kind of modular robot: its modules and their connection.
 struct RobotKind {
@@ -29,11 +29,8 @@ struct RobotKind {
 /// Finds a kind by its name; null if none has it.
 [[nodiscard]] const RobotKind* find_robot_kind(std::string_view name);
 
-/// The files of the modules of a kind: modules/tail.kinbody.xml, segment, head, and the files that they name.
-[[nodiscard]] std::vector<NewFile> module_files(const RobotKind& kind);
+/// The files of the modules of a kind: modules/tail.kinbody.xml, segment, head, and the files that they name. The names
+/// of their bodies are "Tail", "Seg" and "Head".
+[[nodiscard]] std::vector<SourceFile> module_files(const RobotKind& kind);
 
-/// The files of a scenario: a robot with these joints, a gait that moves it, a flat floor. axes: for each joint from
-/// the tail 'p' (pitch) or 'y' (yaw); 1 to 64 characters. The top-level file is the first one.
-[[nodiscard]] std::vector<NewFile> robot_files(const RobotKind& kind, const std::string& axes);
-
-}  // namespace proleg::tools
+}  // namespace proleg::sim

@@ -1,0 +1,114 @@
+// An actuation module: its algorithm, and the parameters of that, for all its joints or for each.
+import { useSignal } from '@preact/signals';
+import type { AlgorithmDocument, AlgorithmParameter, BehaviourModule, DraftRobot } from '../wire/messages.js';
+import { fromTail } from './axis_text.js';
+import { ChoiceField } from './choice_field.js';
+import type { MakeApp } from './make_app.js';
+import { TextField } from './text_field.js';
+
+// A decimal comma is what many keyboards have.
+function decimal(text: string): string {
+  return text.replace(',', '.').replace('−', '-');
+}
+
+interface Row {
+  app: MakeApp;
+  robot: DraftRobot;
+  module: BehaviourModule;
+  number: number;
+  parameter: AlgorithmParameter;
+}
+
+function ParameterFields({ app, robot, module, number, parameter }: Row) {
+  const isOpen = useSignal(false);
+  const values = module.values[parameter.name] ?? [];
+  const isUniform = values.every((value) => value === values[0]);
+  const isDisabled = app.obstacle() !== null || module.joints.length === 0;
+  const title = parameter.name.replaceAll('_', ' ');
+  const set = (joints: readonly number[], value: string) =>
+    app.change('behaviour.set', { module: number, parameter: parameter.name, joints, value: decimal(value) });
+  const range = `${parameter.minimum} to ${parameter.maximum} ${parameter.unit}`.trim();
+  return (
+    <div class="module-parameter" data-parameter={parameter.name}>
+      <div class="fields">
+        <TextField
+          label={parameter.unit === '' ? title : `${title} in ${parameter.unit}`}
+          isNumeric
+          size={8}
+          value={isUniform ? (values[0] ?? parameter.default) : ''}
+          placeholder={isUniform ? '' : 'several'}
+          isDisabled={isDisabled}
+          title={`${range}; usually ${parameter.default}`}
+          commit={(value) => (value === '' ? null : set(module.joints, value))}
+        />
+        <button type="button" aria-expanded={isOpen.value} disabled={module.joints.length < 2} title="A value for each joint" onClick={() => (isOpen.value = !isOpen.value)}>
+          {isUniform ? 'each joint' : 'they differ'}
+        </button>
+      </div>
+      <p class="hint">
+        {parameter.help}. {range}
+      </p>
+      {isOpen.value && (
+        <div class="fields">
+          {fromTail(robot.joints.length)
+            .filter((joint) => module.joints.includes(joint))
+            .map((joint) => (
+              <TextField
+                key={joint}
+                label={robot.joints[joint]!.name}
+                isNumeric
+                size={6}
+                value={values[module.joints.indexOf(joint)] ?? ''}
+                isDisabled={isDisabled}
+                commit={(value) => (value === '' ? null : set([joint], value))}
+              />
+            ))}
+        </div>
+      )}
+    </div>
+  );
+}
+
+export function ModuleForm({ app, robot, module, number, algorithms, isOnly }: {
+  app: MakeApp;
+  robot: DraftRobot;
+  module: BehaviourModule;
+  number: number;
+  algorithms: readonly AlgorithmDocument[];
+  isOnly: boolean;
+}) {
+  const obstacle = app.obstacle();
+  const algorithm = algorithms.find(({ name }) => name === module.algorithm);
+  const most = app.page.state.parts.value?.most_modules ?? 4;
+  const isFull = (app.draft.value?.behaviour.modules.length ?? 0) >= most;
+  const copy = async () => {
+    if (await app.tell('behaviour.duplicate', { module: number, joints: [...module.joints] })) app.chosenModule.value = number + 1;
+  };
+  return (
+    <section class="panel make-panel" aria-label={`Module ${number + 1}`}>
+      <h2>
+        Module {number + 1}
+      </h2>
+      <div class="fields">
+        <ChoiceField
+          label="algorithm"
+          value={module.algorithm}
+          texts={Object.fromEntries(algorithms.map(({ name }) => [name, name]))}
+          isDisabled={obstacle !== null}
+          title="It keeps the values of parameters that both have."
+          commit={(name) => void app.tell('behaviour.algorithm', { module: number, algorithm: name })}
+        />
+        <button type="button" disabled={obstacle !== null || isFull} title={obstacle ?? (isFull ? `A robot has at most ${most} actuation modules.` : 'A second module with the same values')} onClick={() => void copy()}>
+          Copy
+        </button>
+        <button type="button" disabled={obstacle !== null || isOnly} title={obstacle ?? (isOnly ? 'A robot has at least one.' : 'Undo brings it back')} onClick={() => void app.tell('behaviour.remove', { module: number })}>
+          Delete
+        </button>
+      </div>
+      {algorithm !== undefined && <p class="hint">{algorithm.help}</p>}
+      {algorithm?.parameters.map((parameter) => (
+        <ParameterFields key={parameter.name} app={app} robot={robot} module={module} number={number} parameter={parameter} />
+      ))}
+    </section>
+  );
+}

@@ -1,0 +1,193 @@
+// The robot as a chain: joints and links in a table from the tail to the head, and the numbers of what is chosen.
+import type { DraftRobot } from '../wire/messages.js';
+import { axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from './axis_text.js';
+import { JointForm, LinkForm } from './joint_form.js';
+import type { MakeApp } from './make_app.js';
+import { NumberField } from './number_field.js';
+import { SensorPanel } from './sensor_panel.js';
+import { TextField } from './text_field.js';
+
+const servoFields = [
+  { name: 'gain', unit: '1/s', title: 'How hard the servo pulls towards its angle. A larger one follows more closely.' },
+  { name: 'period', unit: 'ms', title: 'How often the servo gets a new angle.' },
+  { name: 'command_speed', unit: '°/s', title: 'How fast a commanded angle changes at most.' },
+  { name: 'latency', unit: 'ms', title: 'How late the servo acts on a new angle.' },
+] as const;
+
+// Chooses one joint, or adds it to those that are chosen.
+function choose(app: MakeApp, joint: number, adds: boolean): void {
+  const chosen = app.chosenJoints.peek();
+  const others = chosen.filter((other) => other !== joint);
+  app.chosenJoints.value = adds ? (others.length === chosen.length ? [...chosen, joint] : others) : [joint];
+  app.view.selection.hoveredJoint.value = joint;
+}
+
+function ChainTable({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
+  const order = fromTail(robot.joints.length);
+  const chosen = app.chosenJoints.value;
+  const isDisabled = app.obstacle() !== null;
+  const kernelName = (joint: number) => robot.joints[joint]?.name ?? '';
+  return (
+    <div class="chain" data-testid="chain">
+      <table>
+        <caption>From the tail to the head</caption>
+        <thead>
+          <tr>
+            <th scope="row">joint</th>
+            {order.map((joint) => (
+              <th scope="col" key={joint}>
+                <button
+                  type="button"
+                  aria-pressed={chosen.includes(joint)}
+                  title={`${axisWord(robot.joints[joint]!.axis)}. Shift: choose several.`}
+                  onClick={(event) => choose(app, joint, event.shiftKey || event.ctrlKey)}
+                  onPointerEnter={() => (app.view.selection.hoveredJoint.value = joint)}
+                >
+                  {kernelName(joint)}
+                </button>
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          <tr>
+            <th scope="row">axis</th>
+            {order.map((joint) => {
+              const axis = robot.joints[joint]!.axis;
+              const isPitch = axisLetter(axis) === 'p';
+              return (
+                <td key={joint}>
+                  <button
+                    type="button"
+                    disabled={isDisabled}
+                    aria-label={`axis of ${kernelName(joint)}: ${axisWord(axis)}`}
+                    title={`${axisWord(axis)}. Press: ${isPitch ? 'yaw' : 'pitch'}.`}
+                    onClick={() => void app.tell('robot.axis', { joints: [joint], value: axisOfAngle(isPitch ? 90 : 0) })}
+                  >
+                    {axisLetter(axis)}
+                  </button>
+                </td>
+              );
+            })}
+          </tr>
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+// What a person does with the chosen joint as a whole.
+function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
+  const count = robot.joints.length;
+  const chosen = app.chosenJoints.value.filter((joint) => joint < count);
+  const joint = chosen[0];
+  const obstacle = app.obstacle() ?? (robot.obstacle === null ? null : `Links cannot be added here: ${robot.obstacle}`);
+  const isDisabled = obstacle !== null || joint === undefined;
+  const why = obstacle ?? (joint === undefined ? 'Choose a joint first.' : undefined);
+  const move = async (to: number) => {
+    if (joint === undefined) return;
+    if (await app.tell('robot.order', { order: movedOrder(count, joint, to) })) app.chosenJoints.value = [to];
+  };
+  const all = Array.from({ length: count }, (_, i) => i);
+  return (
+    <>
+      <div class="fields">
+        <NumberField
+          label="joints"
+          decimals={0}
+          value={count}
+          isDisabled={obstacle !== null}
+          title={obstacle ?? 'New ones come at the head. Axes that alternate go on so.'}
+          commit={(value) => (Number.isInteger(value) && value > 0 ? app.change('robot.count', { value }) : `found ${value}, expected a whole number above 0`)}
+        />
+        <button type="button" disabled={isDisabled} title={why ?? 'Adds a copy of the chosen joint and its link'} onClick={() => void app.tell('robot.duplicate', { joint: joint! })}>
+          Add a copy
+        </button>
+        <button type="button" disabled={isDisabled || count < 2} title={why ?? 'Undo brings it back (Delete)'} onClick={() => void app.removeJoint()}>
+          Delete
+        </button>
+        <button type="button" disabled={isDisabled || joint === count - 1} title={why ?? 'Exchanges it with the joint behind it'} onClick={() => void move(joint! + 1)}>
+          ← to the tail
+        </button>
+        <button type="button" disabled={isDisabled || joint === 0} title={why ?? 'Exchanges it with the joint in front of it'} onClick={() => void move(joint! - 1)}>
+          to the head →
+        </button>
+        <button
+          type="button"
+          disabled={obstacle !== null || count < 2}
+          title={obstacle ?? 'The last joint becomes the first one'}
+          onClick={() => void app.tell('robot.order', { order: [...all].reverse() })}
+        >
+          Reverse
+        </button>
+        <button type="button" title="Values of several joints can be set at once" onClick={() => (app.chosenJoints.value = chosen.length === count ? [] : all)}>
+          {chosen.length === count ? 'Choose none' : 'Choose all'}
+        </button>
+      </div>
+      {robot.obstacle !== null && <p class="hint">Links cannot be added or removed here: {robot.obstacle}</p>}
+    </>
+  );
+}
+
+function KindButtons({ app, link }: { app: MakeApp; link: number | null }) {
+  const kinds = app.page.state.parts.value?.kinds ?? [];
+  const obstacle = app.obstacle();
+  return (
+    <div class="fields" role="group" aria-label={link === null ? 'Modules of the robot' : 'Module of the link'}>
+      {kinds.map(({ name, help }) => (
+        <button key={name} type="button" disabled={obstacle !== null} title={obstacle ?? help} onClick={() => void app.tell('robot.kind', { kind: name, link })}>
+          {name}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+export function RobotPart({ app }: { app: MakeApp }) {
+  const robot = app.draft.value?.robot;
+  if (robot === undefined) return null;
+  const isDisabled = app.obstacle() !== null;
+  const joint = app.chosenJoints.value.find((chosen) => chosen < robot.joints.length);
+  return (
+    <>
+      <section class="panel make-panel" aria-label="Chain">
+        <h2>Chain</h2>
+        <TextField label="name" value={robot.name} isDisabled={isDisabled} commit={(name) => app.change('robot.rename', { name })} />
+        <ChainTable app={app} robot={robot} />
+        <ChainTools app={app} robot={robot} />
+      </section>
+      <section class="panel make-panel" aria-label="Chosen joints">
+        <h2>{joint === undefined ? 'Joint' : app.chosenJoints.value.length > 1 ? `${app.chosenJoints.value.length} joints` : robot.joints[joint]!.name}</h2>
+        <JointForm app={app} robot={robot} />
+      </section>
+      {joint !== undefined && app.chosenJoints.value.length === 1 && (
+        <section class="panel make-panel" aria-label="Link">
+          <h2>The link in front of it: {robot.links[joint]!.name}</h2>
+          <LinkForm app={app} robot={robot} link={joint} />
+          <p class="hint">Another module for this link:</p>
+          <KindButtons app={app} link={joint} />
+        </section>
+      )}
+      <SensorPanel app={app} robot={robot} />
+      <section class="panel make-panel" aria-label="Modules and servos">
+        <h2>Modules</h2>
+        <p class="hint">Of which modules the robot is made. Joints keep their axes, servos and gait.</p>
+        <KindButtons app={app} link={null} />
+        <h2>Servos</h2>
+        <div class="fields">
+          {servoFields.map(({ name, unit, title }) => (
+            <NumberField
+              key={name}
+              label={name.replace('_', ' ')}
+              unit={unit}
+              title={title}
+              value={robot.servo[name]}
+              isDisabled={isDisabled}
+              commit={(value) => app.change('robot.servo', { name, value })}
+            />
+          ))}
+        </div>
+      </section>
+    </>
+  );
+}

@@ -1,0 +1,39 @@
+// A text that is sent when it is complete: with Enter, or when the field is left.
+import { useSignal } from '@preact/signals';
+
+interface Field {
+  label: string;
+  value: string;
+  title?: string;
+  placeholder?: string;
+  size?: number;
+  isNumeric?: boolean; // the keyboard of a phone
+  isDisabled?: boolean;
+  // Returns the reason if the text was refused, else null.
+  commit(value: string): Promise<string | null> | string | null;
+}
+
+export function TextField({ label, value, title, placeholder, size, isNumeric, isDisabled, commit }: Field) {
+  const problem = useSignal<string | null>(null);
+  return (
+    <label class="number-field" title={title}>
+      <span>{label}</span>
+      <input
+        type="text"
+        inputMode={isNumeric === true ? 'decimal' : 'text'}
+        size={size}
+        placeholder={placeholder}
+        autocomplete="off"
+        value={value}
+        disabled={isDisabled === true}
+        aria-invalid={problem.value !== null}
+        onChange={async (event) => (problem.value = await commit(event.currentTarget.value.trim()))}
+      />
+      {problem.value !== null && (
+        <span class="problem" role="alert">
+          {problem.value}
+        </span>
+      )}
+    </label>
+  );
+}

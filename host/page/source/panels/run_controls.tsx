@@ -151,7 +151,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
           {servoProblem}
         </p>
       )}
-      {state.isConnected.value && !isHolder && <span class="hint">You look on. Take control to change anything.</span>}
+      {state.isLookingOn.value && <span class="hint">You look on. Take control to change anything.</span>}
       {isHolder && runState === 'stopped' && <span class="hint">Stopped. Run goes on from here.</span>}
     </section>
   );

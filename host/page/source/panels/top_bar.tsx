@@ -98,8 +98,11 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
     return <div class="control">not connected</div>;
   }
   const control = state.control.value;
+  if (control === null) {
+    return <div class="control" />; // the page may have control: the program has not said it yet
+  }
   const other = state.otherHolder.value;
-  const isAsking = control?.request?.client === state.client.value;
+  const isAsking = control.request?.client === state.client.value;
   const take = () => void app.operations.tell('control.take', {});
   const release = () => void app.operations.tell('control.release', {});
   if (state.isHolder.value) {
@@ -112,8 +115,8 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
       </div>
     );
   }
-  const who = other === null ? 'Nobody has control' : `${other} has control${control?.away === true ? ', but is away' : ''}`;
-  const isFree = other === null || control?.away === true;
+  const who = other === null ? 'Nobody has control' : `${other} has control${control.away ? ', but is away' : ''}`;
+  const isFree = other === null || control.away;
   return (
     <div class="control" data-testid="control">
       <span>{isAsking ? `Asked ${other ?? 'the holder'} …` : who}</span>

@@ -504,7 +504,7 @@ export interface Operations {
 }
 
 export type ClientMessage =
-  | { type: 'hello'; protocol: number; token: string; name: string; only?: 'stop' }
+  | { type: 'hello'; protocol: number; token: string; name: string; only?: 'stop'; wants_control?: boolean }
   | { type: 'operation'; id: number; epoch: number; name: keyof Operations; arguments: object }
   | { type: 'subscribe'; signals: string[]; hash: number; newest: boolean }
   | { type: 'beat'; age_ms: number }

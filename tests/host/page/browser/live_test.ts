@@ -15,10 +15,17 @@ describe('a live simulation', () => {
     assert.equal(new URL(ui.viewer.page.url()).hash, '');
   });
 
-  it('is only looked on at first: nothing can be changed without control', async () => {
-    assert.equal(await ui.viewer.button('Run').isDisabled(), true);
-    assert.equal(await ui.viewer.parameter('1.amplitude').getByRole('slider').first().isDisabled(), true);
-    assert.equal(await ui.viewer.button(/^STOP/).isEnabled(), true);
+  it('is driven by its only viewer from the start', async () => {
+    await ui.viewer.button('Release').waitFor();
+    assert.equal(await ui.viewer.button('Run').isEnabled(), true);
+  });
+
+  it('is only looked on by a second viewer: nothing can be changed without control', async () => {
+    const second = await ui.look();
+    await second.button('Ask for control').waitFor();
+    assert.equal(await second.button('Run').isDisabled(), true);
+    assert.equal(await second.parameter('1.amplitude').getByRole('slider').first().isDisabled(), true);
+    assert.equal(await second.button(/^STOP/).isEnabled(), true);
   });
 
   it('runs: the joints move, the head advances, and the picture changes', async () => {

@@ -99,7 +99,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
         class="primary run"
         disabled={!isHolder || runState === 'failed'}
         onClick={() => void operations.tell(isRunning ? 'pause' : 'run', {})}
-        title="Run, or pause (K)"
+        title="Run, or pause (K). Esc pauses, too"
       >
         {isRunning ? pauseIcon : runIcon} {isRunning ? 'Pause' : 'Run'}
       </button>

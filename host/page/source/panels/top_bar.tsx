@@ -133,8 +133,10 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
   );
 }
 
-function Stop({ app }: { app: Stores<'stop'> }) {
+function Stop({ app }: { app: Stores<'state' | 'stop'> }) {
   const report = app.stop.report.value;
+  const isSimulation = app.state.robot.value?.kind === 'simulation';
+  const keys = isSimulation ? 'Space outside text fields' : 'Esc, or Space outside text fields';
   return (
     <div class="stop-area">
       <span class={`stop-report ${report.state === 'stopped' && !isConfirmed(report) ? 'unconfirmed' : report.state}`} role="status" data-testid="stop-report">
@@ -145,8 +147,8 @@ function Stop({ app }: { app: Stores<'stop'> }) {
           type="button"
           class="stop"
           aria-describedby="stop-note"
-          aria-keyshortcuts="Escape Space"
-          title="Stops the robot at once: Esc, or Space outside text fields. This does not replace a power switch."
+          aria-keyshortcuts={isSimulation ? 'Space' : 'Escape Space'}
+          title={`Stops the robot at once: ${keys}. This does not replace a power switch.`}
           onPointerDown={(event) => {
             // STOP acts at the press, not at the release; the click that follows has no second effect.
             if (event.button === 0) app.stop.press();
@@ -156,7 +158,7 @@ function Stop({ app }: { app: Stores<'stop'> }) {
             if (event.detail === 0) app.stop.press();
           }}
         >
-          STOP <kbd>Esc</kbd>
+          STOP <kbd>{isSimulation ? 'Space' : 'Esc'}</kbd>
         </button>
         <span id="stop-note" class="stop-note" title="This does not replace a power switch.">
           does not replace a power switch

@@ -101,7 +101,7 @@ describe('the page', () => {
       before?.wanted,
     );
     await keyboard.press('Control+z');
-    await keyboard.press('Escape');
+    await keyboard.press('Space');
     await viewer.waitForState('STOPPED');
   });
 });

@@ -120,6 +120,22 @@ describe('a live simulation', () => {
     await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '40');
   });
 
+  it('keeps its controls in place when it reports what the servos cannot follow', async () => {
+    const frequency = ui.viewer.parameter('1.frequency');
+    const slider = frequency.getByRole('slider').first();
+    const place = await slider.boundingBox();
+    const field = frequency.getByRole('textbox');
+    await field.fill('6');
+    await field.press('Enter');
+    await ui.viewer.page.getByTestId('servo-problem').waitFor();
+    assert.deepEqual(await slider.boundingBox(), place);
+    await ui.viewer.screenshot('servo_problem');
+    await slider.dblclick();
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '1');
+    await ui.viewer.page.getByTestId('servo-problem').waitFor({ state: 'detached' });
+    assert.deepEqual(await slider.boundingBox(), place);
+  });
+
   it('freezes the view while the robot goes on, and returns to live', async () => {
     await ui.viewer.page.getByTestId('scene').focus();
     await ui.viewer.page.keyboard.press('p');

@@ -1,9 +1,10 @@
 // One parameter: a slider and a number for all joints, and a cell for each joint.
 import { useSignal } from '@preact/signals';
 import type { Stores } from '../view/robot_view.js';
-import { formatRaw, parseValue, placeName, setWord, sliderStep, summarise } from '../state/parameter_values.js';
+import { formatRaw, parseValue, placeName, setWord, sliderStep, splitHelp, summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { JointCells } from './joint_cells.js';
+import { ParameterSentence, sentencesAreShown } from './parameter_sentence.js';
 
 // Whether the modules run with the requested values.
 function Confirmation({ parameter }: { parameter: Parameter }) {
@@ -70,9 +71,10 @@ export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 's
         <span class="space" />
         <Confirmation parameter={parameter} />
       </div>
+      <ParameterSentence help={parameter.help} id={`${id}-sentence`} />
       {helpIsOpen.value && (
         <p class="help">
-          {parameter.help} From {formatRaw(parameter.minimum, parameter)} to {formatRaw(parameter.maximum, parameter)}
+          {sentencesAreShown.value ? splitHelp(parameter.help).details : parameter.help} From {formatRaw(parameter.minimum, parameter)} to {formatRaw(parameter.maximum, parameter)}
           {unit}; the default is {formatRaw(parameter.default, parameter)}. Double click: back to the file’s value.
         </p>
       )}
@@ -80,6 +82,7 @@ export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 's
         <input
           type="range"
           aria-label={`${title}, all joints`}
+          aria-describedby={sentencesAreShown.value ? `${id}-sentence` : undefined}
           min={parameter.minimum * parameter.scale}
           max={parameter.maximum * parameter.scale}
           step={sliderStep(parameter)}

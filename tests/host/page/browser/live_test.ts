@@ -1,6 +1,8 @@
 // A simulated robot, live: it moves, and does what the page says.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
+import { seriousProblems } from './support/accessibility.js';
+import { assertNothingIsCut } from './support/layout.js';
 import { countDifferences, countPixels, isBlue, pixelsOf } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
@@ -134,6 +136,25 @@ describe('a live simulation', () => {
     await confirmedValues(ui.viewer, '1.frequency', (value) => value === '1');
     await ui.viewer.page.getByTestId('servo-problem').waitFor({ state: 'detached' });
     assert.deepEqual(await slider.boundingBox(), place);
+  });
+
+  it('says below each name what the parameter changes, until the sentences are hidden', async () => {
+    const { page } = ui.viewer;
+    const sentence = ui.viewer.parameter('1.phase_difference').getByText('How far the wave runs ahead from joint to joint.', { exact: true });
+    await sentence.waitFor();
+    await page.setViewportSize({ width: 360, height: 800 });
+    await assertNothingIsCut(ui.viewer);
+    assert.deepEqual(await seriousProblems(ui.viewer), []);
+    await page.getByRole('region', { name: 'Parameters' }).screenshot({ path: 'build/page_test/sentences_360.png' });
+    await page.setViewportSize({ width: 1400, height: 900 });
+    await ui.viewer.button('Explain').click();
+    await sentence.waitFor({ state: 'detached' });
+    await page.reload();
+    await ui.viewer.parameter('1.phase_difference').waitFor();
+    assert.equal(await sentence.count(), 0, 'the browser keeps the choice');
+    await ui.viewer.button('Explain').click();
+    await sentence.waitFor();
+    await ui.viewer.takeControl();
   });
 
   it('freezes the view while the robot goes on, and returns to live', async () => {

@@ -155,6 +155,7 @@ export interface Parameter extends Omit<InternalValue, 'internal'> {
   internal: false;
   minimum: number; // raw, as the values below
   maximum: number;
+  useful?: [number, number]; // the range that most users need; missing: from minimum to maximum
   default: number;
   file: number[];
   wanted: number[];

@@ -138,6 +138,20 @@ describe('a live simulation', () => {
     assert.deepEqual(await slider.boundingBox(), place);
   });
 
+  it('has the usual values of a parameter on most of the way of its slider, and all of them from the keyboard', async () => {
+    const frequency = ui.viewer.parameter('1.frequency');
+    const slider = frequency.getByRole('slider').first();
+    await slider.click(); // in the middle, where 10 Hz would be on a straight scale from 0 to 20
+    const [middle] = await confirmedValues(ui.viewer, '1.frequency', (value) => value !== '1');
+    assert.ok(Number(middle?.wanted) > 0.5 && Number(middle?.wanted) < 2, `found ${middle?.wanted}`);
+    await ui.viewer.page.keyboard.press('End');
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '20');
+    await ui.viewer.page.keyboard.press('ArrowLeft');
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '19.95');
+    await slider.dblclick();
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '1');
+  });
+
   it('says below each name what the parameter changes, until the sentences are hidden', async () => {
     const { page } = ui.viewer;
     const sentence = ui.viewer.parameter('1.phase_difference').getByText('How far the wave runs ahead from joint to joint.', { exact: true });

@@ -50,6 +50,18 @@ std::uint64_t number_in(const json& value, const char* name) {
   return value.get<std::uint64_t>();
 }
 
+/// False if the field is missing.
+bool flag(const json& message, const char* name) {
+  const auto found = message.find(name);
+  if (found == message.end()) {
+    return false;
+  }
+  if (!found->is_boolean()) {
+    reject(found_text(*found), "true or false as '" + std::string(name) + "'");
+  }
+  return found->get<bool>();
+}
+
 std::string viewer_name(const json& message) {
   std::string name = text_field(message, "name");
   std::size_t characters = 0;
@@ -72,6 +84,7 @@ Hello hello(const json& message) {
     reject(found_text(*only), "'only' missing or \"stop\"");
   }
   result.is_only_stop = only != message.end();
+  result.wants_control = flag(message, "wants_control");
   return result;
 }
 
@@ -117,13 +130,7 @@ Subscribe subscribe(const json& message) {
   if (hash != message.end()) {
     result.hash = number_in(*hash, "hash");
   }
-  const auto newest = message.find("newest");
-  if (newest != message.end()) {
-    if (!newest->is_boolean()) {
-      reject(found_text(*newest), "true or false as 'newest'");
-    }
-    result.newest = newest->get<bool>();
-  }
+  result.newest = flag(message, "newest");
   return result;
 }
 

@@ -18,8 +18,9 @@ inline constexpr std::size_t max_message_bytes = 64U << 10U;
 struct Hello {
   std::uint64_t protocol = 0;
   std::string token;
-  std::string name;           ///< 1 to 60 characters, none of them a control character
-  bool is_only_stop = false;  ///< the viewer receives only the welcome and the answers to its own messages
+  std::string name;            ///< 1 to 60 characters, none of them a control character
+  bool is_only_stop = false;   ///< the viewer receives only the welcome and the answers to its own messages
+  bool wants_control = false;  ///< the viewer takes control if it is alone and the server allows that
 };
 
 struct Operation {

@@ -22,6 +22,13 @@ void ControlLease::take(ServerTime now, ClientId client, const std::string& name
   }
 }
 
+void ControlLease::give(ServerTime now, ClientId client, const std::string& name) {
+  advance(now);
+  if (!holder_) {
+    begin_epoch(now, {client, name});
+  }
+}
+
 void ControlLease::answer(ServerTime now, ClientId client, std::uint64_t epoch, std::uint64_t operation,
                           bool is_granted) {
   advance(now);

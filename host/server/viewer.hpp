@@ -68,6 +68,8 @@ class Viewer {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Whether the viewer has sent hello with the right token, and is not being closed.
   [[nodiscard]] bool is_welcome() const { return is_welcome_ && !closing_; }
+  /// Whether the viewer is a connection for STOP alone, beside the one with which a person looks on or drives.
+  [[nodiscard]] bool is_only_stop() const { return is_only_stop_; }
   /// The reason with which the connection has to end. Messages are not sent any more, and received ones are ignored.
   [[nodiscard]] const std::optional<CloseReason>& closing() const { return closing_; }
   /// Ends the connection. The first reason counts.

@@ -69,7 +69,7 @@ void ViewerHub::receive(ServerTime now, ClientId client, std::string_view text) 
   }
 }
 
-void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Hello& hello) {
+void ViewerHub::handle(ServerTime now, Viewer& viewer, const Hello& hello) {
   if (!token_.matches(hello.token)) {
     viewer.close(1008, "hello: found a wrong token, expected that of the address that proleg ui printed");
   } else if (hello.protocol != protocol) {
@@ -77,7 +77,18 @@ void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Hello& hello) {
                  "hello: found protocol " + std::to_string(hello.protocol) + ", expected " + std::to_string(protocol));
   } else {
     viewer.welcome(hello.name, hello.is_only_stop, options_.program, state_.notices.next_number());
+    if (options_.gives_control && hello.wants_control && !hello.is_only_stop && is_alone(viewer.client())) {
+      lease_.give(now, viewer.client(), viewer.name());
+      report_lease(now);
+    }
   }
+}
+
+bool ViewerHub::is_alone(ClientId client) const {
+  return std::ranges::none_of(viewers_, [client](const auto& entry) {
+    const auto& [other, viewer] = entry;
+    return other != client && viewer.is_welcome() && !viewer.is_only_stop();
+  });
 }
 
 void ViewerHub::handle(ServerTime now, Viewer& viewer, const Operation& operation) {

@@ -40,6 +40,8 @@ class ViewerHub {
   struct Options {
     std::string program;                    ///< name and version, for the welcome
     std::set<std::string> free_operations;  ///< operations that need no control
+    /// Whether a viewer that connects alone may have control at once, if its hello asks for it.
+    bool gives_control = false;
   };
 
   ViewerHub(Options options, const AccessToken& token, RobotSession& session, TickHistory& history);
@@ -79,6 +81,8 @@ class ViewerHub {
   void handle(ServerTime now, Viewer& viewer, const Beat& beat);
   void handle(ServerTime now, Viewer& viewer, const Subscribe& subscribe);
   void control(ServerTime now, Viewer& viewer, const Operation& operation);
+  /// Whether no other viewer is connected, except those for STOP alone.
+  [[nodiscard]] bool is_alone(ClientId client) const;
   /// Reports changes after each call of the lease: results to viewers, the document, and the holder to the session.
   void report_lease(ServerTime now);
   [[nodiscard]] Viewer* find(ClientId client);

@@ -161,7 +161,9 @@ void SocketServer::stop() {
 WebServer::WebServer(boost::asio::io_context& context, ServerOptions options, RobotSession& session)
     : link_(std::make_shared<SessionLink>(
           std::move(options.token), std::move(options.page), options.history_bytes,
-          ViewerHub::Options{std::move(options.program), std::move(options.free_operations)}, session)),
+          // Of computers in the network, none has control before a person there asks for it.
+          ViewerHub::Options{std::move(options.program), std::move(options.free_operations), !options.certificate},
+          session)),
       sockets_(std::make_shared<SocketServer>(context, options.port, std::move(options.certificate), link_)) {
   sockets_->accept();
 }

@@ -15,7 +15,8 @@ constexpr Parameter parameters[] = {
     generator_parameters::phase,
     generator_parameters::offset,
     Parameter{"rising_fraction", Unit::ratio, raw(Unit::ratio, 1, 2), raw(Unit::ratio, 2, 10), raw(Unit::ratio, 8, 10),
-              "part of the period in which the angle grows; 0.5 is the sine"},
+              "Which part of a swing the joint takes to go up. Part of the period in which the angle grows; 0.5 is the "
+              "sine."},
     generator_parameters::rate,
     generator_parameters::noise(0),
 };

@@ -36,21 +36,27 @@ constexpr Parameter phase_difference_of(std::string_view name, HostText help) {
 
 // The defaults are the sidewinding gait of the modular snake robots of Carnegie Mellon University.
 constexpr Parameter parameters[] = {
-    amplitude_of("pitch_amplitude", "amplitude of the joints that pitch"),
-    frequency_of("pitch_frequency", "frequency of the joints that pitch"),
-    phase_difference_of("pitch_phase_difference",
-                        "phase from joint to joint of the chain in the wave of the pitch joints"),
-    Parameter{"pitch_offset", Unit::degree, 0, -quarter_turn, quarter_turn, "angle added to the joints that pitch"},
-    amplitude_of("yaw_amplitude", "amplitude of the joints that yaw"),
-    frequency_of("yaw_frequency", "frequency of the joints that yaw"),
-    phase_difference_of("yaw_phase_difference", "phase from joint to joint of the chain in the wave of the yaw joints"),
+    amplitude_of("pitch_amplitude", "How far the joints swing up and down."),
+    frequency_of("pitch_frequency", "How many times the joints swing up and down in a second."),
+    phase_difference_of(
+        "pitch_phase_difference",
+        "How far the up and down wave runs ahead from joint to joint. Phase from joint to joint of the whole chain."),
+    Parameter{"pitch_offset", Unit::degree, 0, -quarter_turn, quarter_turn,
+              "How far the body bends upwards all the time. Angle added to the joints that pitch."},
+    amplitude_of("yaw_amplitude", "How far the joints swing to the sides."),
+    frequency_of("yaw_frequency", "How many times the joints swing to the sides in a second."),
+    phase_difference_of(
+        "yaw_phase_difference",
+        "How far the sideways wave runs ahead from joint to joint. Phase from joint to joint of the whole chain."),
     Parameter{"yaw_offset", Unit::degree, 0, -quarter_turn, quarter_turn,
-              "angle added to the joints that yaw: the robot turns"},
+              "How strongly the robot turns. Angle added to the joints that yaw."},
     Parameter{"yaw_phase", Unit::phase_degree, raw(Unit::phase_degree, 45), phase_minimum, phase_maximum,
-              "phase of the yaw wave before that of the pitch wave"},
+              "How far the sideways wave is ahead of the up and down wave. Phase between the two."},
     Parameter{"amplitude_slope", Unit::degree, 0, raw(Unit::degree, -10), raw(Unit::degree, 10),
-              "growth of both amplitudes from joint to joint towards the tail"},
-    Parameter{"yaw_parity", Unit::count, 1, 0, 1, "0: joints 0, 2, ... from the head yaw; 1: joints 1, 3, ... yaw"},
+              "How much wider each joint swings than the one in front of it. Added to both amplitudes from joint to "
+              "joint towards the tail."},
+    Parameter{"yaw_parity", Unit::count, 1, 0, 1,
+              "Which joints swing to the sides. 0: joints 0, 2, ... from the head; 1: joints 1, 3, ..."},
     generator_parameters::rate,
     generator_parameters::noise(0),
 };

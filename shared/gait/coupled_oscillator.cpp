@@ -15,7 +15,8 @@ constexpr Parameter parameters[] = {
     generator_parameters::phase_difference,
     generator_parameters::offset,
     Parameter{"coupling", Unit::per_second, raw(Unit::per_second, 10), 0, raw(Unit::per_second, 50),
-              "weight w of the coupling to each neighbour; acts as at most 0.5 / tick, where a chain is still stable"},
+              "How strongly neighbours pull each other into step. Weight w of the coupling to each neighbour; acts as "
+              "at most 0.5 / tick, where a chain is still stable."},
     generator_parameters::rate,
     generator_parameters::noise(raw(Unit::ratio, 1)),
 };

@@ -37,7 +37,7 @@ struct Parameter {
   std::int32_t default_value;
   std::int32_t minimum;
   std::int32_t maximum;
-  HostText help;
+  HostText help;  ///< what it changes: an everyday sentence, which the page shows below the name; then details
 };
 
 /// A value that the algorithm computes: its state, or a measurement of it.

@@ -5,7 +5,7 @@ namespace {
 
 enum Parameters : std::uint8_t { angle };
 constexpr Parameter parameters[] = {
-    Parameter{"angle", Unit::degree, 0, -quarter_turn, quarter_turn, "joint angle"},
+    Parameter{"angle", Unit::degree, 0, -quarter_turn, quarter_turn, "The angle at which the joint stands."},
 };
 
 constexpr Declaration about{1, "DirectJointAccess", "joint angles set by hand", parameters, {}, {}};

@@ -28,21 +28,25 @@ constexpr Parameter constant(std::string_view name, HostText help) {
 
 constexpr Parameter parameters[] = {
     Parameter{"stuck_threshold", Unit::count, 150, 1, 10'000,
-              "ms without a change of touch at the four links around the joint, after which the joint is stuck"},
+              "How long nothing may change before the joint counts as stuck. ms without a change of touch at the four "
+              "links around it."},
     Parameter{"recovering", Unit::degree, raw(Unit::degree, 3, 10), 0, greatest_constant,
-              "degrees in 10 ms by which the offset returns to 0 while the joint is not stuck"},
-    constant("constant_1", "degrees in 10 ms by which a stuck joint bends up; neither link at it touches"),
-    constant("constant_2", "the same; only the link behind the joint touches"),
-    constant("constant_3", "the same; only the link in front of the joint touches"),
-    constant("constant_4", "the same; both links touch"),
-    constant("constant_5", "degrees in 10 ms by which a stuck joint bends down; neither link at it touches"),
-    constant("constant_6", "the same; only the link behind the joint touches"),
-    constant("constant_7", "the same; only the link in front of the joint touches"),
-    constant("constant_8", "the same; both links touch"),
+              "How fast the joint goes back when it is free. Degrees in 10 ms by which the offset returns to 0."},
+    constant("constant_1", "How fast a stuck joint bends up if neither link at it touches. Degrees in 10 ms."),
+    constant("constant_2", "How fast a stuck joint bends up if only the link behind it touches. Degrees in 10 ms."),
+    constant("constant_3",
+             "How fast a stuck joint bends up if only the link in front of it touches. Degrees in 10 ms."),
+    constant("constant_4", "How fast a stuck joint bends up if both links at it touch. Degrees in 10 ms."),
+    constant("constant_5", "How fast a stuck joint bends down if neither link at it touches. Degrees in 10 ms."),
+    constant("constant_6", "How fast a stuck joint bends down if only the link behind it touches. Degrees in 10 ms."),
+    constant("constant_7",
+             "How fast a stuck joint bends down if only the link in front of it touches. Degrees in 10 ms."),
+    constant("constant_8", "How fast a stuck joint bends down if both links at it touch. Degrees in 10 ms."),
     Parameter{"max_offset", Unit::degree, raw(Unit::degree, 45), 0, quarter_turn,
-              "largest offset, upwards or downwards; 0: no reflex"},
-    Parameter{"give_up", Unit::count, 10'000, 1, 600'000,
-              "ms without a change of touch after which the joint counts as free again: its sensors may have failed"},
+              "How far the joint may bend to get free. Largest offset, upwards or downwards; 0: no reflex."},
+    Parameter{
+        "give_up", Unit::count, 10'000, 1, 600'000,
+        "How long the joint tries before it gives up. ms without a change of touch; its sensors may have failed."},
 };
 static_assert(std::size(parameters) == give_up + 1U);
 

@@ -18,9 +18,11 @@ constexpr Parameter parameters[] = {
     generator_parameters::phase_difference,
     generator_parameters::offset,
     Parameter{"fatigue", Unit::ratio, raw(Unit::ratio, 1), raw(Unit::ratio, 2, 10), raw(Unit::ratio, 4),
-              "half a period in time constants of the fatigue; small: a triangle, large: steep turns and flat ends"},
+              "Which shape the swing has. Small: a triangle; large: steep turns and flat ends. Half a period in time "
+              "constants of the fatigue."},
     Parameter{"coupling", Unit::ratio, raw(Unit::ratio, 3, 10), 0, raw(Unit::ratio, 45, 100),
-              "part of the speed by which each neighbour speeds up or slows down the fatigue"},
+              "How strongly neighbours pull each other into step. Part of the speed by which each neighbour speeds up "
+              "or slows down the fatigue."},
     generator_parameters::rate,
     generator_parameters::noise(raw(Unit::ratio, 1)),
 };

@@ -16,8 +16,10 @@ constexpr Parameter parameters[] = {
     generator_parameters::phase_difference,
     generator_parameters::phase,
     generator_parameters::offset,
-    Parameter{"retreat", Unit::count, 300, 0, 60'000, "ticks for which the wave stays reversed after the last touch"},
-    Parameter{"sensor", Unit::count, 2, 1, 3, "touch sensor of the head's link: 1 rear, 2 front, 3 either"},
+    Parameter{
+        "retreat", Unit::count, 300, 0, 60'000,
+        "How long the robot goes back after a touch. Ticks for which the wave stays reversed after the last touch."},
+    Parameter{"sensor", Unit::count, 2, 1, 3, "Which sensor of the head counts. 1 rear, 2 front, 3 either."},
 };
 
 enum Values : std::uint8_t { retreat_ticks = PatternGenerator::first_own_value };

@@ -28,12 +28,16 @@ constexpr Parameter parameters[] = {
     generator_parameters::frequency,
     generator_parameters::phase_difference,
     generator_parameters::offset,
-    Parameter{"falling_fraction", Unit::ratio, raw(Unit::ratio, 1, 2), raw(Unit::ratio, 2, 10), raw(Unit::ratio, 8, 10),
-              "part of the period in which the angle falls (duty factor)"},
+    Parameter{
+        "falling_fraction", Unit::ratio, raw(Unit::ratio, 1, 2), raw(Unit::ratio, 2, 10), raw(Unit::ratio, 8, 10),
+        "Which part of a swing the joint takes to go down. Part of the period in which the angle falls (duty factor)."},
     Parameter{"attraction", Unit::per_second, raw(Unit::per_second, 10), raw(Unit::per_second, 1),
-              raw(Unit::per_second, 50), "alpha: how fast the state returns to its circle; acts as at most 0.5 / tick"},
+              raw(Unit::per_second, 50),
+              "How fast the joint is back in its swing after a disturbance. alpha: how fast the state returns to its "
+              "circle; acts as at most 0.5 / tick."},
     Parameter{"coupling", Unit::per_second, raw(Unit::per_second, 4), 0, raw(Unit::per_second, 25),
-              "weight k of the coupling to each neighbour; acts as at most 0.25 / tick"},
+              "How strongly neighbours pull each other into step. Weight k of the coupling to each neighbour; acts as "
+              "at most 0.25 / tick."},
     generator_parameters::rate,
     generator_parameters::noise(raw(Unit::ratio, 1)),
 };

@@ -26,12 +26,13 @@ enum Parameters : std::uint8_t {
 };
 constexpr Parameter parameters[] = {
     Parameter{"amplitude", Unit::degree, raw(Unit::degree, 40), 0, quarter_turn,
-              "amplitude of the joint angle, if y1 - y2 has the amplitude 1/2"},
+              "How far the joint swings to each side. Exact if y1 - y2 has the amplitude 1/2."},
     matsuoka_parameters::frequency,
     generator_parameters::phase_difference,
     generator_parameters::offset,
-    Parameter{"coupling", Unit::ratio, raw(Unit::ratio, 2, 10), 0, raw(Unit::ratio, 1, 2),
-              "a: how strongly a neighbour inhibits the opposite neuron"},
+    Parameter{
+        "coupling", Unit::ratio, raw(Unit::ratio, 2, 10), 0, raw(Unit::ratio, 1, 2),
+        "How strongly neighbours pull each other into step. a: how strongly a neighbour inhibits the opposite neuron."},
     matsuoka_parameters::time_ratio,
     matsuoka_parameters::fatigue,
     matsuoka_parameters::inhibition,

@@ -66,21 +66,24 @@ inline constexpr InternalValue v2{"v2", Unit::ratio, 0, "fatigue of the flexor n
 /// The parameters that both generators with such pairs have.
 namespace matsuoka_parameters {
 
-inline constexpr Parameter frequency{"frequency",         Unit::hertz,
-                                     raw(Unit::hertz, 1), 0,
-                                     raw(Unit::hertz, 5), "frequency of the gait; sets both time constants"};
+inline constexpr Parameter frequency{
+    "frequency", Unit::hertz,         raw(Unit::hertz, 1),
+    0,           raw(Unit::hertz, 5), "How many times the joint swings in a second. Sets both time constants."};
 inline constexpr Parameter time_ratio{
-    "time_ratio",        Unit::ratio,         raw(Unit::ratio, 2),
-    raw(Unit::ratio, 1), raw(Unit::ratio, 7), "T / tau: time constant of the fatigue in those of the neuron"};
-inline constexpr Parameter fatigue{"fatigue",           Unit::ratio,         raw(Unit::ratio, 2),
-                                   raw(Unit::ratio, 1), raw(Unit::ratio, 6), "beta: how far activity tires a neuron"};
-inline constexpr Parameter inhibition{"inhibition",
-                                      Unit::ratio,
-                                      raw(Unit::ratio, 2),
-                                      raw(Unit::ratio, 1),
-                                      raw(Unit::ratio, 5),
-                                      "w: how strongly a neuron inhibits the other; it oscillates for w between "
-                                      "1 + 1 / time_ratio and 1 + fatigue"};
+    "time_ratio",        Unit::ratio,
+    raw(Unit::ratio, 2), raw(Unit::ratio, 1),
+    raw(Unit::ratio, 7), "How slowly a neuron tires. T / tau: time constant of the fatigue in those of the neuron."};
+inline constexpr Parameter fatigue{
+    "fatigue",           Unit::ratio,         raw(Unit::ratio, 2),
+    raw(Unit::ratio, 1), raw(Unit::ratio, 6), "How much a neuron tires while it is active. beta in the equations."};
+inline constexpr Parameter inhibition{
+    "inhibition",
+    Unit::ratio,
+    raw(Unit::ratio, 2),
+    raw(Unit::ratio, 1),
+    raw(Unit::ratio, 5),
+    "How strongly the two neurons of a joint hold each other back. w; they oscillate for w "
+    "between 1 + 1 / time_ratio and 1 + fatigue."};
 
 }  // namespace matsuoka_parameters
 

@@ -37,19 +37,27 @@ constexpr Parameter weight(std::string_view name, std::int32_t default_value, Ho
 }
 
 constexpr Parameter parameters[] = {
-    gain_of("extensor_gain", "m1: angle that the output 1 of the extensor neuron takes off"),
-    gain_of("flexor_gain", "m2: angle that the output 1 of the flexor neuron adds"),
+    gain_of("extensor_gain",
+            "How far the joint swings down. m1: angle that the output 1 of the extensor neuron takes off."),
+    gain_of("flexor_gain", "How far the joint swings up. m2: angle that the output 1 of the flexor neuron adds."),
     matsuoka_parameters::frequency,
     generator_parameters::offset,
     Parameter{"drive", Unit::ratio, raw(Unit::ratio, 1), 0, raw(Unit::ratio, 2),
-              "u0: constant input of both neurons; the amplitude is proportional to it"},
+              "How far the joint swings to both sides. u0: constant input of both neurons; the amplitude is "
+              "proportional to it."},
     Parameter{"feedback", Unit::ratio, 0, raw(Unit::ratio, -1), raw(Unit::ratio, 1),
-              "k: input of the neurons at a joint angle of 90 degrees; positive pulls the joint towards 0"},
-    weight("ahead_same", 0, "weight of each neuron of the joint ahead on the same neuron"),
+              "How much the joint feels its own angle. k: input of the neurons at a joint angle of 90 degrees; "
+              "positive pulls the joint towards 0."},
+    weight("ahead_same", 0,
+           "How strongly this joint copies the joint ahead. Weight of each neuron of that joint on the same neuron."),
     weight("ahead_opposite", raw(Unit::ratio, -2, 10),
-           "weight of each neuron of the joint ahead on the opposite neuron"),
-    weight("behind_same", 0, "weight of each neuron of the joint behind on the same neuron"),
-    weight("behind_opposite", 0, "weight of each neuron of the joint behind on the opposite neuron"),
+           "How strongly this joint opposes the joint ahead. Weight of each neuron of that joint on the opposite "
+           "neuron; a negative one holds it back."),
+    weight("behind_same", 0,
+           "How strongly this joint copies the joint behind. Weight of each neuron of that joint on the same neuron."),
+    weight("behind_opposite", 0,
+           "How strongly this joint opposes the joint behind. Weight of each neuron of that joint on the opposite "
+           "neuron; a negative one holds it back."),
     matsuoka_parameters::time_ratio,
     matsuoka_parameters::fatigue,
     matsuoka_parameters::inhibition,

@@ -26,18 +26,23 @@ enum Parameters : std::uint8_t {
   noise
 };
 constexpr Parameter parameters[] = {
-    Parameter{"amplitude", Unit::degree, raw(Unit::degree, 40), 0, quarter_turn,
-              "amplitude of the joint angle at 1 Hz; slower bursts swing further, faster ones less far"},
+    Parameter{
+        "amplitude", Unit::degree, raw(Unit::degree, 40), 0, quarter_turn,
+        "How far the joint swings to each side. Exact at 1 Hz; slower bursts swing further, faster ones less far."},
     Parameter{"frequency", Unit::hertz, raw(Unit::hertz, 1), raw(Unit::hertz, 1, 20), raw(Unit::hertz, 13, 10),
-              "frequency of the bursts; acts as at most 0.0022 for an iteration of the neurons"},
+              "How many times the joint swings in a second. Frequency of the bursts; acts as at most 0.0022 for an "
+              "iteration of the neurons."},
     generator_parameters::phase_difference,
     generator_parameters::offset,
     Parameter{"mutual_inhibition", Unit::ratio, raw(Unit::ratio, 12, 10), raw(Unit::ratio, 1, 10), raw(Unit::ratio, 2),
-              "conductance of the synapses between promotor and remotor of a joint"},
+              "How firmly the two muscles of a joint take turns. Conductance of the synapses between its promotor and "
+              "its remotor."},
     Parameter{"next_inhibition", Unit::ratio, raw(Unit::ratio, 3, 10), 0, raw(Unit::ratio, 1),
-              "conductance of the inhibitory synapses from the joint in front of the wave"},
+              "How strongly the joint in front holds this one back. Conductance of the inhibitory synapses from the "
+              "joint in front of the wave."},
     Parameter{"next_excitation", Unit::ratio, raw(Unit::ratio, 2, 10), 0, raw(Unit::ratio, 1),
-              "conductance of the excitatory synapses from that joint"},
+              "How strongly the joint in front pulls this one along. Conductance of the excitatory synapses from that "
+              "joint."},
     generator_parameters::rate,
     generator_parameters::noise(raw(Unit::ratio, 1)),
 };

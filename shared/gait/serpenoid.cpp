@@ -12,11 +12,12 @@ namespace {
 enum Parameters : std::uint8_t { winding_angle, frequency, waves, turn, rate, noise };
 constexpr Parameter parameters[] = {
     Parameter{"winding_angle", Unit::degree, raw(Unit::degree, 40), 0, quarter_turn,
-              "largest angle between a link and the direction of travel"},
+              "How strongly the body winds. Largest angle between a link and the direction of travel."},
     generator_parameters::frequency,
     Parameter{"waves", Unit::ratio, raw(Unit::ratio, 1), raw(Unit::ratio, -4), raw(Unit::ratio, 4),
-              "waves on the body; they run from head to tail, negative ones from tail to head"},
-    Parameter{"turn", Unit::degree, 0, -quarter_turn, quarter_turn, "angle added to each joint: the robot turns"},
+              "How many waves the body has. They run from head to tail, negative ones from tail to head."},
+    Parameter{"turn", Unit::degree, 0, -quarter_turn, quarter_turn,
+              "How strongly the robot turns. Angle added to each joint."},
     generator_parameters::rate,
     generator_parameters::noise(0),
 };

@@ -13,7 +13,8 @@ constexpr Parameter parameters[] = {
     generator_parameters::phase_difference,
     generator_parameters::phase,
     generator_parameters::offset,
-    Parameter{"harmonic", Unit::count, 1, 1, 8, "the joint oscillates at this multiple of the frequency"},
+    Parameter{"harmonic", Unit::count, 1, 1, 8,
+              "How many times the joint swings while the others swing once. Multiple of the frequency."},
     generator_parameters::rate,
     generator_parameters::noise(0),
 };

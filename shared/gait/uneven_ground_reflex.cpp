@@ -10,16 +10,19 @@ namespace {
 enum Parameters : std::uint8_t { raise, reach, confirm, hold, rise_rate, fall_rate };
 constexpr Parameter parameters[] = {
     Parameter{"raise", Unit::degree, raw(Unit::degree, 10), -quarter_turn, quarter_turn,
-              "angle added to the joint while the ground is uneven; 0: no reflex"},
+              "How far the joint lifts while the ground is uneven. Angle added to the joint; 0: no reflex."},
     Parameter{"reach", Unit::count, 2, 0, max_joints - 1,
-              "two touched links at most this many links apart are a sign of uneven ground; 0: no reflex"},
+              "How close together two links must touch the ground to mean uneven ground. Links from one to the other; "
+              "0: no reflex."},
     Parameter{"confirm", Unit::count, 2, 1, 100,
-              "consecutive ticks that the sign must last; the support passes from link to link in fewer"},
-    Parameter{"hold", Unit::count, 100, 0, 60'000, "ticks for which the joint stays raised after the last sign"},
+              "How long that must last before the joint lifts. Consecutive ticks; the support passes from link to link "
+              "in fewer."},
+    Parameter{"hold", Unit::count, 100, 0, 60'000,
+              "How long the joint stays lifted afterwards. Ticks after the last sign."},
     Parameter{"rise_rate", Unit::degree, raw(Unit::degree, 60), raw(Unit::degree, 1), quarter_turn,
-              "degrees in a second by which the joint rises"},
+              "How fast the joint lifts. Degrees in a second."},
     Parameter{"fall_rate", Unit::degree, raw(Unit::degree, 20), raw(Unit::degree, 1), quarter_turn,
-              "degrees in a second by which it returns to 0"},
+              "How fast the joint comes down again. Degrees in a second."},
 };
 
 enum Values : std::uint8_t { offset, sign_ticks, hold_ticks };

@@ -1,7 +1,7 @@
 // Start of the page: the parts that are needed at once. The others come as chunks of their own (panels/live_page.tsx).
 import '@preact/signals';
 import { render } from 'preact';
-import { openDialog } from './view/dialogs.js';
+import { addFront, pressEscape } from './view/front.js';
 import { listenToKeys } from './view/keyboard.js';
 import { addActions } from './view/page_actions.js';
 import { addRobotActions } from './view/robot_actions.js';
@@ -31,11 +31,13 @@ if (token === null) {
   const app = new PageApp(token, viewerName(navigator.userAgent, viewerNumber(sessionStorage)));
   addActions(app);
   addRobotActions(app);
-  listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, (key) => {
-    // In a simulation nothing can be hurt while a dialog is closed first.
-    const closes = key === 'Escape' && openDialog.value !== 'none' && app.state.robot.value?.kind === 'simulation';
-    if (closes) openDialog.value = 'none';
-    else app.stop.press();
+  addFront({
+    isOpen: () => app.shownPage.peek() === 'live' && app.mover.isActive.peek(),
+    close: () => (app.mover.isOn.value = false),
+  });
+  listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, {
+    space: () => app.stop.press(),
+    escape: () => pressEscape(app),
   });
   render(<Frame app={app} recordingsPage={recordingsPage} />, root);
 }

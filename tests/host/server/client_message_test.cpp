@@ -23,6 +23,9 @@ TEST(ClientMessage, IsReadAsTheTextOfTheInterfaceShows) {
   EXPECT_EQ(hello.token, "abc");
   EXPECT_EQ(hello.name, "Firefox on desk-3");
   EXPECT_FALSE(hello.is_only_stop);
+  EXPECT_FALSE(hello.wants_control);
+  EXPECT_TRUE(parsed<Hello>(R"({"type": "hello", "protocol": 1, "token": "abc", "name": "x", "wants_control": true})")
+                  .wants_control);
 
   const auto operation = parsed<Operation>(
       R"({"type": "operation", "id": 8, "epoch": 4, "name": "set", "arguments": {"words": ["a=1"]}})");
@@ -72,6 +75,8 @@ TEST(ClientMessage, NamesWhatIsWrong) {
             "message: found \"a\" twice, expected different names in 'signals'");
   EXPECT_EQ(error_of(R"({"type": "hello", "protocol": 1, "token": "", "name": "x", "only": "look"})"),
             "message: found \"look\", expected 'only' missing or \"stop\"");
+  EXPECT_EQ(error_of(R"({"type": "hello", "protocol": 1, "token": "", "name": "x", "wants_control": 1})"),
+            "message: found 1, expected true or false as 'wants_control'");
 }
 
 TEST(ClientMessage, ErrorsAreShortWhateverTheMessage) {

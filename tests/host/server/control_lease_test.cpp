@@ -55,6 +55,19 @@ TEST_F(Lease, TheFirstWhoTakesItGetsIt) {
   EXPECT_EQ(lease.refusal(anna, 0), "found epoch 0 of control, expected 1");
 }
 
+TEST_F(Lease, IsGivenToAViewerThatHasRequestedNothingOnlyIfNobodyHasIt) {
+  lease.give(now, anna, "Anna");
+  EXPECT_EQ(results(), "") << "there is no operation to answer";
+  EXPECT_EQ(lease.refusal(anna, 1), "");
+  const std::uint64_t revision = lease.revision();
+  lease.give(now, ben, "Ben");
+  EXPECT_EQ(holder()["client"], anna);
+  EXPECT_EQ(lease.revision(), revision);
+  now += 1s;
+  lease.give(now, ben, "Ben");
+  EXPECT_EQ(holder()["client"], anna) << "one that is away has it until somebody takes it";
+}
+
 TEST_F(Lease, TakingItTwiceChangesNothing) {
   anna_takes();
   const std::uint64_t revision = lease.revision();

@@ -29,6 +29,7 @@ class RecordingSession final : public RobotSession {
 
 class Hub : public testing::Test {
  protected:
+  explicit Hub(bool gives_control = false) : hub({"proleg 1", {"look"}, gives_control}, token, session, history) {}
   ClientId join(const std::string& name, const json& more = json::object()) {
     const ClientId client = hub.add_viewer(now);
     json hello{{"type", "hello"}, {"protocol", 1}, {"token", token.text()}, {"name", name}};
@@ -81,7 +82,7 @@ class Hub : public testing::Test {
   const AccessToken token = AccessToken::make();
   RecordingSession session;
   TickHistory history{1 << 20};
-  ViewerHub hub{{"proleg 1", {"look"}}, token, session, history};
+  ViewerHub hub;
   ServerTime now = 1h;
   std::vector<DecodedRows> binaries;
 };
@@ -180,6 +181,76 @@ TEST_F(Hub, PassesNoOperationOnThatTheLeaseRefuses) {
   EXPECT_TRUE(session.operations.empty());
   operate(anna, 3, "walk", 1);
   EXPECT_EQ(session.operations.size(), 1U);
+}
+
+class LocalHub : public Hub {
+ protected:
+  LocalHub() : Hub(true) {}
+  ClientId join_to_drive(const std::string& name) { return join(name, {{"wants_control", true}}); }
+  /// The name of the viewer that drives, as another one reads it; null: nobody.
+  json holder(ClientId client) {
+    for (const json& message : received(client)) {
+      if (message["type"] == "document" && message["name"] == "control") {
+        driver = message["value"]["holder"].is_null() ? json() : message["value"]["holder"]["name"];
+      }
+    }
+    return driver;
+  }
+
+  json driver;
+};
+
+TEST_F(LocalHub, GivesControlToAViewerThatConnectsAloneAndWantsIt) {
+  const ClientId anna = join_to_drive("Anna");
+  EXPECT_EQ(holder(anna), "Anna");
+  operate(anna, 1, "walk", 1);
+  EXPECT_EQ(session.operations.size(), 1U);
+  EXPECT_EQ(session.holders, (std::vector<std::string>{"held"}));
+}
+
+TEST_F(LocalHub, GivesNoControlToAViewerThatDoesNotAskForIt) {
+  const ClientId script = join("a script that looks on");
+  const ClientId stop = join("stop", {{"only", "stop"}, {"wants_control", true}});
+  EXPECT_EQ(holder(script), nullptr);
+  hub.remove_viewer(now, script);
+  EXPECT_EQ(holder(stop), nullptr);
+  EXPECT_TRUE(session.holders.empty());
+}
+
+TEST_F(LocalHub, GivesNoControlBesideAnotherViewer) {
+  const ClientId script = join("a script that looks on");
+  const ClientId anna = join_to_drive("Anna");
+  EXPECT_EQ(holder(anna), nullptr);
+  hub.remove_viewer(now, script);
+  hub.advance(now += 1h);
+  EXPECT_EQ(holder(anna), nullptr) << "only the moment of connecting counts";
+  const ClientId ben = join_to_drive("Ben");
+  EXPECT_EQ(holder(ben), nullptr);
+}
+
+TEST_F(LocalHub, GivesControlBesideAConnectionForStopAloneOrOneThatIsNoViewer) {
+  join("stop", {{"only", "stop"}});
+  static_cast<void>(hub.add_viewer(now));
+  const ClientId refused = hub.add_viewer(now);
+  send(refused, {{"type", "hello"}, {"protocol", 1}, {"token", "wrong"}, {"name", "x"}, {"wants_control", true}});
+  EXPECT_TRUE(session.holders.empty());
+  EXPECT_EQ(holder(join_to_drive("Anna")), "Anna");
+}
+
+TEST_F(LocalHub, GivesControlAgainAfterAReload) {
+  const ClientId before = join_to_drive("Anna");
+  hub.remove_viewer(now, before);
+  const ClientId after = join_to_drive("Anna");
+  operate(after, 1, "walk", 2);
+  EXPECT_EQ(session.operations.size(), 1U);
+  EXPECT_EQ(session.holders, (std::vector<std::string>{"held", "free", "held"})) << "what was held down is let go";
+  hub.close(after, 1008, "the connection is about to end");
+  EXPECT_EQ(holder(join_to_drive("Ben")), "Anna") << "until the connection before has ended";
+}
+
+TEST_F(Hub, GivesNoControlIfTheServerDoesNotAllowIt) {
+  join("Anna", {{"wants_control", true}});
+  EXPECT_TRUE(session.holders.empty());
 }
 
 TEST_F(Hub, TellsTheSessionWhetherSomebodyDrives) {

@@ -1,5 +1,6 @@
 """viewers_test.py HOST_COUNTING_ROBOT: documents, operations, the lease, STOP and telemetry, with several viewers."""
 
+import web_client
 from served_page import run_tests
 from web_client import Viewer, request
 
@@ -28,6 +29,21 @@ def test_operations_need_control(server):
         assert first.do("add", epoch)["ok"]
         assert second.do("value")["value"] == {"count": 1}, "the refused operations had no effect"
         assert first.do("walk", epoch)["error"] == "found operation 'walk', expected one of this robot"
+
+
+def test_a_viewer_that_connects_alone_has_control_if_it_wants_it_and_no_other_computer_can_connect(server):
+    is_for_network = web_client.TLS is not None
+    with server.viewer("script"):
+        with server.viewer("second", wants_control=True) as second:
+            second.until(lambda: "control" in second.documents)
+            assert second.control()["holder"] is None, "another viewer is connected"
+    for _ in range(2):  # the second one as after a reload
+        with server.viewer("page", wants_control=True) as page:
+            page.until(lambda: "control" in page.documents)
+            holder = page.control()["holder"]
+            assert holder is None if is_for_network else holder["name"] == "page", holder
+            if not is_for_network:
+                assert page.do("add", page.control()["epoch"])["ok"]
 
 
 def test_control_passes_from_one_viewer_to_another(server):

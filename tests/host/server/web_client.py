@@ -106,7 +106,7 @@ def frame(opcode, payload, masked=True, final=True):
 
 
 class Viewer:
-    def __init__(self, port, token=None, name="viewer", fields=(), only=None, receive_buffer=None):
+    def __init__(self, port, token=None, name="viewer", fields=(), only=None, receive_buffer=None, wants_control=False):
         self.sock = connect(port, receive_buffer)
         self.data = b""
         self.documents = {}
@@ -126,7 +126,7 @@ class Viewer:
         assert base64.b64encode(hashlib.sha1(key + GUID).digest()) in head, "the key of the handshake"
         if token is not None:
             hello = {"type": "hello", "protocol": 1, "token": token, "name": name}
-            self.send({**hello, "only": only} if only else hello)
+            self.send({**hello, **({"only": only} if only else {}), **({"wants_control": True} if wants_control else {})})
             self.welcome = self.next()
             assert self.welcome["type"] == "welcome", self.welcome
 

@@ -79,10 +79,23 @@ TEST(Declaration, NamesEachParameterOnceWithinTheCapacityOfASlot) {
     const Declaration& about = algorithm.declaration();
     EXPECT_LE(about.parameters.size(), max_parameters);
     for (std::size_t i = 0; i < about.parameters.size(); ++i) {
-      EXPECT_FALSE(about.parameters[i].help.empty()) << about.parameters[i].name;
       EXPECT_EQ(find_parameter(about, about.parameters[i].name), static_cast<int>(i));
     }
     EXPECT_EQ(find_parameter(about, "no such parameter"), -1);
+  });
+}
+
+TEST(Declaration, BeginsTheHelpOfAParameterWithAShortSentence) {
+  for_each_algorithm([](const ActuationModule& algorithm) {
+    for (const Parameter& parameter : algorithm.declaration().parameters) {
+      const std::string_view help = parameter.help;
+      const std::string_view first = help.substr(0, help.find(". "));
+      ASSERT_GE(first.size(), 10U) << parameter.name;
+      EXPECT_TRUE(first.front() >= 'A' && first.front() <= 'Z') << first;
+      EXPECT_LE(first.size(), 80U) << first << ": it stands in a panel of 360 pixels";
+      EXPECT_EQ(first.find_first_of(";/="), std::string_view::npos) << first << ": formulas come after it";
+      EXPECT_EQ(help.back(), '.') << help;
+    }
   });
 }
 

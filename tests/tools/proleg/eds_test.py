@@ -295,7 +295,7 @@ class EdsTest(unittest.TestCase):
         self.assertEqual(len(tops), len(set(tops)))
         self.assertEqual(check.get("3080sub1", "ParameterName"), "amplitude of slot 1")
         self.assertEqual(check.get("4081sub2", "ParameterName"), "frequency, staged, of slot 2")
-        self.assertEqual(check.get("3080sub1", "Description"), "amplitude of the joint angle")
+        self.assertEqual(check.get("3080sub1", "Description"), "How far the joint swings to each side.")
         for section in check.entries.values():
             if section[0] in "345" and not section.endswith("sub0"):
                 self.assertIn(check.get(section[:4], "ParameterName").split()[1].rstrip(","),

@@ -27,8 +27,8 @@ LIMIT_S = WAIT_S  # for what moves, with other tests beside it
 class Driver(Viewer):
     """A viewer that gives signs of life while it has control."""
 
-    def __init__(self, page, name="desk"):
-        super().__init__(page.port, page.token, name)
+    def __init__(self, page, name="desk", **options):
+        super().__init__(page.port, page.token, name, **options)
         self.lock = threading.Lock()
         self.is_alive = True
         self.epoch = 0
@@ -270,6 +270,17 @@ def test_a_robot_without_a_driver_stops(page, _):
     other.is_alive = False
     other.until_state("off")
     assert other.session()["stopped_by"] == "nobody drives"
+
+
+def test_control_from_the_start_gives_no_power(page, _):
+    driver = Driver(page, wants_control=True)
+    driver.until(lambda: driver.documents.get("control", {}).get("value", {}).get("holder") is not None)
+    driver.until(lambda: [module["drive"] for module in driver.documents.get("bus", {}).get("value", {}).get("modules", [])]
+                 == ["no power"] * JOINTS)
+    driver.until_state("off")
+    driver.epoch = driver.control()["epoch"]
+    driver.must("power", on=True)
+    driver.until_state("held")
 
 
 def test_a_bus_that_is_lost_ends_the_run_and_not_the_page(page, _):

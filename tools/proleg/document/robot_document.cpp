@@ -13,6 +13,7 @@
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/document/telemetry_row.hpp"
+#include "tools/proleg/document/useful_range.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -162,6 +163,7 @@ json joints_of(JointMask group) {
 json parameter_json(const sim::Scenario& scenario, const ParameterTable& table, unsigned slot, unsigned index) {
   const Slot& used = scenario.kernel.slots[slot];
   const Parameter& parameter = used.algorithm->declaration().parameters[index];
+  const UsefulRange useful = useful_range(parameter);
   json object{{"slot", slot + 1},
               {"name", parameter.name},
               {"unit", sim::shown_unit(parameter.unit)},
@@ -170,6 +172,7 @@ json parameter_json(const sim::Scenario& scenario, const ParameterTable& table, 
               {"minimum", parameter.minimum},
               {"maximum", parameter.maximum},
               {"default", parameter.default_value},
+              {"useful", {useful.lower, useful.upper}},
               {"help", parameter.help},
               {"internal", false},
               {"joints", joints_of(used.group)}};

@@ -3,6 +3,7 @@ import { computed, effect, signal } from '@preact/signals-core';
 import { arrayOf, headingOf } from '../geometry/outline.js';
 import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { ActionList } from '../state/actions.js';
+import { addFront } from '../view/front.js';
 import type { Stores } from '../view/robot_view.js';
 import type { DraftDocument, NewScenario, Operations, PartOperation, WorldObject } from '../wire/messages.js';
 import { DraftView } from './draft_view.js';
@@ -61,6 +62,10 @@ export class MakeApp {
       { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
     );
     page.makeActions.value = this.actions;
+    addFront({
+      isOpen: () => page.shownPage.peek() === 'make' && this.isSaving.peek(),
+      close: () => (this.isSaving.value = false),
+    });
     // Other parts of the program may have written files meanwhile: Apply to file.
     effect(() => {
       if (page.shownPage.value === 'make' && page.state.isConnected.value) void page.operations.ask('draft.refresh', {}).catch(() => {});

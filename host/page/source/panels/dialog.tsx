@@ -1,5 +1,5 @@
 // The frame of a dialog. Dialogs are not modal: STOP must stay within reach, by mouse too. They close with their key, their
-// button, or a click beside them. For a robot Esc is STOP in them as everywhere; in a simulation it closes them first.
+// button, or a click beside them. For a robot on a bus Esc is STOP in them as everywhere; in a simulation it closes them.
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
 import { openDialog } from '../view/dialogs.js';

@@ -140,13 +140,15 @@ function CommandLine({ app }: { app: Stores<'operations'> }) {
   );
 }
 
-const stopHint =
-  'Buttons: Enter. Esc and Space stop the robot, in this window too; in a simulation Esc closes the window first. STOP does not replace a power switch.';
+const robotHint =
+  'Buttons: Enter. Esc, and Space outside text fields, stop the robot, in this window too. STOP does not replace a power switch.';
+const simulationHint =
+  'Buttons: Enter. Esc closes this window; without one it pauses the simulation. Space outside text fields is STOP, in this window too.';
 
 export function DialogView({ app }: { app: Stores<'newGesture' | 'operations' | 'sets' | 'shownActions' | 'state'> }) {
   switch (openDialog.value) {
     case 'keys':
-      return <Keys actions={app.shownActions} hint={stopHint} />;
+      return <Keys actions={app.shownActions} hint={app.state.robot.value?.kind === 'bus' ? robotHint : simulationHint} />;
     case 'palette':
       return <Palette actions={app.shownActions} />;
     case 'command_line':

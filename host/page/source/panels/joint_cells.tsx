@@ -2,6 +2,8 @@
 //   drag up and down: the bar's value     Shift and drag across: all bars get the value under the pointer
 //   arrows: left and right choose, up and down change     digits, Enter: type a value     double click: back to the file
 import { useSignal } from '@preact/signals';
+import { useLayoutEffect } from 'preact/hooks';
+import { addFront } from '../view/front.js';
 import type { Stores } from '../view/robot_view.js';
 import { formatRaw, parseValue, placeName, setWord, sliderStep } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
@@ -19,6 +21,11 @@ export function JointCells({ app, parameter }: { app: Stores<'newGesture' | 'sel
   const isDragging = useSignal(false);
   const current = useSignal(0);
   const typed = useSignal<string | null>(null);
+  const isTyping = typed.value !== null;
+  useLayoutEffect(
+    () => (isTyping ? addFront({ isOpen: () => true, close: () => (typed.value = null) }) : undefined),
+    [isTyping],
+  );
   const count = parameter.joints.length;
   const nameOf = (i: number) => robot?.joints[parameter.joints[i] ?? 0]?.name ?? `joint ${i + 1}`;
   const step = sliderStep(parameter);

@@ -14,7 +14,7 @@ export function LivePage({ app }: { app: PageStores }) {
     <div class="live">
       <RunControls app={app} />
       <div class="live-main">
-        <ScenePanel app={app} />
+        <ScenePanel app={app} problem={app.state.simulation.value?.servo_problem ?? null} />
         <TimeControls app={app} />
         <StripPanel app={app} />
         <PlotPanel app={app} />

@@ -7,6 +7,7 @@ import type { Parameter } from '../wire/messages.js';
 import { DistortionForm } from './distortion_form.js';
 import { redoIcon, swapIcon, undoIcon } from './icons.js';
 import { ParameterRow } from './parameter_row.js';
+import { sentencesAreShown, toggleSentences } from './parameter_sentence.js';
 
 function Toolbar({ app, changed, filter }: { app: Stores<'operations' | 'state'>; changed: number; filter: { value: boolean } }) {
   const session = app.state.session.value;
@@ -56,6 +57,14 @@ function Toolbar({ app, changed, filter }: { app: Stores<'operations' | 'state'>
         title="Show only what differs from the file"
       >
         Changed ({changed})
+      </button>
+      <button
+        type="button"
+        aria-pressed={sentencesAreShown.value}
+        onClick={toggleSentences}
+        title="A sentence below each name: what the parameter changes"
+      >
+        Explain
       </button>
       <button
         type="button"

@@ -1,9 +1,11 @@
 // One parameter: a slider and a number for all joints, and a cell for each joint.
 import { useSignal } from '@preact/signals';
 import type { Stores } from '../view/robot_view.js';
-import { formatRaw, parseValue, placeName, setWord, sliderStep, summarise } from '../state/parameter_values.js';
+import { formatRaw, parseValue, placeName, setWord, splitHelp, summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { JointCells } from './joint_cells.js';
+import { ParameterSentence, sentencesAreShown } from './parameter_sentence.js';
+import { ParameterSlider } from './parameter_slider.js';
 
 // Whether the modules run with the requested values.
 function Confirmation({ parameter }: { parameter: Parameter }) {
@@ -29,8 +31,6 @@ export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 's
   const isHolder = app.state.isHolder.value;
   const { isUniform, isChanged } = summarise(parameter);
   const gesture = useSignal(0);
-  // The value of the slider in the unit while it is dragged.
-  const dragged = useSignal<number | null>(null);
   const problem = useSignal<string | null>(null);
   const helpIsOpen = useSignal(false);
   const id = `parameter-${parameter.slot}-${parameter.name}`;
@@ -70,33 +70,23 @@ export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 's
         <span class="space" />
         <Confirmation parameter={parameter} />
       </div>
+      <ParameterSentence help={parameter.help} id={`${id}-sentence`} />
       {helpIsOpen.value && (
         <p class="help">
-          {parameter.help} From {formatRaw(parameter.minimum, parameter)} to {formatRaw(parameter.maximum, parameter)}
+          {sentencesAreShown.value ? splitHelp(parameter.help).details : parameter.help} From {formatRaw(parameter.minimum, parameter)} to {formatRaw(parameter.maximum, parameter)}
           {unit}; the default is {formatRaw(parameter.default, parameter)}. Double click: back to the file’s value.
         </p>
       )}
       <div class="parameter-body">
-        <input
-          type="range"
-          aria-label={`${title}, all joints`}
-          min={parameter.minimum * parameter.scale}
-          max={parameter.maximum * parameter.scale}
-          step={sliderStep(parameter)}
-          value={dragged.value ?? mean * parameter.scale}
-          aria-valuetext={`${formatRaw(Math.round(mean), parameter)}${unit}`}
-          disabled={!isHolder}
-          onPointerDown={() => (gesture.value = app.newGesture())}
-          onKeyDown={(event) => {
-            if (!event.repeat) gesture.value = app.newGesture();
-          }}
-          onInput={(event) => {
-            dragged.value = Number(event.currentTarget.value);
-            set(dragged.value);
-          }}
-          onChange={() => (dragged.value = null)}
-          onDblClick={reset}
-          title="All joints. Double click: back to the file’s value"
+        <ParameterSlider
+          parameter={parameter}
+          value={mean * parameter.scale}
+          label={`${title}, all joints`}
+          describedBy={sentencesAreShown.value ? `${id}-sentence` : undefined}
+          isDisabled={!isHolder}
+          begin={() => (gesture.value = app.newGesture())}
+          set={set}
+          reset={reset}
         />
         <input
           type="text"

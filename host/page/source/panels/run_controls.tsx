@@ -68,18 +68,15 @@ function Figure({ name, help, children }: { name: string; help: string; children
 function Measures({ app }: { app: Stores<'state'> }) {
   const session = app.state.simulation.value;
   const [speed, distance] = [session?.recent_speed, session?.measures?.['distance']];
+  // Both are there from the start: one that came later would move the panels below.
   return (
-    <dl class="figures">
-      {typeof speed === 'number' && (
-        <Figure name="robot speed" help="Of the centre of mass over the last two strides, in any direction">
-          {(speed * 1000).toFixed(1)} mm/s
-        </Figure>
-      )}
-      {typeof distance === 'number' && (
-        <Figure name="distance" help="Of the centre of mass from where the run began, in a straight line; without moves by hand">
-          {distance.toFixed(3)} m
-        </Figure>
-      )}
+    <dl class="figures measures">
+      <Figure name="robot speed" help="Of the centre of mass over the last two strides, in any direction">
+        {typeof speed === 'number' ? `${(speed * 1000).toFixed(1)} mm/s` : '–'}
+      </Figure>
+      <Figure name="distance" help="Of the centre of mass from where the run began, in a straight line; without moves by hand">
+        {typeof distance === 'number' ? `${distance.toFixed(3)} m` : '–'}
+      </Figure>
     </dl>
   );
 }
@@ -90,7 +87,6 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
   const runState = state.simulation.value?.state ?? 'paused';
   const isRunning = runState === 'running';
   const recording = state.session.value?.recording ?? null;
-  const servoProblem = state.simulation.value?.servo_problem;
   const ticks = useSignal(1);
   return (
     <section class="run-controls" aria-label="Run">
@@ -99,7 +95,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
         class="primary run"
         disabled={!isHolder || runState === 'failed'}
         onClick={() => void operations.tell(isRunning ? 'pause' : 'run', {})}
-        title="Run, or pause (K)"
+        title="Run, or pause (K). Esc pauses, too"
       >
         {isRunning ? pauseIcon : runIcon} {isRunning ? 'Pause' : 'Run'}
       </button>
@@ -146,12 +142,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
       <Factor app={app} />
       <TickCounter app={app} />
       <Measures app={app} />
-      {servoProblem && (
-        <p class="servo-problem" role="status" data-testid="servo-problem">
-          {servoProblem}
-        </p>
-      )}
-      {state.isConnected.value && !isHolder && <span class="hint">You look on. Take control to change anything.</span>}
+      {state.isLookingOn.value && <span class="hint">You look on. Take control to change anything.</span>}
       {isHolder && runState === 'stopped' && <span class="hint">Stopped. Run goes on from here.</span>}
     </section>
   );

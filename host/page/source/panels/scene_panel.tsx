@@ -23,7 +23,8 @@ function remedy(reason: string): string {
     : '';
 }
 
-export function ScenePanel({ app }: { app: RobotView }) {
+// `problem`: why the robot does not move as it should; null: it does.
+export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: string | null }) {
   const holder = useRef<HTMLDivElement>(null);
   const readout = useRef<HTMLSpanElement>(null);
   const isFollowing = useSignal(true);
@@ -184,6 +185,12 @@ export function ScenePanel({ app }: { app: RobotView }) {
           </>
         )}
       </span>
+      {problem !== null && (
+        // In front of the picture, where it moves no control: a second click must be where the first one was.
+        <p class="scene-problem" role="status" data-testid="servo-problem">
+          {problem}
+        </p>
+      )}
       {level.value > 0 && (
         <span class="detail-note" title="The controls come first.">
           less detail: this computer draws slowly

@@ -98,8 +98,11 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
     return <div class="control">not connected</div>;
   }
   const control = state.control.value;
+  if (control === null) {
+    return <div class="control" />; // the page may have control: the program has not said it yet
+  }
   const other = state.otherHolder.value;
-  const isAsking = control?.request?.client === state.client.value;
+  const isAsking = control.request?.client === state.client.value;
   const take = () => void app.operations.tell('control.take', {});
   const release = () => void app.operations.tell('control.release', {});
   if (state.isHolder.value) {
@@ -112,8 +115,8 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
       </div>
     );
   }
-  const who = other === null ? 'Nobody has control' : `${other} has control${control?.away === true ? ', but is away' : ''}`;
-  const isFree = other === null || control?.away === true;
+  const who = other === null ? 'Nobody has control' : `${other} has control${control.away ? ', but is away' : ''}`;
+  const isFree = other === null || control.away;
   return (
     <div class="control" data-testid="control">
       <span>{isAsking ? `Asked ${other ?? 'the holder'} …` : who}</span>
@@ -130,8 +133,10 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
   );
 }
 
-function Stop({ app }: { app: Stores<'stop'> }) {
+function Stop({ app }: { app: Stores<'state' | 'stop'> }) {
   const report = app.stop.report.value;
+  const isSimulation = app.state.robot.value?.kind === 'simulation';
+  const keys = isSimulation ? 'Space outside text fields' : 'Esc, or Space outside text fields';
   return (
     <div class="stop-area">
       <span class={`stop-report ${report.state === 'stopped' && !isConfirmed(report) ? 'unconfirmed' : report.state}`} role="status" data-testid="stop-report">
@@ -142,8 +147,8 @@ function Stop({ app }: { app: Stores<'stop'> }) {
           type="button"
           class="stop"
           aria-describedby="stop-note"
-          aria-keyshortcuts="Escape Space"
-          title="Stops the robot at once: Esc, or Space outside text fields. This does not replace a power switch."
+          aria-keyshortcuts={isSimulation ? 'Space' : 'Escape Space'}
+          title={`Stops the robot at once: ${keys}. This does not replace a power switch.`}
           onPointerDown={(event) => {
             // STOP acts at the press, not at the release; the click that follows has no second effect.
             if (event.button === 0) app.stop.press();
@@ -153,7 +158,7 @@ function Stop({ app }: { app: Stores<'stop'> }) {
             if (event.detail === 0) app.stop.press();
           }}
         >
-          STOP <kbd>Esc</kbd>
+          STOP <kbd>{isSimulation ? 'Space' : 'Esc'}</kbd>
         </button>
         <span id="stop-note" class="stop-note" title="This does not replace a power switch.">
           does not replace a power switch

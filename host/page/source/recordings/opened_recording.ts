@@ -45,7 +45,8 @@ export class OpenedRecording implements PlayedRecording {
     if (!recording.finished) {
       this.time.seek(recording.last_tick);
     }
-    const isOfPage = (action: Action) => action.group === 'Page' || action.id === 'stop' || action.id === 'take_control';
+    const ofRobot = new Set(['stop', 'escape', 'take_control']);
+    const isOfPage = (action: Action) => action.group === 'Page' || ofRobot.has(action.id);
     this.actions = new ActionList(pageActions, isOfPage);
     addPlaybackActions(this, ['K']);
     // The rows are read at once, because the next frame may come 30 ms later.

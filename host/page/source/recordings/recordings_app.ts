@@ -1,5 +1,6 @@
 // The stores of the page Recordings: the files, and the recording that is shown.
 import { effect, signal } from '@preact/signals-core';
+import { addFront } from '../view/front.js';
 import { onFrame } from '../view/frame_clock.js';
 import type { Stores } from '../view/robot_view.js';
 import type { RecordedFile } from '../wire/messages.js';
@@ -26,6 +27,10 @@ export class RecordingsApp {
 
   constructor(readonly page: RecordingsStores) {
     onFrame((now) => this.advance(now));
+    addFront({
+      isOpen: () => page.shownPage.peek() === 'recordings' && this.comparing.peek() !== null,
+      close: () => this.chooseSecond(null),
+    });
     effect(() => {
       const file = page.state.recordings.value?.open ?? null;
       if (file !== null && this.opened.peek() === null) void this.open(file);

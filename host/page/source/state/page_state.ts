@@ -85,6 +85,8 @@ export class PageState {
   readonly isHolder = computed(
     () => this.client.value !== null && this.control.value?.holder?.client === this.client.value,
   );
+  // Whether this viewer does not drive. False as long as the program has not said who does.
+  readonly isLookingOn = computed(() => this.isConnected.value && this.control.value !== null && !this.isHolder.value);
   // The name of another viewer who drives, else null.
   readonly otherHolder = computed(() => (this.isHolder.value ? null : (this.control.value?.holder?.name ?? null)));
 

@@ -79,6 +79,12 @@ function plainDecimal(value: number): string {
   return formatNumber(value, 9);
 }
 
+// The help text of a parameter: an everyday sentence, then details, which may be none.
+export function splitHelp(help: string): { sentence: string; details: string } {
+  const [sentence, ...details] = help.split(/(?<=[.?!])\s+/);
+  return { sentence: sentence ?? '', details: details.join(' ') };
+}
+
 export interface ParameterSummary {
   isUniform: boolean; // one wanted value on all joints
   isChanged: boolean; // a wanted value differs from the file's

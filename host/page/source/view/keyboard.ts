@@ -1,4 +1,4 @@
-// Keys of the whole page. STOP has priority, whichever element has the focus; a page without a robot has no STOP.
+// Keys of the whole page. Space (STOP) and Esc have priority, whichever element has the focus, if the page has a robot.
 import type { ActionList } from '../state/actions.js';
 
 const textInputs = new Set(['text', 'number', 'search']);
@@ -21,14 +21,21 @@ function takesNumber(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest('[data-takes-number]') !== null;
 }
 
-export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: ((key: string) => void) | null): void {
+// What the keys with priority do.
+interface RobotKeys {
+  space(): void; // outside text fields
+  escape(): void;
+}
+
+// `robotKeys`: null: the page has no robot, these keys are as all others.
+export function listenToKeys(actions: Pick<ActionList, 'forKey'>, robotKeys: RobotKeys | null): void {
   window.addEventListener(
     'keydown',
     (event) => {
       const isText = isTextField(event.target);
-      if (stop !== null && (event.key === 'Escape' || (event.key === ' ' && !isText))) {
+      if (robotKeys !== null && (event.key === 'Escape' || (event.key === ' ' && !isText))) {
         // A key that is held down counts as one press.
-        if (!event.repeat) stop(event.key);
+        if (!event.repeat) robotKeys[event.key === ' ' ? 'space' : 'escape']();
         event.preventDefault();
         event.stopPropagation();
         return;

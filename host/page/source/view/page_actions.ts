@@ -1,6 +1,7 @@
 // The actions of the page, with their keys.
 import { recordingName } from '../state/recording_name.js';
 import { toggleDialog } from './dialogs.js';
+import { pressEscape } from './front.js';
 import type { PageState } from '../state/page_state.js';
 import type { PageStores, Stores } from './robot_view.js';
 import { sharedActions } from './shared_actions.js';
@@ -31,10 +32,20 @@ export function addActions(app: PageStores): void {
   app.actions.add(
     {
       id: 'stop',
-      title: 'STOP the robot (Space too, outside text fields)',
+      get title() {
+        return isSimulation() ? 'STOP the robot, outside text fields' : 'STOP the robot, outside text fields (Esc: also in them)';
+      },
+      group: 'Robot',
+      keys: ['Space'],
+      run: () => app.stop.press(),
+    },
+    {
+      id: 'escape',
+      title: 'Close what is in front; else pause, or STOP without control',
       group: 'Robot',
       keys: ['Escape'],
-      run: () => app.stop.press(),
+      isShown: isSimulation,
+      run: () => pressEscape(app),
     },
     {
       id: 'run_or_pause',

@@ -1,5 +1,6 @@
 // The theme, light or dark: that of the system, or the one that was chosen here.
 import { computed, effect, signal } from '@preact/signals-core';
+import { storeChoice, storedChoice } from './stored_choice.js';
 
 export type ThemeChoice = 'system' | 'light' | 'dark';
 
@@ -10,21 +11,9 @@ const query = window.matchMedia('(prefers-color-scheme: dark)');
 const systemIsDark = signal(query.matches);
 query.addEventListener('change', () => (systemIsDark.value = query.matches));
 
-// A page from a file may have no storage.
-function storage(): Storage | null {
-  try {
-    return window.localStorage;
-  } catch {
-    return null;
-  }
-}
+const stored = storedChoice(key);
 
-function storedChoice(): ThemeChoice {
-  const stored = storage()?.getItem(key);
-  return order.find((choice) => choice === stored) ?? 'system';
-}
-
-export const themeChoice = signal<ThemeChoice>(storedChoice());
+export const themeChoice = signal<ThemeChoice>(order.find((choice) => choice === stored) ?? 'system');
 
 export const isDark = computed(() =>
   themeChoice.value === 'system' ? systemIsDark.value : themeChoice.value === 'dark',
@@ -36,6 +25,6 @@ effect(() => {
 
 export function nextTheme(): void {
   const next = order[(order.indexOf(themeChoice.value) + 1) % order.length] as ThemeChoice;
-  storage()?.setItem(key, next);
+  storeChoice(key, next);
   themeChoice.value = next;
 }

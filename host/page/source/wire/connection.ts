@@ -128,7 +128,8 @@ export class Connection {
   }
 
   private greet(): void {
-    this.send({ type: 'hello', protocol, token: this.token, name: this.name });
+    // The only viewer of a robot on this computer drives at once: the server decides whether it is that.
+    this.send({ type: 'hello', protocol, token: this.token, name: this.name, wants_control: true });
   }
 
   private receiveBinary(buffer: ArrayBuffer): void {

@@ -155,6 +155,7 @@ export interface Parameter extends Omit<InternalValue, 'internal'> {
   internal: false;
   minimum: number; // raw, as the values below
   maximum: number;
+  useful?: [number, number]; // the range that most users need; missing: from minimum to maximum
   default: number;
   file: number[];
   wanted: number[];
@@ -643,7 +644,7 @@ export interface Operations {
 }
 
 export type ClientMessage =
-  | { type: 'hello'; protocol: number; token: string; name: string; only?: 'stop' }
+  | { type: 'hello'; protocol: number; token: string; name: string; only?: 'stop'; wants_control?: boolean }
   | { type: 'operation'; id: number; epoch: number; name: keyof Operations; arguments: object }
   | { type: 'subscribe'; signals: string[]; hash: number; newest: boolean }
   | { type: 'beat'; age_ms: number }

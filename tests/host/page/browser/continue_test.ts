@@ -52,6 +52,7 @@ describe('a recorded simulation', () => {
         }
         await page.getByTestId('opened').waitFor();
         const button = viewer.button('Continue from here');
+        await viewer.lookOn();
         assert.match((await button.getAttribute('title')) ?? '', /Take control first/);
         await viewer.takeControl();
         const timeline = await page.getByTestId('timeline').boundingBox();

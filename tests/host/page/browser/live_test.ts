@@ -1,6 +1,8 @@
 // A simulated robot, live: it moves, and does what the page says.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
+import { seriousProblems } from './support/accessibility.js';
+import { assertNothingIsCut } from './support/layout.js';
 import { countDifferences, countPixels, isBlue, pixelsOf } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
@@ -15,10 +17,17 @@ describe('a live simulation', () => {
     assert.equal(new URL(ui.viewer.page.url()).hash, '');
   });
 
-  it('is only looked on at first: nothing can be changed without control', async () => {
-    assert.equal(await ui.viewer.button('Run').isDisabled(), true);
-    assert.equal(await ui.viewer.parameter('1.amplitude').getByRole('slider').first().isDisabled(), true);
-    assert.equal(await ui.viewer.button(/^STOP/).isEnabled(), true);
+  it('is driven by its only viewer from the start', async () => {
+    await ui.viewer.button('Release').waitFor();
+    assert.equal(await ui.viewer.button('Run').isEnabled(), true);
+  });
+
+  it('is only looked on by a second viewer: nothing can be changed without control', async () => {
+    const second = await ui.look();
+    await second.button('Ask for control').waitFor();
+    assert.equal(await second.button('Run').isDisabled(), true);
+    assert.equal(await second.parameter('1.amplitude').getByRole('slider').first().isDisabled(), true);
+    assert.equal(await second.button(/^STOP/).isEnabled(), true);
   });
 
   it('runs: the joints move, the head advances, and the picture changes', async () => {
@@ -111,6 +120,55 @@ describe('a live simulation', () => {
   it('goes back to the values of the file', async () => {
     await ui.viewer.parameter('1.amplitude').getByRole('slider').first().dblclick();
     await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '40');
+  });
+
+  it('keeps its controls in place when it reports what the servos cannot follow', async () => {
+    const frequency = ui.viewer.parameter('1.frequency');
+    const slider = frequency.getByRole('slider').first();
+    const place = await slider.boundingBox();
+    const field = frequency.getByRole('textbox');
+    await field.fill('6');
+    await field.press('Enter');
+    await ui.viewer.page.getByTestId('servo-problem').waitFor();
+    assert.deepEqual(await slider.boundingBox(), place);
+    await ui.viewer.screenshot('servo_problem');
+    await slider.dblclick();
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '1');
+    await ui.viewer.page.getByTestId('servo-problem').waitFor({ state: 'detached' });
+    assert.deepEqual(await slider.boundingBox(), place);
+  });
+
+  it('has the usual values of a parameter on most of the way of its slider, and all of them from the keyboard', async () => {
+    const frequency = ui.viewer.parameter('1.frequency');
+    const slider = frequency.getByRole('slider').first();
+    await slider.click(); // in the middle, where 10 Hz would be on a straight scale from 0 to 20
+    const [middle] = await confirmedValues(ui.viewer, '1.frequency', (value) => value !== '1');
+    assert.ok(Number(middle?.wanted) > 0.5 && Number(middle?.wanted) < 2, `found ${middle?.wanted}`);
+    await ui.viewer.page.keyboard.press('End');
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '20');
+    await ui.viewer.page.keyboard.press('ArrowLeft');
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '19.95');
+    await slider.dblclick();
+    await confirmedValues(ui.viewer, '1.frequency', (value) => value === '1');
+  });
+
+  it('says below each name what the parameter changes, until the sentences are hidden', async () => {
+    const { page } = ui.viewer;
+    const sentence = ui.viewer.parameter('1.phase_difference').getByText('How far the wave runs ahead from joint to joint.', { exact: true });
+    await sentence.waitFor();
+    await page.setViewportSize({ width: 360, height: 800 });
+    await assertNothingIsCut(ui.viewer);
+    assert.deepEqual(await seriousProblems(ui.viewer), []);
+    await page.getByRole('region', { name: 'Parameters' }).screenshot({ path: 'build/page_test/sentences_360.png' });
+    await page.setViewportSize({ width: 1400, height: 900 });
+    await ui.viewer.button('Explain').click();
+    await sentence.waitFor({ state: 'detached' });
+    await page.reload();
+    await ui.viewer.parameter('1.phase_difference').waitFor();
+    assert.equal(await sentence.count(), 0, 'the browser keeps the choice');
+    await ui.viewer.button('Explain').click();
+    await sentence.waitFor();
+    await ui.viewer.takeControl();
   });
 
   it('freezes the view while the robot goes on, and returns to live', async () => {

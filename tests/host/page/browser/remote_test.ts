@@ -38,6 +38,7 @@ describe('the panel of remote controls', () => {
   });
 
   it('changes nothing without control', async () => {
+    await ui.viewer.lookOn();
     assert.equal(await field('Upper of ABS_X').isDisabled(), true);
     assert.equal(await ui.viewer.button('Saved').isDisabled(), true);
   });

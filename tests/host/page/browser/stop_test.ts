@@ -1,8 +1,9 @@
-// STOP, from every state and over both ways.
+// STOP, from every state and over both ways; Esc in a simulation.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
+import { waitUntil } from './support/waiting.js';
 
 describe('STOP', () => {
   const ui = useUi(() => UiProgram.start(), { takesControl: true });
@@ -25,13 +26,6 @@ describe('STOP', () => {
     await ui.viewer.pause();
   });
 
-  it('works by Esc, in a text field too', async () => {
-    await ui.viewer.run();
-    await ui.viewer.parameter('1.amplitude').getByRole('textbox').focus();
-    await ui.viewer.page.keyboard.press('Escape');
-    await assertStopped();
-  });
-
   it('works by Space outside text fields, also when a button has the focus', async () => {
     await ui.viewer.run();
     await ui.viewer.button('Release').focus();
@@ -50,22 +44,21 @@ describe('STOP', () => {
     await ui.viewer.button('Close').click();
   });
 
-  it('waits in a simulation until Esc has closed an open window', async () => {
+  it('works by Space in an open window, which stays open', async () => {
     const { page } = ui.viewer;
     await ui.viewer.run();
     await page.keyboard.press('?');
-    await page.getByRole('dialog').waitFor();
+    await page.getByRole('dialog').getByText('Space outside text fields is STOP').waitFor();
+    await page.keyboard.press('Space');
+    await assertStopped();
     await page.keyboard.press('Escape');
     await page.getByRole('dialog').waitFor({ state: 'detached' });
-    await ui.viewer.waitForState('running');
-    await page.keyboard.press('Escape');
-    await assertStopped();
   });
 
   it('leaves what it is about readable, in windows of every width', async () => {
     const { page } = ui.viewer;
     await ui.viewer.run();
-    await page.keyboard.press('Escape');
+    await page.keyboard.press('Space');
     await assertStopped();
     const size = page.viewportSize();
     for (const width of [1600, 1400, 1366, 1280, 390]) {
@@ -84,7 +77,7 @@ describe('STOP', () => {
   it('works while the robot is paused', async () => {
     await ui.viewer.run();
     await ui.viewer.pause();
-    await ui.viewer.page.keyboard.press('Escape');
+    await ui.viewer.page.keyboard.press('Space');
     await assertStopped();
   });
 
@@ -93,7 +86,7 @@ describe('STOP', () => {
     assert.match((await ui.viewer.button(/^STOP/).getAttribute('title')) ?? '', /does not replace a power switch/);
   });
 
-  it('reaches a robot whose holder hangs: from another viewer', async () => {
+  it('reaches a robot whose holder hangs: from another viewer, also by Esc', async () => {
     const other = await ui.look();
     await ui.viewer.run();
     const goOn = await ui.viewer.hang();
@@ -108,7 +101,7 @@ describe('STOP', () => {
   it('is kept while the page hangs, and takes effect when it goes on', async () => {
     await ui.viewer.run();
     const goOn = await ui.viewer.hang();
-    const pressed = ui.viewer.page.keyboard.press('Escape');
+    const pressed = ui.viewer.page.keyboard.press('Space');
     await goOn();
     await pressed;
     await assertStopped();
@@ -120,8 +113,95 @@ describe('STOP', () => {
     await ui.viewer.page.reload();
     await ui.viewer.takeControl();
     await ui.viewer.run();
-    await ui.viewer.page.keyboard.press('Escape');
+    await ui.viewer.page.keyboard.press('Space');
     await ui.viewer.waitForState('STOPPED');
     assert.match(await ui.viewer.stopReport(/stopped/), /^stopped in \d+ ms$/);
+  });
+});
+
+describe('Esc in a simulation', () => {
+  const ui = useUi(() => UiProgram.start(), { takesControl: true });
+  const press = () => ui.viewer.page.keyboard.press('Escape');
+
+  it('pauses, in a text field too, and does no more while the simulation is paused', async () => {
+    await ui.viewer.run();
+    await ui.viewer.parameter('1.amplitude').getByRole('textbox').focus();
+    await press();
+    await ui.viewer.waitForState('paused');
+    await press();
+    await ui.viewer.page.keyboard.press('Shift+R');
+    await ui.viewer.waitForState('paused');
+    assert.equal(await ui.viewer.page.getByTestId('stop-report').textContent(), '', 'it was no STOP');
+  });
+
+  it('changes nothing after STOP', async () => {
+    await ui.viewer.button(/^STOP/).click();
+    await ui.viewer.waitForState('STOPPED');
+    await press();
+    const field = ui.viewer.parameter('1.amplitude').getByRole('textbox');
+    await field.fill('33');
+    await field.press('Enter');
+    // The program works in turn: what Esc had asked for would have its effect before.
+    assert.ok(await waitUntil(async () => (await ui.viewer.valuesOf('1.amplitude')).every(({ wanted }) => wanted === '33')));
+    await ui.viewer.waitForState('STOPPED');
+    await ui.viewer.button('Reset all').click();
+  });
+
+  it('closes an open window first, and pauses when it is pressed again', async () => {
+    const { page } = ui.viewer;
+    await ui.viewer.run();
+    for (const key of ['?', 'Control+k']) {
+      await page.keyboard.press(key);
+      await page.getByRole('dialog').waitFor();
+      await press();
+      await page.getByRole('dialog').waitFor({ state: 'detached' });
+      await ui.viewer.waitForState('running');
+    }
+    await press();
+    await ui.viewer.waitForState('paused');
+  });
+
+  it('gives up the value that is typed into a cell, and ends Move', async () => {
+    const { page } = ui.viewer;
+    await ui.viewer.run();
+    const cell = ui.viewer.parameter('1.amplitude').locator('[data-cell="1"]');
+    await cell.focus();
+    await page.keyboard.type('7');
+    const field = ui.viewer.parameter('1.amplitude').locator('.cell-input');
+    await field.waitFor();
+    await press();
+    await field.waitFor({ state: 'detached' });
+    await ui.viewer.waitForState('running');
+    assert.equal((await ui.viewer.valuesOf('1.amplitude'))[1]?.wanted, '40');
+    await ui.viewer.pause();
+    await ui.viewer.button('Move').click();
+    const form = page.getByRole('form', { name: 'Place of the head' });
+    await form.waitFor();
+    await press();
+    await form.waitFor({ state: 'detached' });
+  });
+
+  it('closes the changes to save on the page Make, and pauses from there', async () => {
+    const { page } = ui.viewer;
+    await ui.viewer.run();
+    await page.keyboard.press('3');
+    await page.getByTestId('map-top').waitFor();
+    await page.keyboard.press('Control+s');
+    await page.getByTestId('save-panel').waitFor();
+    await press();
+    await page.getByTestId('save-panel').waitFor({ state: 'detached' });
+    await ui.viewer.waitForState('running');
+    await press();
+    await ui.viewer.waitForState('paused');
+    await page.keyboard.press('1');
+  });
+
+  it('is STOP for those who look on', async () => {
+    const other = await ui.look();
+    await ui.viewer.run();
+    await other.waitForState('running');
+    await other.button('Ask for control').waitFor();
+    await other.page.keyboard.press('Escape');
+    await other.waitForState('STOPPED');
   });
 });

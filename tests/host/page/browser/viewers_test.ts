@@ -73,7 +73,7 @@ describe('viewers', () => {
     await second.takeControl();
   });
 
-  it('look on after a reload, while the robot runs on', async () => {
+  it('look on after a reload beside another viewer, while the robot runs on', async () => {
     await first.run();
     await first.waitForTick(50);
     const tick = await first.tick();
@@ -95,6 +95,27 @@ describe('viewers', () => {
     await page.reload();
     await page.getByTestId('connection-band').filter({ hasText: 'does not accept this page' }).waitFor();
     await page.close();
+  });
+});
+
+describe('a viewer alone', () => {
+  const ui = useUi(start, { isPerTest: true });
+
+  it('has control from the start, and again after a reload', async () => {
+    await ui.viewer.button('Release').waitFor();
+    await ui.viewer.run();
+    await ui.viewer.page.reload();
+    await ui.viewer.button('Release').waitFor();
+    await ui.viewer.pause();
+  });
+
+  it('does not get control because the other viewer has left', async () => {
+    const second = await ui.look();
+    await second.button('Ask for control').waitFor();
+    await ui.viewer.page.goto('about:blank');
+    await second.page.getByTestId('control').filter({ hasText: 'Nobody has control' }).waitFor();
+    await second.button('Take control').click();
+    await second.button('Release').waitFor();
   });
 });
 

@@ -92,7 +92,7 @@ async function stopDelays(viewer: Viewer, program: UiProgram): Promise<Delays> {
   const onlooker = new Onlooker(await RawViewer.open(program.address), isStopped);
   for (let i = 0; i < stops; i += 1) {
     await sleep(100 + (i % 10));
-    await viewer.page.keyboard.press('Escape');
+    await viewer.page.keyboard.press('Space');
     await onlooker.waitFor(i + 1);
     await waitForEffect(viewer, 'stops', i + 1);
     await viewer.waitForState('STOPPED');
@@ -135,14 +135,14 @@ export const stopToStopped: Measurement = async (bench) => {
         name: `STOP to all stopped, ${joints} joints`,
         unit: 'ms',
         wanted: { p99: 25 },
-        conditions: '3D on; from the key Esc until another program has the news that all joints have stopped',
+        conditions: '3D on; from the key Space until another program has the news that all joints have stopped',
         samples: robot,
       },
       {
         name: `STOP to the answer in the page, ${joints} joints`,
         unit: 'ms',
         wanted: {},
-        conditions: '3D on; from the key Esc to the answer in the page that all joints have stopped',
+        conditions: '3D on; from the key Space to the answer in the page that all joints have stopped',
         samples: screen,
       },
     );

@@ -10,12 +10,12 @@ export interface Probe {
   frame_bytes: number; // of the last message with one row
   // Milliseconds from a key on a slider to the arrival of the first row with another set-point.
   changes: number[];
-  // When a key was pressed on a slider, and Esc: milliseconds since 1970.
+  // When a key was pressed on a slider, and Space: milliseconds since 1970.
   slider_keys: number[];
   stop_keys: number[];
   quiet_rows: number; // with the same set-points as the row before
   watches_setpoints: boolean;
-  // Milliseconds from Esc to the answer that all joints have stopped.
+  // Milliseconds from Space to the answer that all joints have stopped.
   stops: number[];
   long_tasks: number[]; // milliseconds
   usable: number | null; // milliseconds since the navigation began
@@ -55,7 +55,7 @@ export function installProbe(): void {
     'keydown',
     (event) => {
       const time = performance.timeOrigin + event.timeStamp;
-      if (event.key === 'Escape') {
+      if (event.key === ' ') {
         stopTime = event.timeStamp;
         probe.stop_keys.push(time);
       }

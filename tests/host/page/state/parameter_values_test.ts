@@ -8,6 +8,7 @@ import {
   roundStep,
   setWord,
   sliderStep,
+  splitHelp,
   summarise,
 } from '../../../../host/page/source/state/parameter_values.js';
 import type { Parameter } from '../../../../host/page/source/wire/messages.js';
@@ -104,5 +105,16 @@ describe('a summary of a parameter', () => {
 
   it('of an untouched one has nothing changed', () => {
     assert.deepEqual(summarise(amplitude), { isUniform: true, isChanged: false, changed: [false, false, false], confirmed: 3, tick: 0 });
+  });
+});
+
+describe('the help of a parameter', () => {
+  it('is an everyday sentence, then details', () => {
+    assert.deepEqual(splitHelp('How fast it is. Rate a; 95 % takes 9.49/a. No more.'), {
+      sentence: 'How fast it is.',
+      details: 'Rate a; 95 % takes 9.49/a. No more.',
+    });
+    assert.deepEqual(splitHelp('How far the joint swings.'), { sentence: 'How far the joint swings.', details: '' });
+    assert.deepEqual(splitHelp('share of 0.5 of the wave'), { sentence: 'share of 0.5 of the wave', details: '' });
   });
 });

@@ -47,11 +47,12 @@ function setUp() {
 }
 
 describe('a connection', () => {
-  it('says hello with protocol, token and name', () => {
+  it('says hello with protocol, token and name, and asks for control', () => {
     const { connection, last } = setUp();
     connection.open();
     last().events.opened();
-    assert.deepEqual(last().sent, [{ type: 'hello', protocol: 1, token: 'secret', name: 'Firefox on desk-3' }]);
+    const hello = { type: 'hello', protocol: 1, token: 'secret', name: 'Firefox on desk-3', wants_control: true };
+    assert.deepEqual(last().sent, [hello]);
   });
 
   it('is open after the welcome', () => {

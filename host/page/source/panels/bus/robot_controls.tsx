@@ -77,7 +77,7 @@ export function RobotControls({ app }: { app: Stores<'newestTick' | 'operations'
       </CommandButton>
       <TickCounter app={app} />
       <span class="hint" data-testid="robot-hint">
-        {state.isConnected.value && !state.isHolder.value
+        {state.isLookingOn.value
           ? 'You look on. Take control to drive the robot.'
           : `${obstacle ?? hints[session.state]}${isOff && session.stopped_by ? ` Stopped by: ${stoppedBy}.` : ''}`}
       </span>

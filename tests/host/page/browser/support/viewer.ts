@@ -93,6 +93,15 @@ export class Viewer {
     await release.waitFor();
   }
 
+  // Gives control up if this viewer has it. The only viewer of a robot on this computer has it from the start.
+  async lookOn(): Promise<void> {
+    const take = this.button(/^(Take|Ask for) control$/);
+    const release = this.button('Release');
+    await take.or(release).waitFor();
+    if (await release.isVisible()) await release.click();
+    await take.waitFor();
+  }
+
   async run(): Promise<void> {
     await this.button('Run').click();
     await this.waitForState('running');

@@ -50,6 +50,12 @@ json object_json(const sim::WorldObject& object) {
 
 json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(); }
 
+/// An angle that came through radians, in degrees.
+double rounded(double degrees) {
+  constexpr double per_degree = 1e9;
+  return std::round(degrees * per_degree) / per_degree;
+}
+
 json sensor_json(const sim::SensorContents& contents) {
   constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
   const sim::AttachedSensor& sensor = contents.sensor;
@@ -71,12 +77,6 @@ json sensor_json(const sim::SensorContents& contents) {
     document["scantime"] = scan.period_us * 1e-6;
   }
   return document;
-}
-
-/// An angle that came through radians, in degrees.
-double rounded(double degrees) {
-  constexpr double per_degree = 1e9;
-  return std::round(degrees * per_degree) / per_degree;
 }
 
 std::string value_text(const sim::Scenario& scenario, unsigned slot, unsigned joint, unsigned number, Unit unit) {

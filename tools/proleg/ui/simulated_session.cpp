@@ -401,7 +401,10 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   for (const std::string& word : live_->repeating_moves()) {
     text += " --move " + word;
   }
-  return {{"text", text + " --seconds " + exact_text(live_->simulation().time_s())}};
+  const sim::Simulation& simulation = live_->simulation();
+  return {{"text", text + " --seconds " + exact_text(simulation.time_s())},
+          {"setpoint_hash", simulation.setpoint_hash().hex()},
+          {"servo_hash", simulation.servo_hash().hex()}};
 }
 
 void SimulatedSession::tick() {

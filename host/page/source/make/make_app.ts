@@ -63,8 +63,8 @@ export class MakeApp {
     );
     page.makeActions.value = this.actions;
     addFront({
-      isOpen: () => page.shownPage.peek() === 'make' && this.isSaving.peek(),
-      close: () => (this.isSaving.value = false),
+      isOpen: () => page.shownPage.peek() === 'make' && this.panel.peek() !== 'none',
+      close: () => (this.panel.value = 'none'),
     });
     // Other parts of the program may have written files meanwhile: Apply to file.
     effect(() => {

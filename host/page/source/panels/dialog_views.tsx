@@ -112,18 +112,20 @@ export function Palette({ actions }: { actions: ActionList }) {
   );
 }
 
-// `value`: the result of `command_line`; null if it was refused.
-function textOf(value: unknown): string {
-  const text = (value as { text?: unknown } | null)?.text;
-  return typeof text === 'string' ? text : 'The program gave no command.';
+// The result of `command_line`; without a text if it was refused.
+interface Command {
+  text?: string;
+  setpoint_hash?: string;
+  servo_hash?: string;
 }
 
 function CommandLine({ app }: { app: Stores<'operations'> }) {
-  const [command, setCommand] = useState<string | null>(null);
+  const [result, setResult] = useState<Command | null>(null);
   const [isCopied, setCopied] = useState(false);
   useEffect(() => {
-    app.operations.tell('command_line', {}).then((value) => setCommand(textOf(value)));
+    app.operations.tell('command_line', {}).then((value) => setResult((value ?? {}) as Command));
   }, []);
+  const command = result === null ? null : (result.text ?? 'The program gave no command.');
   const copy = async () => {
     await navigator.clipboard.writeText(command ?? '');
     setCopied(true);
@@ -133,6 +135,12 @@ function CommandLine({ app }: { app: Stores<'operations'> }) {
       <pre class="command" tabIndex={0} data-testid="command">
         {command ?? 'Asking the program …'}
       </pre>
+      {result?.setpoint_hash !== undefined && (
+        <p class="hint">
+          It prints what this run has had until now: set-point hash <code data-testid="setpoint-hash">{result.setpoint_hash}</code>, servo hash{' '}
+          <code data-testid="servo-hash">{result.servo_hash}</code>.
+        </p>
+      )}
       <button type="button" class="primary" disabled={!command} onClick={() => void copy()}>
         {copyIcon} {isCopied ? 'Copied' : 'Copy'}
       </button>

@@ -106,6 +106,7 @@ describe('the page Make', () => {
   });
 
   it('changes how the scenario is run, and says what cannot be', async () => {
+    await page().getByRole('tab', { name: 'Run' }).click();
     const run = page().getByRole('region', { name: 'Run' });
     const tick = run.getByRole('textbox', { name: 'tick in ms' });
     await tick.fill('7,3');
@@ -117,6 +118,7 @@ describe('the page Make', () => {
     await page().getByTestId('map-top').focus();
     await page().keyboard.press('Control+z');
     assert.ok(await waitUntil(async () => (await tick.inputValue()) === '10'));
+    await page().getByRole('tab', { name: 'World' }).click();
   });
 
   it('simulates the draft on the page Live before it is saved', async () => {

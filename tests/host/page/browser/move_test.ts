@@ -136,11 +136,11 @@ describe('moving the robot', () => {
     await form().getByRole('button', { name: 'Put there' }).click();
     await waitForHead([0.4, -0.3, 0.1]);
     await ui.viewer.page.getByTestId('head').getByText('x 0.400 y -0.300 z 0.100 m').waitFor();
-    await type({ x: '900', y: '0', z: '0', turn: '0' });
+    await type({ x: '1900', y: '0', z: '0', turn: '0' });
     await form().getByRole('button', { name: 'Put there' }).click();
     await ui.viewer.page.getByText(/found nothing below the robot/).first().waitFor();
     assert.deepEqual(await ui.viewer.head(), [0.4, -0.3, 0.1]);
-    assert.equal(await form().locator('[name="x"]').inputValue(), '900', 'the numbers can be corrected');
+    assert.equal(await form().locator('[name="x"]').inputValue(), '1900', 'the numbers can be corrected');
   });
 
   it('is recorded, and repeated by the command of the page', async () => {

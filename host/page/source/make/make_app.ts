@@ -26,6 +26,7 @@ export class MakeApp {
   readonly chosen = signal<number | null>(null);
   readonly drag = signal<Drag | null>(null);
   readonly isSaving = signal(false); // the changes of the files are shown
+  readonly isOpening = signal(false); // the list of scenarios is shown
   readonly actions: ActionList;
   readonly view: DraftView;
   readonly draft = computed(() => this.page.state.draft.value);
@@ -46,6 +47,7 @@ export class MakeApp {
     this.actions.add(
       { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
       { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
+      { id: 'draft_open', title: 'Open: show the scenarios', group: 'Make', keys: ['Ctrl+O'], isGlobal: true, run: () => void (this.isOpening.value = !this.isOpening.value) },
       { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => void (this.isSaving.value = !this.isSaving.value) },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
       { id: 'delete_object', title: 'Delete the chosen object', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: canChangeChosen, run: () => void this.remove() },
@@ -64,6 +66,18 @@ export class MakeApp {
     if (!state.isConnected.value) return 'No connection to the program.';
     if (this.draft.value === null) return 'There is no scenario.';
     return state.isHolder.value ? null : 'Take control first (C).';
+  }
+
+  // The reason why nothing can be opened; null: it can.
+  openObstacle(): string | null {
+    const { state } = this.page;
+    if (!state.isConnected.value) return 'No connection to the program.';
+    return state.isHolder.value ? null : 'Take control first (C).';
+  }
+
+  // Opens a scenario of the gallery.
+  async open(file: string): Promise<void> {
+    if ((await this.page.operations.tell('draft.open', { file })) !== null) this.isOpening.value = false;
   }
 
   // Requests a change of the world. Returns the reason if it was refused, else null.

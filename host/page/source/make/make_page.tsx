@@ -3,6 +3,7 @@ import { ScenePanel } from '../panels/scene_panel.js';
 import type { ForesightDocument, WorldObject } from '../wire/messages.js';
 import { LibraryPanel } from './library_panel.js';
 import { MakeApp, type MakeStores } from './make_app.js';
+import { OpenPanel } from './open_panel.js';
 import { ObjectForm, StartForm } from './object_form.js';
 import { RunForm } from './run_form.js';
 import { SavePanel } from './save_panel.js';
@@ -24,6 +25,14 @@ function Bar({ app }: { app: MakeApp }) {
       <span class="hint" data-testid="draft-state">
         {count === 0 ? 'saved' : count === 1 ? '1 file changed' : `${count} files changed`}
       </span>
+      <button
+        type="button"
+        aria-pressed={app.isOpening.value}
+        title="Shows the scenarios of the project, and those that ship with Proleg (Ctrl + O)"
+        onClick={() => (app.isOpening.value = !app.isOpening.value)}
+      >
+        Open …
+      </button>
       <button
         type="button"
         disabled={obstacle !== null || draft?.undo === null}
@@ -153,14 +162,18 @@ export function MakePage({ app: page }: { app: MakeStores }) {
   const draft = app.draft.value;
   if (draft === null) {
     return (
-      <p class="wait">
-        There is no scenario to change. Start <code>proleg ui</code> with one, or without a file.
-      </p>
+      <div class="make">
+        <div class="make-bar">
+          <h1 class="name">No scenario is open</h1>
+        </div>
+        <OpenPanel app={app} />
+      </div>
     );
   }
   return (
     <div class="make">
       <Bar app={app} />
+      {app.isOpening.value && <OpenPanel app={app} />}
       {app.isSaving.value && <SavePanel app={app} />}
       <Unsaved app={app} />
       {draft.warnings.map((warning) => (

@@ -11,6 +11,7 @@
 namespace proleg::tools {
 namespace {
 
+constexpr std::size_t mesh_ranges = 32;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The part of a line, from + t * direction, that is in a solid.
@@ -131,13 +132,27 @@ void add_needed(std::span<const SectionPoint> points, double tolerance, std::vec
 
 }  // namespace
 
+std::size_t GroundHeights::Solid::range_of(double x) const {
+  const double size = bounds.highest.x() - bounds.lowest.x();
+  const double share = size > 0.0 ? (x - bounds.lowest.x()) / size : 0.0;
+  return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (mesh_ranges - 1));
+}
+
 GroundHeights::GroundHeights(const sim::EnvironmentModel& environment) {
   for (const sim::StaticObject& object : environment.objects) {
     for (const sim::Geometry& geometry : object.geometries) {
-      Solid solid{&geometry, object.pose * geometry.pose, sim::bounds_of(geometry, object.pose), {}};
+      Solid solid{&geometry, object.pose * geometry.pose, sim::bounds_of(geometry, object.pose), {}, {}};
       if (geometry.mesh) {
         for (const Eigen::Vector3d& vertex : geometry.mesh->vertices) {
           solid.vertices.push_back(solid.pose * vertex);
+        }
+        solid.triangles.resize(mesh_ranges);
+        for (std::size_t number = 0; number < geometry.mesh->triangles.size(); ++number) {
+          const auto& [a, b, c] = geometry.mesh->triangles[number];
+          const auto [low, high] = std::minmax({solid.vertices[a].x(), solid.vertices[b].x(), solid.vertices[c].x()});
+          for (std::size_t range = solid.range_of(low); range <= solid.range_of(high); ++range) {
+            solid.triangles[range].push_back(number);
+          }
         }
       }
       solids_.push_back(std::move(solid));
@@ -161,7 +176,8 @@ std::optional<double> GroundHeights::at(const Eigen::Vector2d& place) const {
       add(top_of(*solid.geometry, solid.pose, above));
       continue;
     }
-    for (const auto& [a, b, c] : solid.geometry->mesh->triangles) {
+    for (const std::size_t number : solid.triangles[solid.range_of(place.x())]) {
+      const auto& [a, b, c] = solid.geometry->mesh->triangles[number];
       add(height_of({solid.vertices[a], solid.vertices[b], solid.vertices[c]}, place));
     }
   }

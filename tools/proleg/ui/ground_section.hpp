@@ -2,6 +2,7 @@
 
 // The ground as a picture shows it: heights of the static world, and sections through it.
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,10 @@ class GroundHeights {
     sim::Pose pose;  ///< in the world
     sim::Bounds bounds;
     std::vector<Eigen::Vector3d> vertices;  ///< of a mesh, in the world
+    /// Numbers of the triangles of a mesh in each of some equal ranges of x.
+    std::vector<std::vector<std::size_t>> triangles;
+
+    [[nodiscard]] std::size_t range_of(double x) const;
   };
   std::vector<Solid> solids_;
 };

@@ -304,6 +304,14 @@ class Picture {
       all.include(camera_.of(on_ground(point)));
     }
     include_what_is_ahead(robot.across, all.across);
+    for (const sim::Pose& pose : preview_.objects) {
+      const Vector2d place = camera_.of(pose.position);
+      Range near = robot.across;
+      near.grow(0.6 * length_of(start_));
+      if (near.has(place.x())) {
+        all.include(place);
+      }
+    }
     // Of a long way only the end is shown, or the robot would be too small.
     const double most = is_from_above_ ? 1.4 : 1.8;
     size_ = std::clamp(all.needed_width(), robot.needed_width(), most * robot.needed_width());
@@ -338,6 +346,11 @@ class Picture {
     std::ranges::for_each(preview_.path, include);
     z.include(floor_);
     z.grow(thickness_ / 2.0);
+    for (const sim::Pose& pose : preview_.objects) {
+      if (std::abs(camera_.away.dot(pose.position) - aside_.middle()) < 0.25 * size_) {
+        include(pose.position);
+      }
+    }
     aside_.grow(thickness_ / 2.0 + 0.08 * size_);
     Range up;
     up.include(camera_.up.dot(camera_.point(0.0, aside_.low, floor_)));

@@ -1,22 +1,20 @@
 #include "tools/proleg/ui/scenario_picture.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "sim/record/outline.hpp"
 #include "sim/robot/bounds.hpp"
 #include "tools/proleg/ui/ground_section.hpp"
+#include "tools/proleg/ui/solid_sides.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -36,7 +34,6 @@ constexpr std::size_t most_path_points = 40;
 constexpr std::size_t most_links_with_sides = 12;  // longer robots are drawn with less detail
 constexpr std::size_t most_links = 30;             // still longer ones as a thick line
 constexpr std::size_t most_small_solids = 24;      // beside the largest one of each link
-constexpr std::size_t most_corners = 8;            // of an outline
 constexpr double light_steps = 4.0;
 
 /// A range of a coordinate.
@@ -54,27 +51,6 @@ struct Range {
   [[nodiscard]] double size() const { return high - low; }
   [[nodiscard]] double middle() const { return (low + high) / 2.0; }
   [[nodiscard]] bool has(double value) const { return value >= low && value <= high; }
-};
-
-/// Looks at the world from above its side, without perspective.
-struct Camera {
-  Vector3d right;   ///< level
-  Vector3d away;    ///< level
-  Vector3d up;      ///< of the picture
-  Vector3d toward;  ///< to the eye
-
-  Camera(double azimuth, double elevation)
-      : right(std::cos(azimuth), std::sin(azimuth), 0.0),
-        away(-std::sin(azimuth), std::cos(azimuth), 0.0),
-        up(std::cos(elevation) * Vector3d::UnitZ() + std::sin(elevation) * away),
-        toward(std::sin(elevation) * Vector3d::UnitZ() - std::cos(elevation) * away) {}
-
-  [[nodiscard]] sim::View view() const { return {right, up}; }
-  [[nodiscard]] Vector2d of(const Vector3d& point) const { return {right.dot(point), up.dot(point)}; }
-  /// A point of the world from its places along right and away, and its height.
-  [[nodiscard]] Vector3d point(double along, double aside, double z) const {
-    return along * right + aside * away + z * Vector3d::UnitZ();
-  }
 };
 
 /// A part of what the camera sees, in m.
@@ -132,69 +108,6 @@ double length_of(std::span<const Vector3d> line) {
 
 Vector3d middle_of(std::span<const Vector3d> points) {
   return std::accumulate(points.begin(), points.end(), Vector3d(Vector3d::Zero())) / static_cast<double>(points.size());
-}
-
-/// A side of a solid that is seen.
-struct Side {
-  std::vector<Vector2d> corners;
-  double light = 0.5;  ///< 0 to 1
-};
-
-double area(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  return std::abs((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()));
-}
-
-/// Leaves out the corners that change the outline least (Visvalingam and Whyatt 1993).
-void thin(std::vector<Vector2d>& corners) {
-  while (corners.size() > most_corners) {
-    std::size_t least = 0;
-    double smallest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const double size =
-          area(corners[(i + corners.size() - 1) % corners.size()], corners[i], corners[(i + 1) % corners.size()]);
-      if (size < smallest) {
-        smallest = size;
-        least = i;
-      }
-    }
-    corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(least));
-  }
-}
-
-/// The sides of a box that are seen; of any other solid, and of any if is_simple, its outline.
-std::vector<Side> sides_of(const sim::Geometry& geometry, const sim::Pose& link, const Camera& camera, bool is_simple) {
-  std::vector<Side> sides;
-  if (geometry.shape != sim::Shape::box || is_simple) {
-    Side side;
-    for (const sim::Point& point : sim::outline_of(geometry, link, camera.view())) {
-      side.corners.emplace_back(point.x, point.y);
-    }
-    thin(side.corners);
-    sides.push_back(std::move(side));
-    return sides;
-  }
-  const sim::Pose pose = link * geometry.pose;
-  const Vector3d sun = (Vector3d::UnitZ() - 0.35 * camera.away - 0.25 * camera.right).normalized();
-  for (const int axis : {0, 1, 2}) {
-    for (const double sign : {-1.0, 1.0}) {
-      const Vector3d normal = pose.orientation * (sign * Vector3d::Unit(axis));
-      constexpr double edge_on = 0.02;
-      if (normal.dot(camera.toward) < edge_on) {
-        continue;
-      }
-      Side side;
-      side.light = std::clamp((1.0 + normal.dot(sun)) / 2.0, 0.0, 1.0);
-      constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-      for (const auto& [one, other] : signs) {
-        Vector3d corner = sign * Vector3d::Unit(axis) * geometry.extents[axis];
-        corner[(axis + 1) % 3] = one * geometry.extents[(axis + 1) % 3];
-        corner[(axis + 2) % 3] = other * geometry.extents[(axis + 2) % 3];
-        side.corners.push_back(camera.of(pose * corner));
-      }
-      sides.push_back(std::move(side));
-    }
-  }
-  return sides;
 }
 
 /// The step of the lines on the ground, in m: 1, 2 or 5 times a power of ten.

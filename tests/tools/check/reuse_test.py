@@ -7,6 +7,7 @@ import importlib.machinery
 import importlib.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -82,6 +83,15 @@ class TestResults(Folder):
         self.expect_reuse()
         self.build()  # the same bytes again, in a new file
         self.expect_reuse()
+
+    def test_a_test_does_not_see_what_the_programs_of_the_user_keep(self):
+        (self.folder / "print").write_text("#!/bin/sh\necho state:$XDG_STATE_HOME\n")
+        (self.folder / "print").chmod(0o755)
+        finished = subprocess.run([TOOLS / "run_test", "--name", "state", "--results", "results", "--", "./print"], cwd=self.folder,
+                                  capture_output=True, text=True, check=True, env={**os.environ, "XDG_STATE_HOME": str(self.folder)})
+        state = Path(re.search("state:(.*)", finished.stdout)[1])
+        self.assertTrue(state.is_absolute() and state != self.folder)
+        self.assertFalse(state.exists(), "it is removed at the end")
 
     def test_a_changed_golden_table_is_tested(self):
         self.expect_new_run()

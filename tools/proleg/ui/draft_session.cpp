@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -42,18 +41,6 @@ DraftOperation operation_of(const host::OperationRequest& operation, const sim::
                     : operation.name.starts_with(draft_robot_operations) ? robot_operation
                                                                          : behaviour_operation;
   return read == nullptr ? run_operation(operation.arguments, draft) : read(operation.name, operation.arguments, draft);
-}
-
-/// Throws InputError for a file that is no scenario of the folder and none that ships with Proleg.
-void require_scenario_in(const std::string& file, const std::filesystem::path& folder) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(file, error);
-  const std::filesystem::path top = error ? std::filesystem::path() : std::filesystem::canonical(folder, error);
-  const bool is_inside = !error && std::ranges::mismatch(top, real).in1 == top.end();
-  if (!file.ends_with(".simulation.xml") || error || !(is_inside || is_shipped(real))) {
-    throw InputError("file", 0, in_quotes(one_line(file)),
-                     "a *.simulation.xml file in the folder of the project, or one that ships with Proleg");
-  }
 }
 
 json unsaved_json(const KeptChanges& kept) {
@@ -250,14 +237,24 @@ json DraftSession::make_new(const json& arguments) {
 
 json DraftSession::open(const json& arguments) {
   const std::string file = text(arguments, "file");
-  require_scenario_in(file, options_.folder);
+  if (!options_.may_open || !options_.may_open(file)) {
+    throw InputError("file", 0, in_quotes(one_line(shortened(file))),
+                     "a scenario of the project, or one that ships with Proleg: the list of gallery.look has them");
+  }
   begin(sim::read_scenario(file, disk_), true);
+  note_opened(file);
   return {{"revision", draft().revision()}};
 }
 
 /// Joints may have changed places: their positions mean something else.
 void DraftSession::note_robot(const std::string& before) {
   is_layout_new_ = is_layout_new_ || before != draft().text(draft().scenario().robot_file);
+}
+
+void DraftSession::note_opened(const std::string& file) const {
+  if (options_.note_opened) {
+    options_.note_opened(file);
+  }
 }
 
 json DraftSession::undo(const json& /*arguments*/) {
@@ -369,6 +366,7 @@ json DraftSession::save_as(const json& arguments) {
   journal_->discard();
   journal_.emplace(journal_path(file, true, options_.folder));
   is_new_ = true;
+  note_opened(file);
   output_.notice(host::NoticeLevel::info, "saved as " + one_line(file) + "; Save writes there from now on");
   return {{"file", one_line(file)}};
 }

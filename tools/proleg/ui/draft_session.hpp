@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -21,8 +22,12 @@
 namespace proleg::tools {
 
 struct DraftSessionOptions {
-  std::filesystem::path folder;  ///< where `draft.save_as` makes folders, and whose scenarios can be opened
+  std::filesystem::path folder;  ///< where `draft.save_as` makes folders
   bool has_file = false;         ///< the scenario is on disk
+  /// Whether `draft.open` may open a file; without it, none.
+  std::function<bool(const std::string& file)> may_open = {};
+  /// A scenario was opened, or saved under this name. May be empty.
+  std::function<void(const std::string& file)> note_opened = {};
 };
 
 class DraftSession final : private SessionThread {
@@ -54,6 +59,7 @@ class DraftSession final : private SessionThread {
   [[nodiscard]] sim::Draft& draft();
   nlohmann::json change_draft(const host::OperationRequest& operation);
   void note_robot(const std::string& before);
+  void note_opened(const std::string& file) const;
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
 
   using Handler = nlohmann::json (DraftSession::*)(const nlohmann::json&);

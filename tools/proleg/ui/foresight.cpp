@@ -1,18 +1,15 @@
 #include "tools/proleg/ui/foresight.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/measure/measure.hpp"
 #include "tools/proleg/common/run_measures.hpp"
+#include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -22,7 +19,6 @@ using nlohmann::json;
 
 constexpr double seconds_ahead = 30.0;
 constexpr double seconds_between_points = 0.1;
-constexpr int lower_priority = 10;
 
 json point_json(const sim::Pose& pose) {
   const auto rounded = [](double metres) { return std::round(metres * 1e4) / 1e4; };  // to 0.1 mm
@@ -52,8 +48,7 @@ void Foresight::look_at(std::shared_ptr<const sim::Scenario> scenario, std::uint
 }
 
 void Foresight::run() {
-  // Of this thread only (setpriority(2)): the live robot and the server come first.
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), lower_priority);
+  lower_thread_priority();
   while (true) {
     Task task;
     {
@@ -70,25 +65,11 @@ void Foresight::run() {
 
 void Foresight::compute(const Task& task) {
   sim::Scenario scenario = *task.scenario;
-  scenario.environment.engine = sim::PhysicsEngine::reduced;
-  json document{{"revision", task.revision},
-                {"engine", sim::name_of(scenario.environment.engine)},
-                {"seconds", 0.0},
-                {"path", json::array()},
-                {"distance", json()},
-                {"heading", json()},
-                {"failure", json()},
-                {"servo_problem", json()}};
+  json document{{"revision", task.revision}, {"seconds", 0.0},    {"path", json::array()},  {"distance", json()},
+                {"heading", json()},         {"failure", json()}, {"servo_problem", json()}};
   std::unique_ptr<sim::Simulation> simulation;
   try {
-    try {
-      simulation = std::make_unique<sim::Simulation>(scenario);
-    } catch (const InputError&) {  // what the reduced engine does not have
-      scenario.environment.engine = sim::PhysicsEngine::ode;
-      document["engine"] = sim::name_of(scenario.environment.engine);
-      simulation = std::make_unique<sim::Simulation>(scenario);
-    }
-    simulation->leave_out_hashes();
+    simulation = make_fast_simulation(scenario);
     const double tick_s = scenario.kernel.tick_period_us * 1e-6;
     const auto ticks = static_cast<std::uint32_t>(std::lround(seconds_ahead / tick_s));
     const auto ticks_of_point = std::max(1L, std::lround(seconds_between_points / tick_s));
@@ -106,6 +87,7 @@ void Foresight::compute(const Task& task) {
   if (is_outdated(task)) {
     return;
   }
+  document["engine"] = sim::name_of(scenario.environment.engine);
   if (simulation != nullptr && simulation->tick() > 0) {
     document["seconds"] = simulation->time_s();
     const sim::MeasureValues values = simulation->measures();

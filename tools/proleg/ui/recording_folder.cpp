@@ -10,15 +10,13 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/recording_file.hpp"
+#include "tools/proleg/ui/folder_walk.hpp"
 
 namespace proleg::tools {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::size_t max_visited = 20'000;
-constexpr int max_depth = 4;
 
 /// What has to be read from the file.
 json describe(const fs::path& path) {
@@ -39,21 +37,6 @@ json describe(const fs::path& path) {
             {"problem", nullptr}};
   } catch (const std::exception& error) {
     return {{"problem", one_line(error.what())}};
-  }
-}
-
-/// Calls use(path) for what is in a folder and in the folders in it. Links to folders are not followed.
-template <typename Use>
-void for_each_path(const fs::path& folder, const Use& use) {
-  std::error_code error;
-  std::size_t visited = 0;
-  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  for (; !error && entry != fs::recursive_directory_iterator() && visited < max_visited; entry.increment(error)) {
-    ++visited;
-    if (entry.depth() >= max_depth) {
-      entry.disable_recursion_pending();
-    }
-    use(entry->path());
   }
 }
 
@@ -90,7 +73,8 @@ bool RecordingFolder::is_inside(const fs::path& path) const {
 
 json RecordingFolder::list() {
   std::map<std::string, Entry> found;
-  for_each_path(folder_, [&](const fs::path& path) {
+  const auto enters_all = [](const fs::path& /*folder*/) { return true; };
+  const auto note = [&](const fs::path& path) {
     std::error_code ignored;
     if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, ignored)) ||
         !is_inside(fs::canonical(path, ignored)) || ignored) {
@@ -103,7 +87,8 @@ json RecordingFolder::list() {
       known.description = before->second.description;
       known.is_described = before->second.is_described && before->second.version == known.version;
     }
-  });
+  };
+  for_each_path(folder_, note, enters_all);
   std::vector<std::pair<std::int64_t, std::string>> newest;
   newest.reserve(found.size());
   for (const auto& [name, known] : found) {
@@ -167,18 +152,6 @@ std::filesystem::path new_recording(const std::filesystem::path& folder, const s
     throw InputError(path.string(), 0, "a file or a link that exists", "a new name");
   }
   return path;
-}
-
-std::vector<std::string> scenarios_in(const fs::path& folder) {
-  std::vector<std::string> scenarios;
-  for_each_path(folder, [&](const fs::path& path) {
-    std::error_code ignored;
-    if (path.string().ends_with(".simulation.xml") && fs::is_regular_file(path, ignored)) {
-      scenarios.push_back(path.string());
-    }
-  });
-  std::ranges::sort(scenarios);
-  return scenarios;
 }
 
 }  // namespace proleg::tools

@@ -50,8 +50,4 @@ class RecordingFolder {
 /// if there is such a file.
 [[nodiscard]] std::filesystem::path new_recording(const std::filesystem::path& folder, const std::string& name);
 
-/// The scenarios (*.simulation.xml) in a folder and the folders in it, by name; each with the name of the folder. Links
-/// to folders are not followed.
-[[nodiscard]] std::vector<std::string> scenarios_in(const std::filesystem::path& folder);
-
 }  // namespace proleg::tools

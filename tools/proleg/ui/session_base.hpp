@@ -106,15 +106,17 @@ inline constexpr std::string_view draft_operations = "draft.";
 inline constexpr std::string_view world_operations = "world.";
 inline constexpr std::string_view draft_robot_operations = "robot.";
 inline constexpr std::string_view behaviour_operations = "behaviour.";
+inline constexpr std::string_view gallery_operations = "gallery.";
 
-/// Four sessions behind one page: a robot, its remote control, recordings, and a draft. The name of an operation says
-/// which of them it is for; STOP and the holder of control go to the robot, then to the remote control.
+/// Five sessions behind one page: a robot, its remote control, recordings, a draft, and the list of what can be opened.
+/// The name of an operation says which of them it is for; STOP and the holder of control go to the robot, then to the
+/// remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.
-  SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& remote,
-                host::RobotSession& robot)
-      : recordings_(recordings), draft_(draft), remote_(remote), robot_(robot) {}
+  SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& gallery,
+                host::RobotSession& remote, host::RobotSession& robot)
+      : recordings_(recordings), draft_(draft), gallery_(gallery), remote_(remote), robot_(robot) {}
 
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
@@ -123,6 +125,7 @@ class SessionRouter final : public host::RobotSession {
  private:
   host::RobotSession& recordings_;
   host::RobotSession& draft_;
+  host::RobotSession& gallery_;
   host::RobotSession& remote_;
   host::RobotSession& robot_;
 };

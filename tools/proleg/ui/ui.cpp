@@ -30,9 +30,13 @@
 #include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
+#include "tools/proleg/ui/gallery.hpp"
 #include "tools/proleg/ui/page_access.hpp"
+#include "tools/proleg/ui/project_files.hpp"
+#include "tools/proleg/ui/recent_files.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
+#include "tools/proleg/ui/shipped_scenarios.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -151,15 +155,15 @@ RecordedSessionOptions recordings_of(const UiOptions& options) {
   return {options.recordings, std::nullopt, false};
 }
 
-/// A folder may hold what a person wants to see instead of recordings.
+/// The scenarios of a project, besides its recordings.
 void print_scenarios(const std::filesystem::path& folder) {
   constexpr std::size_t max_lines = 60;
-  const std::vector<std::string> scenarios = scenarios_in(folder);
+  const std::vector<std::string> scenarios = ProjectFiles::scenarios_in(folder);
   if (scenarios.empty()) {
     return;
   }
-  std::cout << "\nThe page shows the recordings of this folder. It has " << scenarios.size()
-            << (scenarios.size() == 1 ? " scenario" : " scenarios") << ", too; `proleg ui FILE` opens one:\n";
+  std::cout << "\nThe page Make opens the " << (scenarios.size() == 1 ? "scenario" : "scenarios")
+            << " of this folder:\n";
   for (std::size_t i = 0; i < scenarios.size() && i < max_lines; ++i) {
     std::cout << "  " << one_line(scenarios[i]) << '\n';
   }
@@ -167,6 +171,20 @@ void print_scenarios(const std::filesystem::path& folder) {
     std::cout << "  ... and " << scenarios.size() - max_lines << " more\n";
   }
   std::cout << std::flush;
+}
+
+/// Keeps what was opened for the list of another start. The program works without that list.
+void note_as_recent(const RecentFiles& recent, const std::filesystem::path& path) {
+  std::error_code error;
+  const bool is_project = std::filesystem::is_directory(path, error);
+  if (is_shipped(path) || (!is_project && !path.string().ends_with(scenario_extension))) {
+    return;
+  }
+  try {
+    recent.note(path);
+  } catch (const std::exception& problem) {
+    print_warning("proleg ui", std::string("the list of what was opened cannot be kept: ") + problem.what());
+  }
 }
 
 /// Options of a robot have no effect without one.
@@ -200,7 +218,8 @@ int serve(UiOptions& options) {
   server.certificate = std::move(certificate);
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
-        RecordedSession::free_operations(), DraftSession::free_operations(), RemoteSession::free_operations()}) {
+        RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
+        RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -212,15 +231,22 @@ int serve(UiOptions& options) {
   boost::asio::io_context context{1};
   SessionRequests recording_requests;
   SessionRequests draft_requests;
+  SessionRequests gallery_requests;
   SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
-  SessionRouter router(recording_requests, draft_requests, remote, requests);
+  SessionRouter router(recording_requests, draft_requests, gallery_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
+  const RecentFiles recent(recent_list_path());
+  const ProjectFiles project_files(recordings.folder, shipped_folder(), recent);
+  const Gallery gallery(project_files, gallery_requests, page);
   PresentDraft present_draft;
-  const DraftSession draft(run ? std::optional(run->scenario) : std::nullopt, {recordings.folder, has_file},
-                           draft_requests, present_draft, page);
+  const DraftSession draft(
+      run ? std::optional(run->scenario) : std::nullopt,
+      {recordings.folder, has_file, [&project_files](const std::string& file) { return project_files.has(file); },
+       [&recent](const std::string& file) { note_as_recent(recent, file); }},
+      draft_requests, present_draft, page);
   const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
@@ -245,6 +271,9 @@ int serve(UiOptions& options) {
   if (std::error_code error; has_file && std::filesystem::is_directory(options.scenario.file, error)) {
     print_scenarios(options.scenario.file);
   }
+  if (has_file) {
+    note_as_recent(recent, options.scenario.file);
+  }
   if (!options.no_browser && !address.open()) {
     std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
   }
@@ -267,11 +296,11 @@ int main(int argc, char** argv) {
       "proleg ui",
       "Serves a page on this computer that shows a simulated robot, drives it and changes its parameters while it "
       "moves, and opens it in the browser. With a recording or a folder it shows recordings, also those that still "
-      "grow. "
+      "grow; the page Make opens the scenarios of the folder. "
       "Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
   UiOptions options;
   command_line.add_option("FILE", options.scenario.file,
-                          "scenario, a *.simulation.xml file; or a recording, or a folder with recordings");
+                          "scenario, a *.simulation.xml file; or a recording, or the folder of a project");
   add_override_options(command_line, options.scenario);
   add_move_option(command_line, options.scenario);
   command_line

@@ -31,7 +31,7 @@ export const startOfRobot = -1;
 export class MakeApp {
   readonly chosen = signal<number | null>(null);
   readonly drag = signal<Drag | null>(null);
-  readonly panel = signal<'none' | 'new' | 'save'>('none'); // what is open below the bar
+  readonly panel = signal<'none' | 'new' | 'open' | 'save'>('none'); // what is open below the bar
   readonly part = signal<PartName>('world');
   readonly chosenJoints = signal<readonly number[]>([]); // kernel order
   readonly chosenModule = signal(0); // an actuation module
@@ -56,6 +56,7 @@ export class MakeApp {
       { id: 'draft_new', title: 'New: a robot, its gait and its world', group: 'Make', keys: ['N'], run: () => this.toggle('new') },
       { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
       { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
+      { id: 'draft_open', title: 'Open: show the scenarios', group: 'Make', keys: ['Ctrl+O'], isGlobal: true, run: () => this.toggle('open') },
       { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => this.toggle('save') },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
       { id: 'delete_object', title: 'Delete the chosen object, or joint', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: () => (this.part.value === 'robot' ? canChange() && this.chosenJoints.value.length === 1 : canChangeChosen()), run: () => void (this.part.peek() === 'robot' ? this.removeJoint() : this.remove()) },
@@ -73,7 +74,7 @@ export class MakeApp {
   }
 
   // Opens a panel below the bar, or closes it.
-  toggle(panel: 'new' | 'save'): void {
+  toggle(panel: 'new' | 'open' | 'save'): void {
     this.panel.value = this.panel.peek() === panel ? 'none' : panel;
   }
 
@@ -82,6 +83,21 @@ export class MakeApp {
     const { state } = this.page;
     if (!state.isConnected.value) return 'No connection to the program.';
     return state.isHolder.value ? null : 'Take control first (C).';
+  }
+
+  // Opens a scenario of the gallery.
+  async open(file: string): Promise<void> {
+    if ((await this.page.operations.tell('draft.open', { file })) !== null) {
+      this.forgetChoice();
+      this.panel.value = 'none';
+    }
+  }
+
+  // Another scenario has other parts.
+  private forgetChoice(): void {
+    this.chosen.value = null;
+    this.chosenJoints.value = [];
+    this.chosenModule.value = 0;
   }
 
   // Requests a change of a part. Returns the reason if it was refused, else null.
@@ -235,9 +251,7 @@ export class MakeApp {
   // Makes the draft a new scenario. Of several calls in a row the newest counts. answered: with the reason of a refusal,
   // or null.
   makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
-    this.chosen.value = null;
-    this.chosenJoints.value = [];
-    this.chosenModule.value = 0;
+    this.forgetChoice();
     this.send(() => this.page.operations.ask('draft.new', words).then(() => answered(null), (error: Error) => answered(error.message)));
   }
 

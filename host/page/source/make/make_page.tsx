@@ -5,6 +5,7 @@ import type { ForesightDocument } from '../wire/messages.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
 import { NewPanel } from './new_panel.js';
+import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';
 import { RunForm } from './run_form.js';
 import { SavePanel } from './save_panel.js';
@@ -29,6 +30,14 @@ function Bar({ app }: { app: MakeApp }) {
       </span>
       <button type="button" aria-pressed={app.panel.value === 'new'} title="A robot, its gait and its world in four steps (N)" onClick={() => app.toggle('new')}>
         New …
+      </button>
+      <button
+        type="button"
+        aria-pressed={app.panel.value === 'open'}
+        title="Shows the scenarios of the project, and those that ship with Proleg (Ctrl + O)"
+        onClick={() => app.toggle('open')}
+      >
+        Open …
       </button>
       <button
         type="button"
@@ -185,10 +194,11 @@ export function MakePage({ app: page }: { app: MakeStores }) {
     return (
       <div class="make">
         <div class="make-bar">
-          <h1 class="name">Make</h1>
-          <span class="hint">There is no scenario yet: make a new one.</span>
+          <h1 class="name">No scenario is open</h1>
+          <span class="hint">Make a new one, or open one.</span>
         </div>
         <NewPanel app={app} />
+        <OpenPanel app={app} />
       </div>
     );
   }
@@ -197,6 +207,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
       <Bar app={app} />
       {app.panel.value === 'save' && <SavePanel app={app} />}
       {app.panel.value === 'new' && <NewPanel app={app} />}
+      {app.panel.value === 'open' && <OpenPanel app={app} />}
       <Unsaved app={app} />
       {draft.warnings.map((warning) => (
         <div class="band info" role="status" key={warning}>

@@ -189,7 +189,7 @@ export function TopBar({ app }: { app: Stores<'operations' | 'shownPage' | 'stat
       <nav aria-label="Pages">
         {!isAlone && <PageButton app={app} page="live" title="Live" number={1} />}
         <PageButton app={app} page="recordings" title="Recordings" number={2} />
-        {app.state.draft.value !== null && <PageButton app={app} page="make" title="Make" number={3} />}
+        {app.state.hasMake.value && <PageButton app={app} page="make" title="Make" number={3} />}
       </nav>
       <RobotName state={app.state} />
       <Figures state={app.state} />

@@ -4,6 +4,7 @@ import type { ConnectionStatus } from '../wire/connection.js';
 import { Freshness } from './freshness.js';
 import type {
   BusDocument,
+  Documents,
   DraftDocument,
   ForesightDocument,
   AlgorithmDocument,
@@ -62,6 +63,8 @@ export class PageState {
   readonly parts = signal<PartsDocument | null>(null);
   readonly algorithms = signal<readonly AlgorithmDocument[]>([]);
   readonly foresight = signal<ForesightDocument | null>(null);
+  // What can be opened; null until somebody has looked.
+  readonly gallery = signal<Documents['gallery'] | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -81,6 +84,8 @@ export class PageState {
   });
   // Whether there are only recordings, and no robot until one of them is continued.
   readonly isAlone = computed(() => this.recordings.value?.alone === true && this.robot.value === null);
+  // Whether there is a scenario to change, or one can be opened.
+  readonly hasMake = computed(() => this.draft.value !== null || this.recordings.value?.alone === true);
   // Whether this viewer drives.
   readonly isHolder = computed(
     () => this.client.value !== null && this.control.value?.holder?.client === this.client.value,
@@ -161,6 +166,9 @@ export class PageState {
         case 'algorithms':
           this.algorithms.value = message.value;
           return;
+        case 'gallery':
+          this.gallery.value = { entries: [...reuse(this.gallery.peek()?.entries ?? [], message.value.entries)] };
+          break;
         case 'foresight':
           this.foresight.value = message.value;
           break;

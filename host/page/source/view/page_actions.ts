@@ -225,7 +225,7 @@ export function addActions(app: PageStores): void {
       title: 'Page Make',
       group: 'Page',
       keys: ['3'],
-      isShown: () => state.draft.value !== null,
+      isShown: () => state.hasMake.value,
       run: () => void (app.shownPage.value = 'make'),
     },
     {

@@ -461,7 +461,38 @@ export interface ForesightDocument {
   servo_problem: string | null;
 }
 
+// A picture of a scenario, 1000 wide and 500 high, y downwards. Lines are x, y, x, y, ...; a side of a solid begins with its
+// light, 0 to 4.
+export interface GalleryPicture {
+  view: 'side' | 'above';
+  step: number; // metres between two lines on the ground
+  thickness: number; // of the robot
+  ground: number[][]; // sections from the back to the front
+  lines: number[][]; // on the ground, across
+  objects: number[][]; // sides of what moves
+  path: number[]; // of the head, on the ground
+  ghosts: number[][]; // the robot earlier in the stride
+  shadow: number[];
+  body: number[]; // from the head to the tail
+  links: [number, ...number[][]][]; // 1: the head; then its sides; empty: the body is all that is drawn
+}
+
+// A scenario that can be opened.
+export interface GalleryEntry {
+  file: string;
+  folder: string; // the heading under which it stands
+  title: string;
+  text: string; // a sentence, or nothing
+  joints: number | null; // null until the file has been read
+  algorithms: string[];
+  distance: number | null; // metres in 10 s
+  is_shipped: boolean;
+  failure: string | null; // why it cannot be opened
+  picture: GalleryPicture | null;
+}
+
 export interface Documents {
+  gallery: { entries: GalleryEntry[] };
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
@@ -558,7 +589,8 @@ export interface NewScenario {
 
 export interface Operations {
   'draft.new': NewScenario;
-  'draft.open': { file: string };
+  'draft.open': { file: string }; // a file of `gallery`
+  'gallery.look': Record<string, never>;
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;
   'draft.run': { [Name in keyof RunDocument]: { name: Name; value: RunDocument[Name] } }[keyof RunDocument];

@@ -13,6 +13,7 @@
 #include "sim/scenario/reader.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 #include "viewers.hpp"
@@ -33,8 +34,10 @@ class DraftSessionTest : public ::testing::Test {
   void open(bool has_file = true) {
     session_.reset();
     requests_.emplace();
-    session_.emplace(sim::read_scenario(file_, disk_), DraftSessionOptions{folder_ / "", has_file}, *requests_,
-                     present_, viewers_);
+    session_.emplace(
+        sim::read_scenario(file_, disk_),
+        DraftSessionOptions{folder_ / "", has_file, [this](const std::string& file) { return project_.has(file); }},
+        *requests_, present_, viewers_);
   }
 
   Viewers::Answer ask(const std::string& name, json arguments = json::object()) {
@@ -64,6 +67,7 @@ class DraftSessionTest : public ::testing::Test {
   [[nodiscard]] std::string world_file() const { return folder_ / "mine/flat.environment.xml"; }
 
   TemporaryFolder folder_;
+  ProjectFiles project_{folder_ / "", source_path("/sim/scenarios"), RecentFiles(std::nullopt)};
   std::string file_;
   sim::DiskFiles disk_;
   Viewers viewers_;

@@ -125,16 +125,5 @@ TEST(NewRecording, HasANameThatAPersonSees) {
   }
 }
 
-TEST(ScenariosIn, AreAllInTheFolderAndBelow) {
-  const TemporaryFolder folder;
-  fs::create_directories(folder / "gaits");
-  for (const char* name : {"b.simulation.xml", "gaits/a.simulation.xml", "gaits/a.robot.xml", "run.proleg"}) {
-    std::ofstream(folder / name) << "x";
-  }
-  EXPECT_EQ(scenarios_in(folder.path()), (std::vector<std::string>{(folder / "b.simulation.xml").string(),
-                                                                   (folder / "gaits/a.simulation.xml").string()}));
-  EXPECT_TRUE(scenarios_in(folder / "nothing").empty());
-}
-
 }  // namespace
 }  // namespace proleg::tools

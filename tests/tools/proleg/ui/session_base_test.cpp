@@ -7,23 +7,26 @@
 namespace proleg::tools {
 namespace {
 
-TEST(SessionRouter, RobotRemoteControlRecordingsAndDraftGetTheirOwn) {
+TEST(SessionRouter, RobotRemoteControlRecordingsDraftAndGalleryGetTheirOwn) {
   SessionRequests recordings;
   SessionRequests draft;
+  SessionRequests gallery;
   SessionRequests remote;
   SessionRequests robot;
-  SessionRouter router(recordings, draft, remote, robot);
+  SessionRouter router(recordings, draft, gallery, remote, robot);
   router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
   router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
   router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
   router.operate({4, "draft.undo", nlohmann::json::object(), 1, "a test"});
   router.operate({5, "world.add", nlohmann::json::object(), 1, "a test"});
+  router.operate({6, "gallery.look", nlohmann::json::object(), 1, "a test"});
   router.holder_changed(true, false);
   EXPECT_EQ(recordings.take_operation()->request, 1U);
   EXPECT_EQ(robot.take_operation()->request, 2U);
   EXPECT_EQ(remote.take_operation()->request, 3U);
   EXPECT_EQ(draft.take_operation()->request, 4U);
   EXPECT_EQ(draft.take_operation()->request, 5U);
+  EXPECT_EQ(gallery.take_operation()->request, 6U);
   EXPECT_FALSE(draft.take_operation());
   EXPECT_FALSE(robot.take_operation());
   EXPECT_FALSE(remote.take_operation());

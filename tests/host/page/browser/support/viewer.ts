@@ -43,6 +43,13 @@ export class Viewer {
     return viewer;
   }
 
+  // Whatever the program shows.
+  static async openAny(browser: Browser, address: string): Promise<Viewer> {
+    const viewer = await Viewer.goTo(browser, address, {}, () => {});
+    await viewer.page.getByTestId('control').waitFor();
+    return viewer;
+  }
+
   private static async goTo(
     browser: Browser,
     address: string,

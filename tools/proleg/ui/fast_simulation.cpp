@@ -1,0 +1,28 @@
+#include "tools/proleg/ui/fast_simulation.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "shared/computer/errors/input_error.hpp"
+
+namespace proleg::tools {
+
+void lower_thread_priority() {
+  constexpr int lower_priority = 10;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), lower_priority);  // of this thread only (setpriority(2))
+}
+
+std::unique_ptr<sim::Simulation> make_fast_simulation(sim::Scenario& scenario) {
+  std::unique_ptr<sim::Simulation> simulation;
+  scenario.environment.engine = sim::PhysicsEngine::reduced;
+  try {
+    simulation = std::make_unique<sim::Simulation>(scenario);
+  } catch (const InputError&) {  // what the reduced engine does not have
+    scenario.environment.engine = sim::PhysicsEngine::ode;
+    simulation = std::make_unique<sim::Simulation>(scenario);
+  }
+  simulation->leave_out_hashes();
+  return simulation;
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,19 @@
+#pragma once
+
+// Simulations beside everything else: what a page shows before anybody asks for it.
+
+#include <memory>
+
+#include "sim/loop/simulation.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::tools {
+
+/// Gives the calling thread a low priority: the live robot and the server come first.
+void lower_thread_priority();
+
+/// A simulation without hashes with the fastest engine that has such a scenario: the reduced one, else ODE. Sets the
+/// engine of the scenario, which must outlive the simulation. Throws as Simulation.
+[[nodiscard]] std::unique_ptr<sim::Simulation> make_fast_simulation(sim::Scenario& scenario);
+
+}  // namespace proleg::tools

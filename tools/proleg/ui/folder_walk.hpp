@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <system_error>
+
+namespace proleg::tools {
+
+/// Folders below the first one that are entered, one in the other.
+inline constexpr int max_folder_depth = 4;
+/// Of a folder with more in it, some is not found: a home folder must not keep the program busy.
+inline constexpr std::size_t max_visited_paths = 20'000;
+
+/// Calls use(path) for what is in a folder and in the folders in it. Links to folders are not followed. enters(path):
+/// whether to look into this folder.
+template <typename Use, typename Enters>
+void for_each_path(const std::filesystem::path& folder, const Use& use, const Enters& enters) {
+  std::error_code error;
+  std::size_t visited = 0;
+  std::filesystem::recursive_directory_iterator entry(
+      folder, std::filesystem::directory_options::skip_permission_denied, error);
+  for (; !error && entry != std::filesystem::recursive_directory_iterator() && visited < max_visited_paths;
+       entry.increment(error)) {
+    ++visited;
+    if (entry.depth() >= max_folder_depth || !enters(entry->path())) {
+      entry.disable_recursion_pending();
+    }
+    use(entry->path());
+  }
+}
+
+}  // namespace proleg::tools

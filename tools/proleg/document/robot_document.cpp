@@ -163,19 +163,10 @@ json joints_of(JointMask group) {
 json parameter_json(const sim::Scenario& scenario, const ParameterTable& table, unsigned slot, unsigned index) {
   const Slot& used = scenario.kernel.slots[slot];
   const Parameter& parameter = used.algorithm->declaration().parameters[index];
-  const UsefulRange useful = useful_range(parameter);
-  json object{{"slot", slot + 1},
-              {"name", parameter.name},
-              {"unit", sim::shown_unit(parameter.unit)},
-              {"scale", value_of_step(parameter.unit)},
-              {"wraps", wraps(parameter.unit)},
-              {"minimum", parameter.minimum},
-              {"maximum", parameter.maximum},
-              {"default", parameter.default_value},
-              {"useful", {useful.lower, useful.upper}},
-              {"help", parameter.help},
-              {"internal", false},
-              {"joints", joints_of(used.group)}};
+  json object = parameter_declaration_json(parameter);
+  object["slot"] = slot + 1;
+  object["internal"] = false;
+  object["joints"] = joints_of(used.group);
   json& file = object["file"] = json::array();
   json& wanted = object["wanted"] = json::array();
   json& confirmed = object["confirmed"] = json::array();
@@ -284,6 +275,19 @@ json robot_document(const sim::Scenario& scenario, std::string_view kind) {
           {"rulers", rulers_json(scenario.environment.rulers)},
           {"meshes", meshes.take()},
           {"slots", std::move(slots)}};
+}
+
+json parameter_declaration_json(const Parameter& parameter) {
+  const UsefulRange useful = useful_range(parameter);
+  return {{"name", parameter.name},
+          {"unit", sim::shown_unit(parameter.unit)},
+          {"scale", value_of_step(parameter.unit)},
+          {"wraps", wraps(parameter.unit)},
+          {"minimum", parameter.minimum},
+          {"maximum", parameter.maximum},
+          {"default", parameter.default_value},
+          {"useful", {useful.lower, useful.upper}},
+          {"help", parameter.help}};
 }
 
 json parameters_document(const sim::Scenario& scenario, const ParameterTable& table) {

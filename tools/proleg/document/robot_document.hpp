@@ -74,6 +74,9 @@ class ParameterTable {
 /// The document `robot`. kind: "simulation", "bus" or "recording".
 [[nodiscard]] nlohmann::json robot_document(const sim::Scenario& scenario, std::string_view kind);
 
+/// A parameter as its declaration has it: name, unit, range, default, help. Raw values.
+[[nodiscard]] nlohmann::json parameter_declaration_json(const Parameter& parameter);
+
 /// The document `parameters`.
 [[nodiscard]] nlohmann::json parameters_document(const sim::Scenario& scenario, const ParameterTable& table);
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/authoring/library_items.hpp"
 #include "sim/authoring/robot_kinds.hpp"
@@ -79,10 +78,6 @@ json sensor_json(const sim::SensorContents& contents) {
   return document;
 }
 
-std::string value_text(const sim::Scenario& scenario, unsigned slot, unsigned joint, unsigned number, Unit unit) {
-  return std::string(format_decimal(start_value(scenario, slot, joint, number), unit).view());
-}
-
 }  // namespace
 
 json robot_json(const sim::RobotContents& robot, const sim::Scenario& scenario) {
@@ -132,10 +127,9 @@ json behaviour_json(const sim::Scenario& scenario) {
     }
     json values = json::object();
     for (unsigned number = 0; number < declaration.parameters.size(); ++number) {
-      const Parameter& parameter = declaration.parameters[number];
-      json& texts = values[std::string(parameter.name)] = json::array();
+      json& of_joints = values[std::string(declaration.parameters[number].name)] = json::array();
       for (const unsigned joint : used.group) {
-        texts.push_back(value_text(scenario, slot, joint, number, parameter.unit));
+        of_joints.push_back(start_value(scenario, slot, joint, number));
       }
     }
     modules.push_back({{"algorithm", declaration.name}, {"joints", std::move(joints)}, {"values", std::move(values)}});
@@ -170,15 +164,7 @@ json algorithms_json() {
     const Declaration& declaration = algorithm_at(i).declaration();
     json parameters = json::array();
     for (const Parameter& parameter : declaration.parameters) {
-      const auto text = [&parameter](std::int32_t raw) {
-        return std::string(format_decimal(raw, parameter.unit).view());
-      };
-      parameters.push_back({{"name", parameter.name},
-                            {"help", parameter.help},
-                            {"unit", sim::shown_unit(parameter.unit)},
-                            {"minimum", text(parameter.minimum)},
-                            {"maximum", text(parameter.maximum)},
-                            {"default", text(parameter.default_value)}});
+      parameters.push_back(parameter_declaration_json(parameter));
     }
     algorithms.push_back({{"name", declaration.name},
                           {"id", declaration.id},

@@ -10,6 +10,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/authoring/part_change.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/program_run.hpp"
@@ -201,10 +202,11 @@ void DraftSession::note_layout(const sim::WorldContents& world, const sim::Robot
 json DraftSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{
       {"draft.new", &DraftSession::make_new},    {"draft.open", &DraftSession::open},
-      {"draft.undo", &DraftSession::undo},       {"draft.redo", &DraftSession::redo},
-      {"draft.restore", &DraftSession::restore}, {"draft.discard", &DraftSession::discard},
-      {"draft.refresh", &DraftSession::refresh}, {"draft.diff", &DraftSession::diff},
-      {"draft.save", &DraftSession::save},       {"draft.save_as", &DraftSession::save_as}};
+      {"draft.take", &DraftSession::take},       {"draft.undo", &DraftSession::undo},
+      {"draft.redo", &DraftSession::redo},       {"draft.restore", &DraftSession::restore},
+      {"draft.discard", &DraftSession::discard}, {"draft.refresh", &DraftSession::refresh},
+      {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
+      {"draft.save_as", &DraftSession::save_as}};
   if (operation.name == run_operation_name || !operation.name.starts_with(draft_operations)) {
     return change_draft(operation);
   }
@@ -235,12 +237,17 @@ json DraftSession::make_new(const json& arguments) {
   return {{"revision", draft().revision()}};
 }
 
-json DraftSession::open(const json& arguments) {
-  const std::string file = text(arguments, "file");
+std::string DraftSession::file_to_open(const json& arguments) const {
+  std::string file = text(arguments, "file");
   if (!options_.may_open || !options_.may_open(file)) {
     throw InputError("file", 0, in_quotes(one_line(shortened(file))),
                      "a scenario of the project, or one that ships with Proleg: the list of gallery.look has them");
   }
+  return file;
+}
+
+json DraftSession::open(const json& arguments) {
+  const std::string file = file_to_open(arguments);
   begin(sim::read_scenario(file, disk_), true);
   note_opened(file);
   return {{"revision", draft().revision()}};
@@ -249,6 +256,32 @@ json DraftSession::open(const json& arguments) {
 /// Joints may have changed places: their positions mean something else.
 void DraftSession::note_robot(const std::string& before) {
   is_layout_new_ = is_layout_new_ || before != draft().text(draft().scenario().robot_file);
+}
+
+json DraftSession::take(const json& arguments) {
+  const std::string file = file_to_open(arguments);
+  const auto names = argument<std::vector<std::string>>(arguments, "parts", "'robot', 'actuation' or 'environment'");
+  std::vector<sim::ScenarioPart> parts;
+  for (const std::string& name : names.value_or(std::vector<std::string>{})) {
+    const std::optional<sim::ScenarioPart> part = sim::part_named(name);
+    if (!part) {
+      throw InputError("parts", 0, in_quotes(one_line(shortened(name))), "'robot', 'actuation' or 'environment'");
+    }
+    parts.push_back(*part);
+  }
+  if (parts.empty()) {
+    throw InputError("parts", 0, "none", "'robot', 'actuation' or 'environment'");
+  }
+  const sim::Scenario other = sim::read_scenario(file, disk_);
+  const std::string label =
+      std::string(sim::tag_of(parts.front())) + " of " + std::filesystem::path(file).filename().string();
+  draft().change(label, std::nullopt, [&](sim::DraftChange& change) {
+    for (const sim::ScenarioPart part : parts) {
+      take_part(change, draft().scenario(), other, part);
+    }
+  });
+  is_layout_new_ = true;
+  return {{"revision", draft().revision()}};
 }
 
 void DraftSession::note_opened(const std::string& file) const {

@@ -65,6 +65,8 @@ class DraftSession final : private SessionThread {
   using Handler = nlohmann::json (DraftSession::*)(const nlohmann::json&);
   nlohmann::json make_new(const nlohmann::json& arguments);
   nlohmann::json open(const nlohmann::json& arguments);
+  nlohmann::json take(const nlohmann::json& arguments);
+  [[nodiscard]] std::string file_to_open(const nlohmann::json& arguments) const;
   nlohmann::json undo(const nlohmann::json& arguments);
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json refresh(const nlohmann::json& arguments);

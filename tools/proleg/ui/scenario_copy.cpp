@@ -5,31 +5,15 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/authoring/part_change.hpp"
 #include "sim/scenario/sources.hpp"
 
 namespace proleg::tools {
-namespace {
-
 namespace fs = std::filesystem;
-
-fs::path absolute_path(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
-
-/// The deepest folder that has all files.
-fs::path common_folder(std::span<const sim::SourceFile> sources) {
-  fs::path common = absolute_path(sources.front().path).parent_path();
-  for (const sim::SourceFile& source : sources) {
-    const fs::path path = absolute_path(source.path);
-    while (path.lexically_relative(common).begin()->string() == "..") {
-      common = common.parent_path();
-    }
-  }
-  return common;
-}
-
-}  // namespace
+using sim::absolute_path;
 
 std::map<std::string, std::string> copy_sources(std::span<const sim::SourceFile> sources, const fs::path& folder) {
-  const fs::path root = common_folder(sources);
+  const fs::path root = sim::common_folder(sources);
   std::error_code error;
   if (!fs::create_directory(folder, error)) {
     if (error) {

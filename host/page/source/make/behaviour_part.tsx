@@ -26,10 +26,10 @@ function ModuleRow({ app, robot, module, number, paint }: {
 }) {
   const isDisabled = app.obstacle() !== null;
   const isChosen = app.chosenModule.value === number;
-  const send = (state: Paint) =>
-    void app.tell('behaviour.joints', { module: state.module, joints: [...state.joints].sort((a, b) => a - b) }, state.gesture);
+  const moved = app.jointsOf(number);
+  const send = (state: Paint) => app.setJoints(state.module, [...state.joints].sort((a, b) => a - b), state.gesture);
   const toggle = (joint: number) => {
-    const joints = new Set(module.joints);
+    const joints = new Set(app.jointsOf(number));
     const isOn = !joints.delete(joint);
     if (isOn) joints.add(joint);
     const state: Paint = { module: number, isOn, joints, gesture: app.page.newGesture() };
@@ -53,7 +53,7 @@ function ModuleRow({ app, robot, module, number, paint }: {
         </button>
       </th>
       {fromTail(robot.joints.length).map((joint) => {
-        const isOn = module.joints.includes(joint);
+        const isOn = moved.includes(joint);
         const name = robot.joints[joint]!.name;
         return (
           <td key={joint}>
@@ -120,7 +120,7 @@ export function BehaviourPart({ app }: { app: MakeApp }) {
   const order = fromTail(robot.joints.length);
   const chosen = Math.min(app.chosenModule.value, behaviour.modules.length - 1);
   const module = behaviour.modules[chosen];
-  const count = (joint: number) => behaviour.modules.filter(({ joints }) => joints.includes(joint)).length;
+  const count = (joint: number) => behaviour.modules.filter((_, number) => app.jointsOf(number).includes(joint)).length;
   return (
     <>
       <section class="panel make-panel" aria-label="Behaviour">

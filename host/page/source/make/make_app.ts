@@ -35,6 +35,8 @@ export class MakeApp {
   readonly part = signal<PartName>('world');
   readonly chosenJoints = signal<readonly number[]>([]); // kernel order
   readonly chosenModule = signal(0); // an actuation module
+  // The joints of an actuation module while a change of them is on its way.
+  readonly newJoints = signal<{ module: number; joints: readonly number[] } | null>(null);
   readonly actions: ActionList;
   readonly view: DraftView;
   readonly draft = computed(() => this.page.state.draft.value);
@@ -93,6 +95,14 @@ export class MakeApp {
     }
   }
 
+  // Takes parts of another scenario of the gallery.
+  async take(file: string, parts: readonly ('robot' | 'actuation' | 'environment')[]): Promise<void> {
+    if ((await this.page.operations.tell('draft.take', { file, parts })) !== null) {
+      this.forgetChoice();
+      this.panel.value = 'none';
+    }
+  }
+
   // Another scenario has other parts.
   private forgetChoice(): void {
     this.chosen.value = null;
@@ -127,6 +137,22 @@ export class MakeApp {
     } catch (error) {
       return (error as Error).message;
     }
+  }
+
+  // Requests a change that follows a slider or a pointer: of several that wait the newest is sent.
+  follow<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture: number): void {
+    this.send(() => this.tell(name, words, gesture));
+  }
+
+  // The joints that an actuation module moves, also while a change of them is on its way.
+  jointsOf(module: number): readonly number[] {
+    const coming = this.newJoints.value;
+    return coming?.module === module ? coming.joints : (this.draft.value?.behaviour.modules[module]?.joints ?? []);
+  }
+
+  setJoints(module: number, joints: readonly number[], gesture: number): void {
+    this.newJoints.value = { module, joints };
+    this.follow('behaviour.joints', { module, joints }, gesture);
   }
 
   // As changeRun(), with a notice if it was refused.
@@ -197,6 +223,7 @@ export class MakeApp {
       if (next !== null) {
         this.send(next);
       } else {
+        this.newJoints.value = null;
         this.whenSent?.();
         this.whenSent = null;
       }

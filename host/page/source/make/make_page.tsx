@@ -7,7 +7,7 @@ import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.j
 import { NewPanel } from './new_panel.js';
 import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';
-import { RunForm } from './run_form.js';
+import { FileList, RunForm } from './run_form.js';
 import { SavePanel } from './save_panel.js';
 import { WorldMap } from './world_map.js';
 import { WorldPart } from './world_part.js';
@@ -181,6 +181,8 @@ function Part({ app }: { app: MakeApp }) {
         <section class="panel make-panel" aria-label="Run">
           <h2>Run</h2>
           <RunForm app={app} />
+          <h2>Files</h2>
+          <FileList app={app} />
         </section>
       );
   }

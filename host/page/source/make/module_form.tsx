@@ -1,15 +1,12 @@
 // An actuation module: its algorithm, and the parameters of that, for all its joints or for each.
 import { useSignal } from '@preact/signals';
+import { ParameterSlider } from '../panels/parameter_slider.js';
+import { formatNumber, formatRaw, parseValue, splitHelp } from '../state/parameter_values.js';
 import type { AlgorithmDocument, AlgorithmParameter, BehaviourModule, DraftRobot } from '../wire/messages.js';
 import { fromTail } from './axis_text.js';
 import { ChoiceField } from './choice_field.js';
 import type { MakeApp } from './make_app.js';
 import { TextField } from './text_field.js';
-
-// A decimal comma is what many keyboards have.
-function decimal(text: string): string {
-  return text.replace(',', '.').replace('−', '-');
-}
 
 interface Row {
   app: MakeApp;
@@ -19,15 +16,30 @@ interface Row {
   parameter: AlgorithmParameter;
 }
 
+// The text of a value as the program takes it.
+function plain(value: number): string {
+  return formatNumber(value, 9);
+}
+
 function ParameterFields({ app, robot, module, number, parameter }: Row) {
   const isOpen = useSignal(false);
+  const gesture = useSignal(0);
   const values = module.values[parameter.name] ?? [];
-  const isUniform = values.every((value) => value === values[0]);
+  const first = values[0] ?? parameter.default;
+  const isUniform = values.every((value) => value === first);
+  const mean = values.length === 0 ? first : values.reduce((sum, raw) => sum + raw, 0) / values.length;
   const isDisabled = app.obstacle() !== null || module.joints.length === 0;
   const title = parameter.name.replaceAll('_', ' ');
-  const set = (joints: readonly number[], value: string) =>
-    app.change('behaviour.set', { module: number, parameter: parameter.name, joints, value: decimal(value) });
-  const range = `${parameter.minimum} to ${parameter.maximum} ${parameter.unit}`.trim();
+  const id = `module-${number}-${parameter.name}`;
+  const words = (joints: readonly number[], value: number) => ({ module: number, parameter: parameter.name, joints, value: plain(value) });
+  const set = (joints: readonly number[], text: string) => {
+    if (text === '') return null;
+    const value = parseValue(text, parameter);
+    return typeof value === 'string' ? value : app.change('behaviour.set', words(joints, value));
+  };
+  const range = parameter.wraps
+    ? 'Any angle'
+    : `${formatRaw(parameter.minimum, parameter)} to ${formatRaw(parameter.maximum, parameter)} ${parameter.unit}`.trim();
   return (
     <div class="module-parameter" data-parameter={parameter.name}>
       <div class="fields">
@@ -35,18 +47,28 @@ function ParameterFields({ app, robot, module, number, parameter }: Row) {
           label={parameter.unit === '' ? title : `${title} in ${parameter.unit}`}
           isNumeric
           size={8}
-          value={isUniform ? (values[0] ?? parameter.default) : ''}
+          value={isUniform ? formatRaw(first, parameter) : ''}
           placeholder={isUniform ? '' : 'several'}
           isDisabled={isDisabled}
-          title={`${range}; usually ${parameter.default}`}
-          commit={(value) => (value === '' ? null : set(module.joints, value))}
+          title={`${range}; usually ${formatRaw(parameter.default, parameter)}`}
+          commit={(text) => set(module.joints, text)}
+        />
+        <ParameterSlider
+          parameter={parameter}
+          value={mean * parameter.scale}
+          label={`${title}, all joints`}
+          describedBy={id}
+          isDisabled={isDisabled}
+          begin={() => (gesture.value = app.page.newGesture())}
+          set={(value) => app.follow('behaviour.set', words(module.joints, value), gesture.value)}
+          reset={() => void app.tell('behaviour.set', words(module.joints, parameter.default * parameter.scale))}
         />
         <button type="button" aria-expanded={isOpen.value} disabled={module.joints.length < 2} title="A value for each joint" onClick={() => (isOpen.value = !isOpen.value)}>
           {isUniform ? 'each joint' : 'they differ'}
         </button>
       </div>
-      <p class="hint">
-        {parameter.help}. {range}
+      <p class="hint" id={id}>
+        {splitHelp(parameter.help).sentence} {range}.
       </p>
       {isOpen.value && (
         <div class="fields">
@@ -58,9 +80,9 @@ function ParameterFields({ app, robot, module, number, parameter }: Row) {
                 label={robot.joints[joint]!.name}
                 isNumeric
                 size={6}
-                value={values[module.joints.indexOf(joint)] ?? ''}
+                value={formatRaw(values[module.joints.indexOf(joint)] ?? parameter.default, parameter)}
                 isDisabled={isDisabled}
-                commit={(value) => (value === '' ? null : set([joint], value))}
+                commit={(text) => set([joint], text)}
               />
             ))}
         </div>

@@ -22,7 +22,7 @@ const worlds: readonly (Choice & { values?: Record<string, number>; friction?: n
   { value: 'stairs', title: 'stairs', text: 'Three steps up.' },
   { value: 'ramp', title: 'a ramp', text: 'A slope up.' },
   { value: 'hills', title: 'hills', text: 'Waves in the ground, as the obstacle of the thesis.' },
-  { value: 'rough', title: 'rough ground', text: 'Small heights, different everywhere.' },
+  { value: 'rough ground', title: 'rough ground', text: 'Small heights, different everywhere.' },
 ];
 
 const friction = [

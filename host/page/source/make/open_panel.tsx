@@ -120,6 +120,28 @@ export function OpenPanel({ app }: { app: MakeApp }) {
                   obstacle={obstacle}
                   open={() => void app.open(entry.file)}
                 />
+                {entry.failure === null && app.draft.value !== null && (
+                  <span class="fields take">
+                    <button
+                      type="button"
+                      aria-label={`Use the world of ${entry.title}`}
+                      disabled={obstacle !== null}
+                      title={obstacle ?? 'Your robot, in the world of this scenario'}
+                      onClick={() => void app.take(entry.file, ['environment'])}
+                    >
+                      its world
+                    </button>
+                    <button
+                      type="button"
+                      aria-label={`Use the robot and the gait of ${entry.title}`}
+                      disabled={obstacle !== null}
+                      title={obstacle ?? 'The robot of this scenario, in your world'}
+                      onClick={() => void app.take(entry.file, ['robot', 'actuation'])}
+                    >
+                      its robot and gait
+                    </button>
+                  </span>
+                )}
               </li>
             ))}
           </ul>

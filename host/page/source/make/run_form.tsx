@@ -81,3 +81,30 @@ export function RunForm({ app }: { app: MakeApp }) {
     </div>
   );
 }
+
+// What belongs to the scenario.
+export function FileList({ app }: { app: MakeApp }) {
+  const draft = app.draft.value;
+  if (draft === null) return null;
+  const modules = [...new Set(draft.robot.links.map(({ file }) => file))].filter((file) => file !== '' && file !== draft.robot.file);
+  const files: [string, string][] = [
+    ['scenario', draft.file],
+    ['robot', draft.robot.file],
+    ...modules.map((file): [string, string] => ['links', file]),
+    ['behaviour', draft.behaviour.file],
+    ['world', draft.world.file],
+  ];
+  return (
+    <dl class="file-list">
+      {files.map(([part, file]) => (
+        <div key={file}>
+          <dt>{part}</dt>
+          <dd>
+            {file}
+            {draft.changed.includes(file) ? ' (changed)' : ''}
+          </dd>
+        </div>
+      ))}
+    </dl>
+  );
+}

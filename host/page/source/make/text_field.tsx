@@ -14,7 +14,15 @@ interface Field {
 }
 
 export function TextField({ label, value, title, placeholder, size, isNumeric, isDisabled, commit }: Field) {
+  const typed = useSignal<string | null>(null);
   const problem = useSignal<string | null>(null);
+  const send = async () => {
+    const text = typed.peek();
+    if (text === null) return;
+    problem.value = text.trim() === value ? null : await commit(text.trim());
+    // A text that was refused stays, so that it can be corrected.
+    if (problem.peek() === null && typed.peek() === text) typed.value = null;
+  };
   return (
     <label class="number-field" title={title}>
       <span>{label}</span>
@@ -24,10 +32,14 @@ export function TextField({ label, value, title, placeholder, size, isNumeric, i
         size={size}
         placeholder={placeholder}
         autocomplete="off"
-        value={value}
+        value={typed.value ?? value}
         disabled={isDisabled === true}
         aria-invalid={problem.value !== null}
-        onChange={async (event) => (problem.value = await commit(event.currentTarget.value.trim()))}
+        onInput={(event) => (typed.value = event.currentTarget.value)}
+        onBlur={() => void send()}
+        onKeyDown={(event) => {
+          if (event.key === 'Enter') void send();
+        }}
       />
       {problem.value !== null && (
         <span class="problem" role="alert">

@@ -1,11 +1,11 @@
 // The slider for all joints. Its way is that of state/slider_scale.ts, with marks at the ends of the useful range.
 import { useSignal } from '@preact/signals';
-import { SliderScale } from '../state/slider_scale.js';
+import { SliderScale, type ScaledParameter } from '../state/slider_scale.js';
 import { formatRaw } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 
 interface Props {
-  parameter: Parameter;
+  parameter: ScaledParameter & Pick<Parameter, 'unit'>;
   value: number; // in the unit
   label: string;
   describedBy: string | undefined;

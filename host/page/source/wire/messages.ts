@@ -390,7 +390,7 @@ export interface DraftRobot {
 export interface BehaviourModule {
   algorithm: string;
   joints: number[]; // that it moves, in kernel order
-  values: Record<string, string[]>; // of each parameter, for each of its joints
+  values: Record<string, number[]>; // of each parameter, raw, for each of its joints
 }
 
 export interface BehaviourDocument {
@@ -414,14 +414,8 @@ export interface PartsDocument {
   most_modules: number;
 }
 
-export interface AlgorithmParameter {
-  name: string;
-  help: string;
-  unit: string;
-  minimum: string;
-  maximum: string;
-  default: string;
-}
+// A parameter as its declaration has it.
+export type AlgorithmParameter = Pick<Parameter, 'name' | 'unit' | 'scale' | 'wraps' | 'minimum' | 'maximum' | 'useful' | 'default' | 'help'>;
 
 // What an actuation module can do.
 export interface AlgorithmDocument {
@@ -590,6 +584,7 @@ export interface NewScenario {
 export interface Operations {
   'draft.new': NewScenario;
   'draft.open': { file: string }; // a file of `gallery`
+  'draft.take': { file: string; parts: readonly ('robot' | 'actuation' | 'environment')[] };
   'gallery.look': Record<string, never>;
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;

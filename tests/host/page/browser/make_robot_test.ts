@@ -28,7 +28,7 @@ describe('a new robot', () => {
     const { page } = ui.viewer;
     await page.getByRole('navigation').locator('[aria-current=page]', { hasText: 'Live' }).waitFor();
     await page.keyboard.press('Escape'); // pauses
-    await page.getByTestId('run-state').filter({ hasText: 'paused' }).waitFor();
+    await page.getByTestId('state').filter({ hasText: 'paused' }).waitFor();
     await page.keyboard.press('x');
     await page.getByTestId('setpoint-hash').waitFor();
     const command = (await page.getByTestId('command').textContent()) ?? '';
@@ -190,8 +190,8 @@ describe('robot and behaviour', () => {
     const sensors = page().getByRole('region', { name: 'Sensors' });
     await sensors.getByRole('button', { name: 'Add sensor' }).click();
     await sensors.getByRole('button', { name: 'touch', exact: true }).click();
-    await sensors.getByLabel('the gait feels it').selectOption('front');
-    await sensors.getByLabel('new', { exact: true }).selectOption('Inclinometer');
+    await sensors.getByRole('combobox', { name: 'the gait feels it' }).selectOption('front');
+    await sensors.getByRole('combobox', { name: 'new', exact: true }).selectOption('Inclinometer');
     await sensors.getByRole('button', { name: 'Add sensor' }).click();
     await sensors.getByRole('button', { name: 'level', exact: true }).waitFor();
   });
@@ -233,9 +233,28 @@ describe('robot and behaviour', () => {
     await page().getByRole('region', { name: 'Module 2' }).getByRole('alert').filter({ hasText: '2000' }).waitFor();
   });
 
+  it('shows the next half minute while a slider is dragged; the drag is one entry of undo', async () => {
+    const foresight = async () => (await page().getByTestId('foresight').textContent()) ?? '';
+    const slider = page().locator('[data-parameter=frequency]').getByRole('slider');
+    const before = { value: await field('Module 2', 'frequency in Hz').inputValue(), foresight: await foresight() };
+    await slider.scrollIntoViewIfNeeded();
+    const box = (await slider.boundingBox())!;
+    await page().mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page().mouse.down();
+    await page().mouse.move(box.x + box.width * 0.8, box.y + box.height / 2, { steps: 12 });
+    const isNew = await waitUntil(async () => (await foresight()) !== before.foresight && !/computing/.test(await foresight()));
+    await page().screenshot({ path: 'build/page_test/make_slider.png' });
+    assert.ok(isNew, await foresight());
+    await page().mouse.up();
+    assert.ok(await waitUntil(async () => Number(await field('Module 2', 'frequency in Hz').inputValue()) > Number(before.value)));
+    await page().getByTestId('map-top').focus();
+    await page().keyboard.press('Control+z');
+    assert.ok(await waitUntil(async () => (await field('Module 2', 'frequency in Hz').inputValue()) === before.value));
+  });
+
   it('stands before stairs, a ramp, a height field and a box that moves', async () => {
     await tab('World').click();
-    for (const item of ['stairs', 'ramp', 'rough', 'box']) {
+    for (const item of ['stairs', 'ramp', 'rough ground', 'box']) {
       await page().getByRole('region', { name: 'Library' }).getByRole('button', { name: item, exact: true }).click();
       await page().getByRole('button', { name: `Add ${item}` }).click();
       await page().getByRole('region', { name: 'Objects' }).getByRole('button', { name: item, exact: true }).waitFor();

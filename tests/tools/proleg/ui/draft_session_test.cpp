@@ -415,7 +415,8 @@ TEST_F(DraftSessionTest, TheRobotIsChangedPartByPart) {
 TEST_F(DraftSessionTest, TheBehaviourIsModulesOfJoints) {
   const json before = draft(0)["behaviour"];
   ASSERT_EQ(before["modules"].size(), 1U);
-  EXPECT_EQ(before["modules"][0]["values"]["amplitude"][0], "40");
+  const auto raw = [](double degrees) { return std::lround(degrees / 90.0 * quarter_turn); };
+  EXPECT_EQ(before["modules"][0]["values"]["amplitude"][0], raw(40));
   must("behaviour.add", {{"algorithm", "DirectJointAccess"}, {"joints", {0}}});
   must("behaviour.set", {{"module", 1}, {"parameter", "angle"}, {"joints", {0}}, {"value", "-12.5"}});
   must("behaviour.joints", {{"module", 0}, {"joints", {1, 2, 3, 4}}});
@@ -423,7 +424,7 @@ TEST_F(DraftSessionTest, TheBehaviourIsModulesOfJoints) {
   const json now = draft(answer["revision"])["behaviour"];
   EXPECT_EQ(now["modules"][0]["algorithm"], "PatternGenerator_serpenoid");
   EXPECT_EQ(now["modules"][0]["joints"], json({1, 2, 3, 4}));
-  EXPECT_EQ(now["modules"][1]["values"]["angle"], json({"-12.5"}));
+  EXPECT_EQ(now["modules"][1]["values"]["angle"], json::array({raw(-12.5)}));
   for (const auto& [name, bad] : std::vector<std::pair<const char*, json>>{
            {"behaviour.add", {{"algorithm", "nothing"}, {"joints", {0}}}},
            {"behaviour.add", {{"algorithm", 7}, {"joints", {0}}}},
@@ -511,6 +512,34 @@ TEST_F(DraftSessionTest, OpensScenariosOfItsFolderAndShippedOnes) {
            "/etc/passwd", "", folder_ / "mine/../../nothing.simulation.xml", folder_ / "out/MFIdemo.simulation.xml",
            folder_ / "mine/caterpillar.robot.xml", source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml")}) {
     EXPECT_FALSE(ask("draft.open", {{"file", bad.string()}}).is_done) << bad;
+  }
+}
+
+TEST_F(DraftSessionTest, APartOfAnotherScenarioCanBeTaken) {
+  const std::string stairs = source_path("/sim/scenarios/obstacle/plain.simulation.xml");
+  const std::string before = file_contents(file_);
+  json document = draft(must("draft.take", {{"file", stairs}, {"parts", {"environment"}}})["revision"]);
+  EXPECT_GT(document["world"]["objects"].size(), 3U);
+  EXPECT_EQ(document["robot"]["joints"].size(), 5U);
+  EXPECT_EQ(document["undo"], "environment of plain.simulation.xml");
+  const std::string snake = source_path("/sim/scenarios/robots/snake/robot.simulation.xml");
+  EXPECT_NE(ask("draft.take", {{"file", snake}, {"parts", {"robot"}}}).text.find("8 characters"), std::string::npos)
+      << "the gait is made for five joints";
+  document = draft(must("draft.take", {{"file", snake}, {"parts", {"robot", "actuation"}}})["revision"]);
+  EXPECT_EQ(document["robot"]["joints"].size(), 8U);
+  EXPECT_GT(document["world"]["objects"].size(), 3U);
+  const std::string copy = must("draft.save_as", {{"folder", "both"}})["file"];
+  const sim::Scenario both = sim::read_scenario(copy, disk_);
+  EXPECT_EQ(both.robot.joints.size(), 8U);
+  for (const sim::SourceFile& source : both.sources) {
+    EXPECT_TRUE(source.path.starts_with(folder_ / "both")) << "the copy needs no other folder: " << source.path;
+  }
+  EXPECT_EQ(file_contents(file_), before);
+  for (const json& bad : std::vector<json>{{{"file", "/etc/passwd"}, {"parts", {"robot"}}},
+                                           {{"file", snake}, {"parts", {"wheels"}}},
+                                           {{"file", snake}, {"parts", json::array()}},
+                                           {{"file", snake}}}) {
+    EXPECT_FALSE(ask("draft.take", bad).is_done) << bad;
   }
 }
 

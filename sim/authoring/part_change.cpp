@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 3> tags{"robot", "actuation", "environment"};
+constexpr std::array<std::string_view, 3> part_tags{"robot", "actuation", "environment"};
 
 std::size_t position_of(const Scenario& scenario, const std::string& file) {
   return static_cast<std::size_t>(std::ranges::find(scenario.sources, file, &SourceFile::path) -
@@ -35,11 +35,11 @@ std::vector<SourceFile> files_of(const Scenario& scenario, ScenarioPart part) {
 
 }  // namespace
 
-std::string_view tag_of(ScenarioPart part) { return tags.at(static_cast<std::size_t>(part)); }
+std::string_view tag_of(ScenarioPart part) { return part_tags.at(static_cast<std::size_t>(part)); }
 
 std::optional<ScenarioPart> part_named(std::string_view tag) {
-  const auto found = std::ranges::find(tags, tag);
-  return found == tags.end() ? std::nullopt : std::optional(static_cast<ScenarioPart>(found - tags.begin()));
+  const auto found = std::ranges::find(part_tags, tag);
+  return found == part_tags.end() ? std::nullopt : std::optional(static_cast<ScenarioPart>(found - part_tags.begin()));
 }
 
 void take_part(DraftChange& change, const Scenario& scenario, const Scenario& other, ScenarioPart part) {

@@ -45,11 +45,12 @@ constexpr std::string_view snake_comment =
 )";
 
 constexpr std::array<RobotKind, 5> kinds{
-    {{"caterpillar", "the modules of the shipped travelling_wave", "p", 5, 72, "0.4", "4.5", caterpillar_comment},
-     {"cubo", "cubes with rubber feet, as the CUBO robot", "p", 5, 60, "0.4", "4.5", cubo_comment},
+    {{"caterpillar", "joints that bend up and down, as in the experiments of the thesis", "p", 5, 72, "0.4", "4.5",
+      caterpillar_comment},
+     {"cubo", "cubes on feet of rubber, as the CUBO robot", "p", 5, 60, "0.4", "4.5", cubo_comment},
      {"cube-chain", "plain cubes, the fastest to simulate", "p", 7, 60, "0.4", "4.5", cube_chain_comment},
-     {"y1", "Y1 modules with a mesh", "p", 5, 72, "0.4", "4.5", y1_comment},
-     {"snake", "pitch and yaw joints in turn", "py", 8, 72, "0.4", "4.5", snake_comment}}};
+     {"y1", "modules with the shape of a chassis, as the Y1 robot", "p", 5, 72, "0.4", "4.5", y1_comment},
+     {"snake", "joints that bend up and down and to the sides in turn", "py", 8, 72, "0.4", "4.5", snake_comment}}};
 
 /// A place in the chain: the module's name, and the position of its middle from its origin, in half modules.
 struct Place {

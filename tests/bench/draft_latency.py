@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Prints how fast a draft answers while an object is dragged: from the operation to the answer, to the new robot and world
-(the document `draft`), and to the path of the next half minute (the document `foresight`); in milliseconds.
+"""Prints how fast a draft answers while an object is dragged, a slider is moved, or a joint comes and goes: from the
+operation to the answer, to the new robot and world (the document `draft`), and to the path of the next half minute (the
+document `foresight`); in milliseconds.
 
 usage: tests/bench/draft_latency.py BUILD_FOLDER [STEPS], e.g. tests/bench/draft_latency.py build/host
 """
@@ -19,36 +20,55 @@ sys.path.insert(0, str(ROOT / "tests/host/server"))
 from web_client import Viewer  # noqa: E402
 
 
-def drag(viewer, epoch, steps):
-    """Milliseconds of each step to the answer, the draft and the foresight."""
-    def revision(name):
-        return viewer.documents[name]["value"]["revision"] if name in viewer.documents else -1
+class Draft:
+    """The draft of a program, and how soon it answers."""
 
-    def change(name, **arguments):
-        return viewer.start(name, epoch, layout=viewer.documents["draft"]["value"]["layout"], **arguments)
+    def __init__(self, viewer):
+        self.viewer = viewer
+        self.epoch = viewer.take_control()
+        viewer.until(lambda: self.revision("draft") == 0 and self.revision("foresight") == 0)
 
-    viewer.until(lambda: revision("draft") == 0 and revision("foresight") == 0)
-    change("world.add", item="box", values={"height": 0.02}, position=[0.9, 0.7, 0], turn=0)
-    viewer.until(lambda: revision("draft") == 1 and revision("foresight") == 1)
-    times = []
-    for step in range(steps):
+    def revision(self, name):
+        return self.viewer.documents[name]["value"]["revision"] if name in self.viewer.documents else -1
+
+    def start(self, name, arguments):
+        layout = self.viewer.documents["draft"]["value"]["layout"]
+        return self.viewer.start(name, self.epoch, layout=layout, **arguments)
+
+    def measure(self, name, arguments):
+        """Milliseconds from an operation to its answer, to the new draft and to the new path."""
+        revision = self.revision("draft") + 1
         begin = time.monotonic()
-        number = change("world.place", object=1, pose=[0.9 + (step + 1) / 1000, 0.7, 0.01, 1, 0, 0, 0], gesture=7)
+        number = self.start(name, arguments)
         came = {}
 
         def all_came():
             now = 1000 * (time.monotonic() - begin)
-            if number in viewer.results:
-                assert viewer.results[number]["ok"], viewer.results[number]
+            if number in self.viewer.results:
+                assert self.viewer.results[number]["ok"], self.viewer.results[number]
                 came.setdefault("answer", now)
-            for name in ("draft", "foresight"):
-                if revision(name) >= step + 2:
-                    came.setdefault(name, now)
+            for document in ("draft", "foresight"):
+                if self.revision(document) >= revision:
+                    came.setdefault(document, now)
             return len(came) == 3
 
-        viewer.until(all_came)
-        times.append((came["answer"], came["draft"], came["foresight"]))
-    return times
+        self.viewer.until(all_came)
+        return came["answer"], came["draft"], came["foresight"]
+
+
+def drag_of_box(step):
+    return "world.place", {"object": 1, "pose": [0.9 + (step + 1) / 1000, 0.7, 0.01, 1, 0, 0, 0], "gesture": 7}
+
+
+def slider(step):
+    return "behaviour.set", {"module": 0, "parameter": "frequency", "joints": [0, 1, 2, 3, 4], "value": str(0.5 + step / 500), "gesture": 8}
+
+
+def joint_more_or_less(step):
+    return ("robot.duplicate" if step % 2 == 0 else "robot.remove"), {"joint": 2}
+
+
+SERIES = {"a drag of a box": drag_of_box, "a slider of the gait": slider, "a joint more or less": joint_more_or_less}
 
 
 def main():
@@ -62,13 +82,17 @@ def main():
             try:
                 port, token = re.search(r":(\d+)/#(\S+)", program.stdout.readline()).groups()
                 with Viewer(int(port), token) as viewer:
-                    times = drag(viewer, viewer.take_control(), steps)
+                    draft = Draft(viewer)
+                    draft.measure("world.add", {"item": "box", "values": {"height": 0.02}, "position": [0.9, 0.7, 0], "turn": 0})
+                    times = {what: [draft.measure(*of_step(i)) for i in range(steps)] for what, of_step in SERIES.items()}
             finally:
                 program.terminate()
-    print(f"{steps} steps of a drag, five joints, a floor and a box, beside a simulation in real time; ms")
-    for i, name in enumerate(("answer", "draft", "foresight")):
-        values = sorted(row[i] for row in times)
-        print(f"{name:<10} median {statistics.median(values):7.1f}   99 % {values[int(0.99 * len(values))]:7.1f}   most {values[-1]:7.1f}")
+    print("five joints, a floor and a box, beside a simulation in real time; ms")
+    for what, rows in times.items():
+        print(f"{steps} steps: {what}")
+        for i, name in enumerate(("answer", "draft", "foresight")):
+            values = sorted(row[i] for row in rows)
+            print(f"  {name:<10} median {statistics.median(values):7.1f}   99 % {values[int(0.99 * len(values))]:7.1f}   most {values[-1]:7.1f}")
 
 
 if __name__ == "__main__":

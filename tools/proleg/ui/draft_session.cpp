@@ -234,6 +234,7 @@ json DraftSession::change_draft(const host::OperationRequest& operation) {
 
 json DraftSession::make_new(const json& arguments) {
   begin(new_scenario(arguments), false);
+  publish();  // the answer comes behind what it is about
   return {{"revision", draft().revision()}};
 }
 
@@ -250,6 +251,7 @@ json DraftSession::open(const json& arguments) {
   const std::string file = file_to_open(arguments);
   begin(sim::read_scenario(file, disk_), true);
   note_opened(file);
+  publish();
   return {{"revision", draft().revision()}};
 }
 
@@ -281,6 +283,7 @@ json DraftSession::take(const json& arguments) {
     }
   });
   is_layout_new_ = true;
+  publish();
   return {{"revision", draft().revision()}};
 }
 

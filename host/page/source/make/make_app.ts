@@ -34,6 +34,7 @@ export class MakeApp {
   readonly panel = signal<'none' | 'new' | 'open' | 'save'>('none'); // what is open below the bar
   readonly part = signal<PartName>('world');
   readonly chosenJoints = signal<readonly number[]>([]); // kernel order
+  readonly refit = signal(0); // counts the times when the drawings show everything anew
   readonly chosenModule = signal(0); // an actuation module
   // The joints of an actuation module while a change of them is on its way.
   readonly newJoints = signal<{ module: number; joints: readonly number[] } | null>(null);
@@ -108,6 +109,7 @@ export class MakeApp {
     this.chosen.value = null;
     this.chosenJoints.value = [];
     this.chosenModule.value = 0;
+    this.refit.value += 1;
   }
 
   // Requests a change of a part. Returns the reason if it was refused, else null.
@@ -278,8 +280,15 @@ export class MakeApp {
   // Makes the draft a new scenario. Of several calls in a row the newest counts. answered: with the reason of a refusal,
   // or null.
   makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
-    this.forgetChoice();
-    this.send(() => this.page.operations.ask('draft.new', words).then(() => answered(null), (error: Error) => answered(error.message)));
+    this.send(() =>
+      this.page.operations.ask('draft.new', words).then(
+        () => {
+          this.forgetChoice();
+          answered(null);
+        },
+        (error: Error) => answered(error.message),
+      ),
+    );
   }
 
   // Writes a new scenario into a new folder, and starts it on the page Live. Returns the reason of a refusal, or null.

@@ -208,7 +208,6 @@ export function MakePage({ app: page }: { app: MakeStores }) {
     <div class="make">
       <Bar app={app} />
       {app.panel.value === 'save' && <SavePanel app={app} />}
-      {app.panel.value === 'new' && <NewPanel app={app} />}
       {app.panel.value === 'open' && <OpenPanel app={app} />}
       <Unsaved app={app} />
       {draft.warnings.map((warning) => (
@@ -224,12 +223,18 @@ export function MakePage({ app: page }: { app: MakeStores }) {
         </section>
         <ScenePanel app={app.view} />
       </div>
-      <div class="make-side">
-        <PartTabs app={app} />
-        <div class="make-part" role="tabpanel" id="make-part" aria-labelledby={`tab-${app.part.value}`}>
-          <Part app={app} />
+      {app.panel.value === 'new' ? (
+        <div class="make-side make-new">
+          <NewPanel app={app} />
         </div>
-      </div>
+      ) : (
+        <div class="make-side">
+          <PartTabs app={app} />
+          <div class="make-part" role="tabpanel" id="make-part" aria-labelledby={`tab-${app.part.value}`}>
+            <Part app={app} />
+          </div>
+        </div>
+      )}
     </div>
   );
 }

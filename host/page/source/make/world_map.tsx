@@ -142,6 +142,11 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     };
   }, []);
 
+  const refit = app.refit.value;
+  useEffect(() => {
+    if (refit > 0) view.value = viewOfAll(app, plane, size.peek());
+  }, [refit]);
+
   const draft = app.draft.value;
   const robot = app.page.state.draftRobot.value;
   const shown = view.value ?? { centre: [0, 0] as Point, scale: 100 };

@@ -517,9 +517,10 @@ TEST_F(DraftSessionTest, OpensScenariosOfItsFolderAndShippedOnes) {
 
 TEST_F(DraftSessionTest, APartOfAnotherScenarioCanBeTaken) {
   const std::string stairs = source_path("/sim/scenarios/obstacle/plain.simulation.xml");
+  const std::size_t objects = sim::read_scenario(stairs, disk_).environment.objects.size();
   const std::string before = file_contents(file_);
   json document = draft(must("draft.take", {{"file", stairs}, {"parts", {"environment"}}})["revision"]);
-  EXPECT_GT(document["world"]["objects"].size(), 3U);
+  EXPECT_EQ(document["world"]["objects"].size(), objects);
   EXPECT_EQ(document["robot"]["joints"].size(), 5U);
   EXPECT_EQ(document["undo"], "environment of plain.simulation.xml");
   const std::string snake = source_path("/sim/scenarios/robots/snake/robot.simulation.xml");
@@ -527,12 +528,12 @@ TEST_F(DraftSessionTest, APartOfAnotherScenarioCanBeTaken) {
       << "the gait is made for five joints";
   document = draft(must("draft.take", {{"file", snake}, {"parts", {"robot", "actuation"}}})["revision"]);
   EXPECT_EQ(document["robot"]["joints"].size(), 8U);
-  EXPECT_GT(document["world"]["objects"].size(), 3U);
+  EXPECT_EQ(document["world"]["objects"].size(), objects);
   const std::string copy = must("draft.save_as", {{"folder", "both"}})["file"];
   const sim::Scenario both = sim::read_scenario(copy, disk_);
   EXPECT_EQ(both.robot.joints.size(), 8U);
   for (const sim::SourceFile& source : both.sources) {
-    EXPECT_TRUE(source.path.starts_with(folder_ / "both")) << "the copy needs no other folder: " << source.path;
+    EXPECT_TRUE(source.path.starts_with(std::string(folder_ / "both"))) << "the copy needs no other folder: " << source.path;
   }
   EXPECT_EQ(file_contents(file_), before);
   for (const json& bad : std::vector<json>{{{"file", "/etc/passwd"}, {"parts", {"robot"}}},

@@ -13,6 +13,7 @@
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/draft_document.hpp"
+#include "tools/proleg/ui/newest_algorithms.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 
 namespace proleg::tools {
@@ -99,6 +100,29 @@ sim::Draft& DraftSession::draft() {
   return *draft_;
 }
 
+const sim::Scenario& DraftSession::scenario() const {
+  return read_again_ && read_again_->first == draft_->revision() ? read_again_->second : draft_->scenario();
+}
+
+void DraftSession::read_algorithms_again() {
+  if (!has_newer_algorithms(scenario())) {
+    return;
+  }
+  sim::DraftTexts texts(disk_);
+  for (const sim::SourceFile& source : draft_->scenario().sources) {
+    texts.set(source.path, draft_->text(source.path));
+  }
+  try {
+    sim::Scenario again = sim::read_scenario(draft_->scenario().path, texts, draft_->scenario().overrides);
+    again.moves = draft_->scenario().moves;
+    read_again_.emplace(draft_->revision(), std::move(again));
+    published_.reset();
+  } catch (const InputError& error) {
+    output_.notice(host::NoticeLevel::warning,
+                   "the draft keeps an earlier version of its algorithm: " + one_line(error.what()));
+  }
+}
+
 void DraftSession::publish() {
   if (!draft_) {
     if (std::exchange(is_new_, false)) {
@@ -111,7 +135,7 @@ void DraftSession::publish() {
   if (!is_changed && !is_new_) {
     return;
   }
-  const sim::Scenario& scenario = draft.scenario();
+  const sim::Scenario& scenario = this->scenario();
   if (published_) {
     journal_->note_change(Clock::now());
   }
@@ -200,7 +224,7 @@ void DraftSession::change_world(const host::OperationRequest& operation) {
 json DraftSession::change_run(const json& arguments) {
   const RunOperation operation = run_operation(arguments);
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  const sim::Scenario before = draft().scenario();
+  const sim::Scenario before = scenario();
   draft().change(operation.label, gesture, [&](sim::DraftChange& edit) {
     sim::RunChange change(before, edit);
     operation.change(change);
@@ -250,7 +274,11 @@ json DraftSession::discard(const json& /*arguments*/) {
   return json::object();
 }
 
-json DraftSession::refresh(const json& /*arguments*/) { return {{"changed", draft().refresh()}}; }
+json DraftSession::refresh(const json& /*arguments*/) {
+  const bool is_changed = draft().refresh();
+  read_algorithms_again();
+  return {{"changed", is_changed}};
+}
 
 json DraftSession::diff(const json& /*arguments*/) {
   constexpr std::size_t most_text = 256 * 1024;  // a person reads no more, and an answer has a limit

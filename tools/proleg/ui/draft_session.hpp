@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/authoring/draft.hpp"
@@ -49,6 +50,10 @@ class DraftSession final : private SessionThread {
   void publish();
   void note_layout(const sim::WorldContents& world);
   [[nodiscard]] sim::Draft& draft();
+  /// The draft as the reader has it, with the newest versions of algorithms.
+  [[nodiscard]] const sim::Scenario& scenario() const;
+  /// Reads the files of the draft again if an algorithm was loaded again since they were read.
+  void read_algorithms_again();
   void change_world(const host::OperationRequest& operation);
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
 
@@ -69,7 +74,9 @@ class DraftSession final : private SessionThread {
   std::optional<sim::Draft> draft_;
   std::optional<Foresight> foresight_;
   std::optional<DraftJournal> journal_;
-  std::optional<KeptChanges> kept_;         ///< of an earlier program, until somebody decides about them
+  std::optional<KeptChanges> kept_;  ///< of an earlier program, until somebody decides about them
+  /// The draft read again because of an algorithm that was loaded again, and its revision.
+  std::optional<std::pair<std::uint64_t, sim::Scenario>> read_again_;
   std::optional<std::uint64_t> published_;  ///< revision of the draft
   std::string published_meshes_;
   std::vector<std::size_t> layout_;  ///< of the lists of the world: what their positions depend on

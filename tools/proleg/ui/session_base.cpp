@@ -16,6 +16,8 @@ void SessionRouter::operate(const host::OperationRequest& request) {
     recordings_.operate(request);
   } else if (request.name.starts_with(draft_operations) || request.name.starts_with(world_operations)) {
     draft_.operate(request);
+  } else if (request.name.starts_with(algorithm_operations)) {
+    algorithms_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {
     remote_.operate(request);
   } else {

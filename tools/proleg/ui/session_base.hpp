@@ -101,17 +101,18 @@ const Handler& handler_of(const std::map<std::string_view, Handler>& handlers, c
 // How the names of the operations begin that are not for the robot.
 inline constexpr std::string_view recording_operations = "recording.";
 inline constexpr std::string_view remote_operations = "remote.";
+inline constexpr std::string_view algorithm_operations = "algorithm.";
 inline constexpr std::string_view draft_operations = "draft.";
 inline constexpr std::string_view world_operations = "world.";  ///< of a draft, too
 
-/// Four sessions behind one page: a robot, its remote control, recordings, and a draft. The name of an operation says
-/// which of them it is for; STOP and the holder of control go to the robot, then to the remote control.
+/// Five sessions behind one page: a robot, its remote control, recordings, a draft, and algorithms. The name of an
+/// operation says which of them it is for; STOP and the holder of control go to the robot, then to the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.
-  SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& remote,
-                host::RobotSession& robot)
-      : recordings_(recordings), draft_(draft), remote_(remote), robot_(robot) {}
+  SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& algorithms,
+                host::RobotSession& remote, host::RobotSession& robot)
+      : recordings_(recordings), draft_(draft), algorithms_(algorithms), remote_(remote), robot_(robot) {}
 
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
@@ -120,6 +121,7 @@ class SessionRouter final : public host::RobotSession {
  private:
   host::RobotSession& recordings_;
   host::RobotSession& draft_;
+  host::RobotSession& algorithms_;
   host::RobotSession& remote_;
   host::RobotSession& robot_;
 };

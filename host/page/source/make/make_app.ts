@@ -46,7 +46,7 @@ export class MakeApp {
     this.actions.add(
       { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
       { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
-      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => void (this.isSaving.value = !this.isSaving.value) },
+      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, isEnabled: () => !hasEditorFocus(), run: () => void (this.isSaving.value = !this.isSaving.value) },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
       { id: 'delete_object', title: 'Delete the chosen object', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: canChangeChosen, run: () => void this.remove() },
       { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
@@ -209,6 +209,11 @@ export class MakeApp {
   async simulate(): Promise<void> {
     if ((await this.page.operations.tell('load_draft', {})) !== null) this.page.shownPage.value = 'live';
   }
+}
+
+// An editor of sources saves its own file.
+function hasEditorFocus(): boolean {
+  return document.activeElement?.closest('.code') != null;
 }
 
 // What the Save button can do with a draft.

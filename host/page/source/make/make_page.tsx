@@ -1,6 +1,8 @@
 // The page Make: the world of the scenario, from above, from the side and in 3D, and where the robot will go in it.
+import { useSignal } from '@preact/signals';
 import { ScenePanel } from '../panels/scene_panel.js';
 import type { ForesightDocument, WorldObject } from '../wire/messages.js';
+import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { LibraryPanel } from './library_panel.js';
 import { MakeApp, type MakeStores } from './make_app.js';
 import { ObjectForm, StartForm } from './object_form.js';
@@ -151,6 +153,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
   make ??= new MakeApp(page);
   const app = make;
   const draft = app.draft.value;
+  const hasAlgorithmPart = useSignal(false);
   if (draft === null) {
     return (
       <p class="wait">
@@ -196,6 +199,10 @@ export function MakePage({ app: page }: { app: MakeStores }) {
           <RunForm app={app} />
         </section>
       </div>
+      <button type="button" aria-pressed={hasAlgorithmPart.value} onClick={() => (hasAlgorithmPart.value = !hasAlgorithmPart.value)}>
+        Algorithm
+      </button>
+      {hasAlgorithmPart.value && <AlgorithmPart app={app} />}
     </div>
   );
 }

@@ -3,6 +3,10 @@ import { computed, signal } from '@preact/signals-core';
 import type { ConnectionStatus } from '../wire/connection.js';
 import { Freshness } from './freshness.js';
 import type {
+  AlgorithmBuild,
+  AlgorithmCheck,
+  AlgorithmDeclaration,
+  AlgorithmFolders,
   BusDocument,
   DraftDocument,
   ForesightDocument,
@@ -58,6 +62,11 @@ export class PageState {
   readonly draftMeshes = signal<readonly Mesh[]>([]);
   readonly library = signal<readonly LibraryItem[]>([]);
   readonly foresight = signal<ForesightDocument | null>(null);
+  // The algorithms that scenarios can name, and those that viewers write.
+  readonly algorithms = signal<readonly AlgorithmDeclaration[]>([]);
+  readonly algorithmFolders = signal<AlgorithmFolders | null>(null);
+  readonly algorithmBuild = signal<AlgorithmBuild | null>(null);
+  readonly algorithmCheck = signal<AlgorithmCheck | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -151,6 +160,18 @@ export class PageState {
           break;
         case 'foresight':
           this.foresight.value = message.value;
+          break;
+        case 'algorithms':
+          this.algorithms.value = message.value;
+          break;
+        case 'algorithm_folders':
+          this.algorithmFolders.value = message.value;
+          break;
+        case 'algorithm_build':
+          this.algorithmBuild.value = message.value;
+          break;
+        case 'algorithm_check':
+          this.algorithmCheck.value = message.value;
           break;
       }
     }

@@ -362,7 +362,88 @@ export interface ForesightDocument {
   servo_problem: string | null;
 }
 
+export type UnitName = 'degree' | 'phase_degree' | 'hertz' | 'per_second' | 'ratio' | 'count';
+
+// An algorithm that a scenario can name now.
+export interface AlgorithmDeclaration {
+  name: string;
+  id: number;
+  help: string;
+  own: boolean; // of a user, not built in
+  touch: boolean; // it uses the touch sensors
+  parameters: { name: string; kind: UnitName; unit: string; minimum: number; default: number; maximum: number; help: string }[];
+}
+
+export interface FormParameter {
+  name: string;
+  unit: UnitName;
+  minimum: string; // decimal numbers
+  default: string;
+  maximum: string;
+  help: string;
+}
+
+export interface FormValue {
+  name: string;
+  unit: UnitName;
+  help: string;
+}
+
+export interface AlgorithmForm {
+  name: string;
+  id: number;
+  help: string;
+  parameters: FormParameter[];
+  values: FormValue[];
+  touch: boolean;
+}
+
+// The algorithms of users' own in the folder of the project.
+export interface AlgorithmFolders {
+  refusal: string | null; // the reason why none can be written
+  folders: { folder: string; name: string; library: string; loaded: boolean }[];
+  form: AlgorithmForm; // of a new one
+}
+
+export interface BuildMessage {
+  file: string;
+  line: number; // 0: none
+  column: number;
+  severity: 'error' | 'warning' | 'note';
+  text: string;
+}
+
+interface AlgorithmWork {
+  folder: string;
+  name: string;
+  version: string; // of the source
+  state: 'running' | 'passed' | 'failed' | 'cancelled';
+  error: string | null;
+}
+
+export interface AlgorithmBuild extends AlgorithmWork {
+  done: number;
+  of: number; // 0: not known yet
+  messages: BuildMessage[];
+}
+
+export interface AlgorithmCheck extends AlgorithmWork {
+  lines: string[];
+}
+
+// The value of `algorithm.read`.
+export interface AlgorithmSource {
+  name: string;
+  file: string;
+  text: string;
+  version: string;
+}
+
 export interface Documents {
+  algorithms: AlgorithmDeclaration[];
+  algorithm_folders: AlgorithmFolders;
+  algorithm_build: AlgorithmBuild;
+  algorithm_check: AlgorithmCheck;
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
@@ -445,6 +526,13 @@ export interface WorldOperation {
 }
 
 export interface Operations {
+  'algorithm.refresh': Record<string, never>;
+  'algorithm.read': { folder: string };
+  'algorithm.create': AlgorithmForm;
+  'algorithm.save': { folder: string; version: string; text: string; part: number; more: boolean };
+  'algorithm.build': { folder: string };
+  'algorithm.check': { folder: string };
+  'algorithm.cancel': Record<string, never>;
   'draft.undo': Record<string, never>;
   'draft.redo': Record<string, never>;
   'draft.run': { [Name in keyof RunDocument]: { name: Name; value: RunDocument[Name] } }[keyof RunDocument];

@@ -217,7 +217,7 @@ export class ScriptedRobot {
   }
 
   private sendDocuments(viewer: Viewer): void {
-    const documents: Omit<Documents, 'remote_values' | 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'foresight'> = {
+    const documents: Omit<Documents, Extract<keyof Documents, `algorithm${string}`> | 'remote_values' | 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'foresight'> = {
       robot: chain(),
       parameters: [],
       session: this.session,

@@ -1,5 +1,6 @@
 #include "shared/gait/registry.hpp"
 
+#include <atomic>
 #include <iterator>
 
 #include "shared/gait/algorithms.hpp"
@@ -29,14 +30,19 @@ constexpr const ActuationModule& (*algorithms[])() = {direct_joint_access,
 };
 
 /// The list of set_loaded_algorithms(). It is empty in a module, where nothing calls that function.
-std::span<const ActuationModule* const> loaded_algorithms;
+constinit std::atomic<const LoadedAlgorithms*> loaded_list = nullptr;
+
+LoadedAlgorithms loaded_algorithms() {
+  const LoadedAlgorithms* const list = loaded_list.load(std::memory_order_acquire);
+  return list == nullptr ? LoadedAlgorithms() : *list;
+}
 
 }  // namespace
 
-std::size_t algorithm_count() { return std::size(algorithms) + loaded_algorithms.size(); }
+std::size_t algorithm_count() { return std::size(algorithms) + loaded_algorithms().size(); }
 
 const ActuationModule& algorithm_at(std::size_t index) {
-  return index < std::size(algorithms) ? algorithms[index]() : *loaded_algorithms[index - std::size(algorithms)];
+  return index < std::size(algorithms) ? algorithms[index]() : *loaded_algorithms()[index - std::size(algorithms)];
 }
 
 const ActuationModule* find_algorithm(std::string_view name) {
@@ -57,8 +63,8 @@ const ActuationModule* find_algorithm(std::uint8_t id) {
   return nullptr;
 }
 
-void set_loaded_algorithms(std::span<const ActuationModule* const> algorithms_of_users) {
-  loaded_algorithms = algorithms_of_users;
+void set_loaded_algorithms(const LoadedAlgorithms* algorithms_of_users) {
+  loaded_list.store(algorithms_of_users, std::memory_order_release);
 }
 
 }  // namespace proleg

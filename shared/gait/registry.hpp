@@ -16,9 +16,12 @@ namespace proleg {
 [[nodiscard]] const ActuationModule* find_algorithm(std::string_view name);
 [[nodiscard]] const ActuationModule* find_algorithm(std::uint8_t id);
 
-/// Adds algorithms to those that the program was built with: users' algorithms that a program on a computer has loaded.
-/// Their names and ids differ from all others. A later call replaces the list, which must outlive all use of the
-/// registry. The call must come before other threads use the registry.
-void set_loaded_algorithms(std::span<const ActuationModule* const> algorithms);
+/// Users' algorithms that a program on a computer has loaded.
+using LoadedAlgorithms = std::span<const ActuationModule* const>;
+
+/// Adds algorithms to those that the program was built with. Their names and ids differ from all others. Null: none. A
+/// later call replaces the list, which must outlive all use of the registry, as must the algorithms of earlier lists.
+/// Other threads may use the registry meanwhile if the new list is not shorter: an index stays valid.
+void set_loaded_algorithms(const LoadedAlgorithms* algorithms);
 
 }  // namespace proleg

@@ -281,6 +281,11 @@ bool Draft::refresh() {
   return true;
 }
 
+void Draft::read_again() {
+  scenario_ = read();
+  ++revision_;
+}
+
 void Draft::mark_saved() { saved_ = texts_.all(); }
 
 void Draft::rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path,

@@ -128,6 +128,9 @@ class Draft {
   /// and that undo would not change. Files that the reader would refuse, and large ones, stay as they are. Returns
   /// whether anything has changed.
   bool refresh();
+  /// Reads the present texts again, for example because an algorithm has other parameters now. Throws InputError, and
+  /// then does nothing, if the reader refuses them.
+  void read_again();
   /// The present texts are on disk.
   void mark_saved();
   /// The files have been saved under other names, in `renamed` by their names until now, and the draft goes on there.

@@ -1,9 +1,14 @@
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 
 #include <dlfcn.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
+#include <mutex>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
@@ -71,10 +76,10 @@ void ask(const std::string& file, const char* name, const char* what, const Func
   }
 }
 
-/// Loads a library in this process.
-std::unique_ptr<const GuardedAlgorithm> load(const std::string& path) {
+/// Loads a library in this process. path: for messages, and of the algorithm. file: that is opened.
+std::unique_ptr<const GuardedAlgorithm> load(const std::string& path, const std::string& file) {
   // The loader would search its folders for a name without a folder.
-  const std::string absolute = std::filesystem::absolute(path).string();
+  const std::string absolute = std::filesystem::absolute(file).string();
   void* library = nullptr;
   ask(path, "dlopen", "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
   if (library == nullptr) {
@@ -90,10 +95,10 @@ std::unique_ptr<const GuardedAlgorithm> load(const std::string& path) {
 }
 
 /// The guard of a call does not hold for the loader itself: a damaged library ends the program inside of it.
-void try_to_load(const std::string& path) {
+void try_to_load(const std::string& path, const std::string& file) {
   const Trial trial = try_in_child([&]() -> std::string {
     try {
-      static_cast<void>(load(path));
+      static_cast<void>(load(path, file));
       return "";
     } catch (const InputError& error) {
       return error.what();
@@ -108,10 +113,116 @@ void try_to_load(const std::string& path) {
   }
 }
 
-std::vector<std::unique_ptr<const GuardedAlgorithm>>& loaded_algorithms() {
-  static auto& owned = *new std::vector<std::unique_ptr<const GuardedAlgorithm>>;
-  return owned;  // it is never destroyed, because kernels name the algorithms until the end
+void require_library(const std::string& path) {
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    throw InputError(path.empty() ? in_quotes(path) : path, 0, *found,
+                     "the library of an algorithm, as 'proleg new algorithm' makes it");
+  }
 }
+
+/// A copy of a library beside it, under a name that was never loaded: the loader takes a library that it knows by its
+/// name or its file for the same one. The file goes with this object; what is loaded stays.
+class UnknownCopy {
+ public:
+  explicit UnknownCopy(const std::filesystem::path& library) : path_(library.string() + ".XXXXXX") {
+    const int file = mkstemp(path_.data());
+    if (file < 0) {
+      throw FileError(library,
+                      std::string("cannot be copied beside itself: ") + std::generic_category().message(errno));
+    }
+    close(file);
+    std::error_code error;
+    std::filesystem::copy_file(library, path_, std::filesystem::copy_options::overwrite_existing, error);
+    if (error) {
+      unlink(path_.c_str());
+      throw FileError(library, "cannot be copied beside itself: " + error.message());
+    }
+  }
+  ~UnknownCopy() { unlink(path_.c_str()); }
+  UnknownCopy(const UnknownCopy&) = delete;
+  UnknownCopy& operator=(const UnknownCopy&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// The libraries of the program. It is never destroyed, because kernels name the algorithms until the end.
+class Libraries {
+ public:
+  static Libraries& instance() {
+    static auto& libraries = *new Libraries;
+    return libraries;
+  }
+
+  /// Adds an algorithm to the registry. replaces: one with the same path may be there. Throws InputError.
+  const ActuationModule& add(std::unique_ptr<const GuardedAlgorithm> algorithm, bool replaces) {
+    const std::lock_guard lock(mutex_);
+    const GuardedAlgorithm& added = *algorithm;
+    std::size_t place = present_.size();
+    for (std::size_t i = 0; replaces && i < present_.size(); ++i) {
+      if (is_same_file(present_[i]->file(), added.file())) {
+        place = i;
+      }
+    }
+    require_free(added, place < present_.size() ? present_[place] : nullptr);
+    if (place == present_.size()) {
+      present_.push_back(&added);
+    } else {
+      present_[place] = &added;
+    }
+    blame_for_crashes(added.file().c_str());
+    all_.push_back(std::move(algorithm));
+    publish();
+    return added;
+  }
+
+  [[nodiscard]] std::vector<std::string> files() {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> files;
+    for (const GuardedAlgorithm* const algorithm : present_) {
+      files.push_back(algorithm->file());
+    }
+    return files;
+  }
+
+ private:
+  static bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored);
+  }
+
+  /// earlier: the version that is replaced, whose name and id are free.
+  static void require_free(const GuardedAlgorithm& algorithm, const ActuationModule* earlier) {
+    const Declaration& declaration = algorithm.declaration();
+    for (const ActuationModule* const same : {find_algorithm(declaration.name), find_algorithm(declaration.id)}) {
+      if (same != nullptr && same != earlier) {
+        throw InputError(algorithm.file(), 0,
+                         "the algorithm " + in_quotes(declaration.name) + " with id " + std::to_string(declaration.id),
+                         "another name and id than those of " + in_quotes(same->declaration().name) + ", which has " +
+                             std::to_string(same->declaration().id));
+      }
+    }
+  }
+
+  /// A list for the registry. Another thread may still read an earlier one, so that none is changed or freed.
+  struct Published {
+    explicit Published(const std::vector<const GuardedAlgorithm*>& present)
+        : modules(present.begin(), present.end()), list(modules) {}
+    std::vector<const ActuationModule*> modules;
+    LoadedAlgorithms list;
+  };
+  void publish() {
+    published_.push_back(std::make_unique<const Published>(present_));
+    set_loaded_algorithms(&published_.back()->list);
+  }
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<const GuardedAlgorithm>> all_;  ///< earlier versions, too
+  std::vector<const GuardedAlgorithm*> present_;              ///< in the registry
+  std::vector<std::unique_ptr<const Published>> published_;
+};
 
 }  // namespace
 
@@ -133,41 +244,25 @@ std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface&
 }
 
 std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) {
-  if (const std::optional<std::string> found = found_instead_of_file(path)) {
-    throw InputError(path.empty() ? in_quotes(path) : path, 0, *found,
-                     "the library of an algorithm, as 'proleg new algorithm' makes it");
-  }
-  try_to_load(path);
-  return load(path);
+  require_library(path);
+  try_to_load(path, path);
+  return load(path, path);
 }
 
-std::vector<std::string> loaded_libraries() {
-  std::vector<std::string> files;
-  for (const auto& algorithm : loaded_algorithms()) {
-    files.push_back(algorithm->file());
-  }
-  return files;
-}
+std::vector<std::string> loaded_libraries() { return Libraries::instance().files(); }
 
 void load_algorithms(std::span<const std::string> paths) {
-  static std::vector<const ActuationModule*>& registered = *new std::vector<const ActuationModule*>;
   set_ending_signals([] {});
   for (const std::string& path : paths) {
-    std::unique_ptr<const GuardedAlgorithm> algorithm = load_algorithm(path);
-    const Declaration& declaration = algorithm->declaration();
-    const ActuationModule* same = find_algorithm(declaration.name);
-    same = same == nullptr ? find_algorithm(declaration.id) : same;
-    if (same != nullptr) {
-      throw InputError(path, 0,
-                       "the algorithm " + in_quotes(declaration.name) + " with id " + std::to_string(declaration.id),
-                       "another name and id than those of " + in_quotes(same->declaration().name) + ", which has " +
-                           std::to_string(same->declaration().id));
-    }
-    blame_for_crashes(algorithm->file().c_str());
-    registered.push_back(algorithm.get());
-    loaded_algorithms().push_back(std::move(algorithm));
-    set_loaded_algorithms(registered);
+    static_cast<void>(Libraries::instance().add(load_algorithm(path), false));
   }
+}
+
+const ActuationModule& load_algorithm_again(const std::string& path) {
+  require_library(path);
+  const UnknownCopy copy(path);
+  try_to_load(path, copy.path());
+  return Libraries::instance().add(load(path, copy.path()), true);
 }
 
 }  // namespace proleg

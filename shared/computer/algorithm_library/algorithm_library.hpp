@@ -26,7 +26,13 @@ namespace proleg {
 /// Call it once, before other threads start. Throws InputError, also if two algorithms have the same name or id.
 void load_algorithms(std::span<const std::string> paths);
 
-/// The paths of the libraries that load_algorithms() has loaded, in their order.
+/// Loads a library while the program runs, and adds its algorithm to the registry; if the library with this path was
+/// loaded before, the new algorithm takes the place of the earlier one. What uses the earlier one goes on with it: it
+/// stays loaded until the program ends. Any thread may call it. Needs the right to write into the library's folder.
+/// Throws as load_algorithms() does, and FileError, and then changes nothing.
+const ActuationModule& load_algorithm_again(const std::string& path);
+
+/// The paths of the libraries whose algorithms are in the registry, in the order in which they were loaded first.
 [[nodiscard]] std::vector<std::string> loaded_libraries();
 
 }  // namespace proleg

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/robot/bounds.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
@@ -287,7 +288,7 @@ json parameter_declaration_json(const Parameter& parameter) {
           {"maximum", parameter.maximum},
           {"default", parameter.default_value},
           {"useful", {useful.lower, useful.upper}},
-          {"help", parameter.help}};
+          {"help", one_line(std::string_view(parameter.help))}};
 }
 
 json parameters_document(const sim::Scenario& scenario, const ParameterTable& table) {

@@ -12,10 +12,11 @@
 
 namespace proleg::tools {
 
-// The files in algorithm_template/. @NAME@, @ID@, @SOURCE@ (the checkout) and @FOLDER@ stand for texts that
-// `proleg new algorithm` fills in.
+// The files in algorithm_template/, which algorithm_files() fills in. Lines between `@if KEY@`, `@else@` and `@end@`
+// depend on the form of the algorithm.
 [[nodiscard]] std::string_view algorithm_source_text();
-[[nodiscard]] std::string_view algorithm_test_text();
+[[nodiscard]] std::string_view algorithm_test_text();        ///< of the example, against its equation
+[[nodiscard]] std::string_view algorithm_plain_test_text();  ///< of any other
 [[nodiscard]] std::string_view algorithm_cmake_text();
 [[nodiscard]] std::string_view algorithm_actuation_text();
 [[nodiscard]] std::string_view algorithm_readme_text();

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
-#include "shared/gait/registry.hpp"
 #include "sim/authoring/library_items.hpp"
 #include "sim/authoring/robot_kinds.hpp"
 #include "sim/authoring/run_change.hpp"
@@ -156,24 +155,6 @@ json parts_json() {
           {"places", sim::sensor_places()},
           {"most_joints", max_joints},
           {"most_modules", max_slots}};
-}
-
-json algorithms_json() {
-  json algorithms = json::array();
-  for (std::size_t i = 0; i < algorithm_count(); ++i) {
-    const Declaration& declaration = algorithm_at(i).declaration();
-    json parameters = json::array();
-    for (const Parameter& parameter : declaration.parameters) {
-      parameters.push_back(parameter_declaration_json(parameter));
-    }
-    algorithms.push_back({{"name", declaration.name},
-                          {"id", declaration.id},
-                          {"help", declaration.help},
-                          {"broadcasts", !declaration.frame.empty()},
-                          {"is_user", is_user_algorithm(declaration.id)},
-                          {"parameters", std::move(parameters)}});
-  }
-  return algorithms;
 }
 
 json run_json(const sim::Scenario& scenario) {

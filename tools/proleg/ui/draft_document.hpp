@@ -21,7 +21,5 @@ namespace proleg::tools {
 [[nodiscard]] nlohmann::json library_json();
 /// The document `parts`: what a robot can get.
 [[nodiscard]] nlohmann::json parts_json();
-/// The document `algorithms`: what an actuation module can do.
-[[nodiscard]] nlohmann::json algorithms_json();
 
 }  // namespace proleg::tools

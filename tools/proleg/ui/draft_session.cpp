@@ -19,6 +19,7 @@
 #include "tools/proleg/ui/draft_document.hpp"
 #include "tools/proleg/ui/draft_operations.hpp"
 #include "tools/proleg/ui/new_draft.hpp"
+#include "tools/proleg/ui/newest_algorithms.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 
 namespace proleg::tools {
@@ -59,7 +60,6 @@ DraftSession::DraftSession(std::optional<sim::Scenario> scenario, DraftSessionOp
     : SessionThread(requests, output), options_(std::move(options)), present_(present) {
   output_.publish("library", library_json());
   output_.publish("parts", parts_json());
-  output_.publish("algorithms", algorithms_json());
   if (scenario) {
     begin(std::move(*scenario), options_.has_file);
   }
@@ -128,6 +128,18 @@ sim::Draft& DraftSession::draft() {
     throw std::runtime_error("there is no scenario to change; make a new one, or open one");
   }
   return *draft_;
+}
+
+void DraftSession::read_algorithms_again() {
+  if (!draft_ || !has_newer_algorithms(draft_->scenario())) {
+    return;
+  }
+  try {
+    draft_->read_again();
+  } catch (const InputError& error) {
+    output_.notice(host::NoticeLevel::warning,
+                   "the draft keeps an earlier version of its algorithm: " + one_line(error.what()));
+  }
 }
 
 void DraftSession::publish() {
@@ -339,7 +351,11 @@ json DraftSession::discard(const json& /*arguments*/) {
   return json::object();
 }
 
-json DraftSession::refresh(const json& /*arguments*/) { return {{"changed", draft().refresh()}}; }
+json DraftSession::refresh(const json& /*arguments*/) {
+  const bool is_changed = draft().refresh();
+  read_algorithms_again();
+  return {{"changed", is_changed}};
+}
 
 json DraftSession::diff(const json& /*arguments*/) {
   constexpr std::size_t most_text = 256 * 1024;  // a person reads no more, and an answer has a limit

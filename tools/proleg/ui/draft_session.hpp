@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/authoring/draft.hpp"
@@ -60,6 +61,8 @@ class DraftSession final : private SessionThread {
   nlohmann::json change_draft(const host::OperationRequest& operation);
   void note_robot(const std::string& before);
   void note_opened(const std::string& file) const;
+  /// Reads the draft again if an algorithm was loaded again since it was read.
+  void read_algorithms_again();
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
 
   using Handler = nlohmann::json (DraftSession::*)(const nlohmann::json&);

@@ -11,6 +11,7 @@
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
+#include "tools/proleg/ui/newest_algorithms.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -125,13 +126,18 @@ std::optional<std::uint32_t> LiveSimulation::last_move() const {
   return last;
 }
 
-void LiveSimulation::restart(StartValues values) {
+std::vector<std::string> LiveSimulation::restart(StartValues values) {
   end_recording();
+  for (sim::Scenario* const scenario : {&file_, &given_}) {
+    static_cast<void>(take_newest_algorithms(*scenario));
+  }
+  std::vector<std::string> others = take_newest_algorithms(scenario_);
   if (values == StartValues::file) {
     edits_.parameters().want_file_values();
   }
   clear_run();
   begin();
+  return others;
 }
 
 void LiveSimulation::repeat(const RunInputs& inputs) {

@@ -69,8 +69,9 @@ class LiveSimulation {
 
   /// A new run, from tick 0, to which the same will be done as to an earlier one.
   void repeat(const RunInputs& inputs);
-  /// A new run, from tick 0.
-  void restart(StartValues values);
+  /// A new run, from tick 0, with the newest versions of algorithms (take_newest_algorithms()). Returns the names of
+  /// those whose newer version cannot be used.
+  std::vector<std::string> restart(StartValues values);
   /// One tick. Throws PhysicsError; then only restart() is possible.
   void advance();
 

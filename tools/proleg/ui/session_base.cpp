@@ -23,6 +23,8 @@ void SessionRouter::operate(const host::OperationRequest& request) {
     draft_.operate(request);
   } else if (request.name.starts_with(gallery_operations)) {
     gallery_.operate(request);
+  } else if (request.name.starts_with(algorithm_operations)) {
+    algorithms_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {
     remote_.operate(request);
   } else {

@@ -101,6 +101,7 @@ const Handler& handler_of(const std::map<std::string_view, Handler>& handlers, c
 // How the names of the operations begin that are not for the robot.
 inline constexpr std::string_view recording_operations = "recording.";
 inline constexpr std::string_view remote_operations = "remote.";
+inline constexpr std::string_view algorithm_operations = "algorithm.";
 inline constexpr std::string_view draft_operations = "draft.";
 // Of a draft, too:
 inline constexpr std::string_view world_operations = "world.";
@@ -108,15 +109,20 @@ inline constexpr std::string_view draft_robot_operations = "robot.";
 inline constexpr std::string_view behaviour_operations = "behaviour.";
 inline constexpr std::string_view gallery_operations = "gallery.";
 
-/// Five sessions behind one page: a robot, its remote control, recordings, a draft, and the list of what can be opened.
-/// The name of an operation says which of them it is for; STOP and the holder of control go to the robot, then to the
-/// remote control.
+/// The sessions behind one page: a robot, its remote control, recordings, a draft, the list of what can be opened, and
+/// algorithms. The name of an operation says which of them it is for; STOP and the holder of control go to the robot,
+/// then to the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.
   SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& gallery,
-                host::RobotSession& remote, host::RobotSession& robot)
-      : recordings_(recordings), draft_(draft), gallery_(gallery), remote_(remote), robot_(robot) {}
+                host::RobotSession& algorithms, host::RobotSession& remote, host::RobotSession& robot)
+      : recordings_(recordings),
+        draft_(draft),
+        gallery_(gallery),
+        algorithms_(algorithms),
+        remote_(remote),
+        robot_(robot) {}
 
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
@@ -126,6 +132,7 @@ class SessionRouter final : public host::RobotSession {
   host::RobotSession& recordings_;
   host::RobotSession& draft_;
   host::RobotSession& gallery_;
+  host::RobotSession& algorithms_;
   host::RobotSession& remote_;
   host::RobotSession& robot_;
 };

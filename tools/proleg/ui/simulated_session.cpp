@@ -220,7 +220,11 @@ json SimulatedSession::restart(const json& arguments) {
     throw InputError("parameters", 0, in_quotes(shortened(values)), "\"wanted\" or \"file\"");
   }
   end_recording();
-  live_->restart(values == "file" ? LiveSimulation::StartValues::file : LiveSimulation::StartValues::wanted);
+  for (const std::string& name :
+       live_->restart(values == "file" ? LiveSimulation::StartValues::file : LiveSimulation::StartValues::wanted)) {
+    output_.notice(host::NoticeLevel::warning,
+                   "the new version of " + name + " has other parameters; Simulate in Make uses it");
+  }
   failure_.clear();
   steps_left_ = 0;
   ++run_;

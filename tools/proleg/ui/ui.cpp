@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -28,6 +29,7 @@
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
+#include "tools/proleg/ui/algorithm_session.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
 #include "tools/proleg/ui/gallery.hpp"
@@ -55,6 +57,7 @@ struct UiOptions {
   std::optional<std::string> page;
   bool no_browser = false;
   bool paused = false;
+  bool allow_code = false;
 };
 
 /// The files of a robot with five joints, for those who give none.
@@ -198,10 +201,26 @@ void refuse_robot_options(const UiOptions& options) {
   }
 }
 
+/// draft: of the session that reads its files again for a new version of an algorithm.
+AlgorithmSessionOptions code_options(const UiOptions& options, const std::filesystem::path& folder,
+                                     SessionRequests& draft) {
+  AlgorithmSessionOptions code{folder, "", [&draft] {
+                                 draft.operate({0, "draft.refresh", nlohmann::json::object(), 0, ""});
+                               }};
+  // Who writes an algorithm can do all that this program can do.
+  if (options.lan.lan && !options.allow_code) {
+    code.refusal = "other computers may open this page, so it takes no code; the option --allow-code lets it";
+  }
+  return code;
+}
+
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   const RecordedSessionOptions recordings = recordings_of(options);
+  if (options.allow_code && !options.lan.lan) {
+    throw InputError("--allow-code", 0, "no --lan", "--lan beside it; this computer may write code without it");
+  }
   std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
   NewRobot new_robot;
   std::optional<ScenarioRun> run;
@@ -219,7 +238,7 @@ int serve(UiOptions& options) {
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
-        RemoteSession::free_operations()}) {
+        AlgorithmSession::free_operations(), RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -232,10 +251,11 @@ int serve(UiOptions& options) {
   SessionRequests recording_requests;
   SessionRequests draft_requests;
   SessionRequests gallery_requests;
+  SessionRequests algorithm_requests;
   SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
-  SessionRouter router(recording_requests, draft_requests, gallery_requests, remote, requests);
+  SessionRouter router(recording_requests, draft_requests, gallery_requests, algorithm_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RecentFiles recent(recent_list_path());
@@ -247,6 +267,7 @@ int serve(UiOptions& options) {
       {recordings.folder, has_file, [&project_files](const std::string& file) { return project_files.has(file); },
        [&recent](const std::string& file) { note_as_recent(recent, file); }},
       draft_requests, present_draft, page);
+  const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
   const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
@@ -314,6 +335,8 @@ int main(int argc, char** argv) {
       .shows_default();
   command_line.add_option("--page", options.page, "another page, a folder with index.html").value_name("FOLDER");
   command_line.add_flag("--no-browser", options.no_browser, "only print the address");
+  command_line.add_flag("--allow-code", options.allow_code,
+                        "with --lan: let other computers write and run algorithms, which can do all that you can do");
   command_line.add_flag("--paused", options.paused, "begin at tick 0, paused");
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return serve(options); });

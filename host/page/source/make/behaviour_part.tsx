@@ -95,7 +95,7 @@ function AddModule({ app, robot, algorithms }: { app: MakeApp; robot: DraftRobot
     <details class="add-module">
       <summary>Add a gait or a reflex</summary>
       <ul class="objects">
-        {algorithms.map(({ name, help, is_user: isUser }) => (
+        {algorithms.map(({ name, help, own: isUser }) => (
           <li key={name}>
             <button type="button" disabled={obstacle !== null} title={obstacle ?? 'It moves all joints at first.'} onClick={() => void add(name)}>
               {algorithmTitle(name)}

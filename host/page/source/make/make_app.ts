@@ -15,7 +15,7 @@ export type PartOperationName = Extract<keyof Operations, `world.${string}` | `r
 type Arguments<Name extends PartOperationName> = Omit<Operations[Name], keyof PartOperation>;
 
 // The parts of the draft that can be shown beside the drawings.
-export const partNames = ['robot', 'behaviour', 'world', 'run'] as const;
+export const partNames = ['robot', 'behaviour', 'algorithm', 'world', 'run'] as const;
 export type PartName = (typeof partNames)[number];
 
 // What is dragged, and where it is now. The program gets the next step when it has answered the one before.
@@ -60,7 +60,7 @@ export class MakeApp {
       { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
       { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
       { id: 'draft_open', title: 'Open: show the scenarios', group: 'Make', keys: ['Ctrl+O'], isGlobal: true, run: () => this.toggle('open') },
-      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, run: () => this.toggle('save') },
+      { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, isEnabled: () => !hasEditorFocus(), run: () => this.toggle('save') },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
       { id: 'delete_object', title: 'Delete the chosen object, or joint', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: () => (this.part.value === 'robot' ? canChange() && this.chosenJoints.value.length === 1 : canChangeChosen()), run: () => void (this.part.peek() === 'robot' ? this.removeJoint() : this.remove()) },
       { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
@@ -312,6 +312,11 @@ export class MakeApp {
   async simulate(): Promise<void> {
     if ((await this.page.operations.tell('load_draft', {})) !== null) this.page.shownPage.value = 'live';
   }
+}
+
+// An editor of sources saves its own file.
+function hasEditorFocus(): boolean {
+  return document.activeElement?.closest('.code') != null;
 }
 
 // What the Save button can do with a draft.

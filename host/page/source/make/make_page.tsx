@@ -2,6 +2,7 @@
 // behaviour, world, run.
 import { ScenePanel } from '../panels/scene_panel.js';
 import type { ForesightDocument } from '../wire/messages.js';
+import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
 import { NewPanel } from './new_panel.js';
@@ -135,7 +136,7 @@ function Foresight({ app }: { app: MakeApp }) {
   );
 }
 
-const partTitles: Record<PartName, string> = { robot: 'Robot', behaviour: 'Behaviour', world: 'World', run: 'Run' };
+const partTitles: Record<PartName, string> = { robot: 'Robot', behaviour: 'Behaviour', algorithm: 'Algorithm', world: 'World', run: 'Run' };
 
 // Which part of the draft is at the side of the drawings.
 function PartTabs({ app }: { app: MakeApp }) {
@@ -174,6 +175,8 @@ function Part({ app }: { app: MakeApp }) {
       return <RobotPart app={app} />;
     case 'behaviour':
       return <BehaviourPart app={app} />;
+    case 'algorithm':
+      return <AlgorithmPart app={app} />;
     case 'world':
       return <WorldPart app={app} />;
     case 'run':

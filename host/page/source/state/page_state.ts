@@ -3,6 +3,9 @@ import { computed, signal } from '@preact/signals-core';
 import type { ConnectionStatus } from '../wire/connection.js';
 import { Freshness } from './freshness.js';
 import type {
+  AlgorithmBuild,
+  AlgorithmCheck,
+  AlgorithmFolders,
   BusDocument,
   Documents,
   DraftDocument,
@@ -65,6 +68,10 @@ export class PageState {
   readonly foresight = signal<ForesightDocument | null>(null);
   // What can be opened; null until somebody has looked.
   readonly gallery = signal<Documents['gallery'] | null>(null);
+  // Algorithms that viewers write.
+  readonly algorithmFolders = signal<AlgorithmFolders | null>(null);
+  readonly algorithmBuild = signal<AlgorithmBuild | null>(null);
+  readonly algorithmCheck = signal<AlgorithmCheck | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -162,15 +169,24 @@ export class PageState {
           break;
         case 'parts':
           this.parts.value = message.value;
-          return;
-        case 'algorithms':
-          this.algorithms.value = message.value;
-          return;
+          break;
         case 'gallery':
           this.gallery.value = { entries: [...reuse(this.gallery.peek()?.entries ?? [], message.value.entries)] };
           break;
         case 'foresight':
           this.foresight.value = message.value;
+          break;
+        case 'algorithms':
+          this.algorithms.value = message.value;
+          break;
+        case 'algorithm_folders':
+          this.algorithmFolders.value = message.value;
+          break;
+        case 'algorithm_build':
+          this.algorithmBuild.value = message.value;
+          break;
+        case 'algorithm_check':
+          this.algorithmCheck.value = message.value;
           break;
       }
     }

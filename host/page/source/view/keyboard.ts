@@ -11,6 +11,11 @@ function isTextField(target: EventTarget | null): boolean {
   );
 }
 
+// The element that has the focus, also in a shadow root.
+function targetOf(event: KeyboardEvent): EventTarget | null {
+  return event.composedPath()[0] ?? event.target;
+}
+
 // Elements that use the arrow keys themselves.
 function usesArrows(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest('input, select, [role="slider"], [data-arrows]') !== null;
@@ -32,7 +37,7 @@ export function listenToKeys(actions: Pick<ActionList, 'forKey'>, robotKeys: Rob
   window.addEventListener(
     'keydown',
     (event) => {
-      const isText = isTextField(event.target);
+      const isText = isTextField(targetOf(event));
       if (robotKeys !== null && (event.key === 'Escape' || (event.key === ' ' && !isText))) {
         // A key that is held down counts as one press.
         if (!event.repeat) robotKeys[event.key === ' ' ? 'space' : 'escape']();
@@ -58,7 +63,7 @@ export function listenToKeys(actions: Pick<ActionList, 'forKey'>, robotKeys: Rob
   window.addEventListener(
     'keyup',
     (event) => {
-      if (event.key === ' ' && !isTextField(event.target)) event.preventDefault();
+      if (event.key === ' ' && !isTextField(targetOf(event))) event.preventDefault();
     },
     { capture: true },
   );

@@ -422,8 +422,9 @@ export interface AlgorithmDocument {
   name: string;
   id: number;
   help: string;
+  own: boolean; // of a user, not built in
+  touch: boolean; // it uses the touch sensors
   broadcasts: boolean;
-  is_user: boolean;
   parameters: AlgorithmParameter[];
 }
 
@@ -485,8 +486,78 @@ export interface GalleryEntry {
   picture: GalleryPicture | null;
 }
 
+export type UnitName = 'degree' | 'phase_degree' | 'hertz' | 'per_second' | 'ratio' | 'count';
+
+export interface FormParameter {
+  name: string;
+  unit: UnitName;
+  minimum: string; // decimal numbers
+  default: string;
+  maximum: string;
+  help: string;
+}
+
+export interface FormValue {
+  name: string;
+  unit: UnitName;
+  help: string;
+}
+
+export interface AlgorithmForm {
+  name: string;
+  id: number;
+  help: string;
+  parameters: FormParameter[];
+  values: FormValue[];
+  touch: boolean;
+}
+
+// The algorithms of users' own in the folder of the project.
+export interface AlgorithmFolders {
+  refusal: string | null; // the reason why none can be written
+  folders: { folder: string; name: string; library: string; loaded: boolean }[];
+  form: AlgorithmForm; // of a new one
+}
+
+export interface BuildMessage {
+  file: string;
+  line: number; // 0: none
+  column: number;
+  severity: 'error' | 'warning' | 'note';
+  text: string;
+}
+
+interface AlgorithmWork {
+  folder: string;
+  name: string;
+  version: string; // of the source
+  state: 'running' | 'passed' | 'failed' | 'cancelled';
+  error: string | null;
+}
+
+export interface AlgorithmBuild extends AlgorithmWork {
+  done: number;
+  of: number; // 0: not known yet
+  messages: BuildMessage[];
+}
+
+export interface AlgorithmCheck extends AlgorithmWork {
+  lines: string[];
+}
+
+// The value of `algorithm.read`.
+export interface AlgorithmSource {
+  name: string;
+  file: string;
+  text: string;
+  version: string;
+}
+
 export interface Documents {
   gallery: { entries: GalleryEntry[] };
+  algorithm_folders: AlgorithmFolders;
+  algorithm_build: AlgorithmBuild;
+  algorithm_check: AlgorithmCheck;
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
@@ -582,6 +653,13 @@ export interface NewScenario {
 }
 
 export interface Operations {
+  'algorithm.refresh': Record<string, never>;
+  'algorithm.read': { folder: string };
+  'algorithm.create': AlgorithmForm;
+  'algorithm.save': { folder: string; version: string; text: string; part: number; more: boolean };
+  'algorithm.build': { folder: string };
+  'algorithm.check': { folder: string };
+  'algorithm.cancel': Record<string, never>;
   'draft.new': NewScenario;
   'draft.open': { file: string }; // a file of `gallery`
   'draft.take': { file: string; parts: readonly ('robot' | 'actuation' | 'environment')[] };

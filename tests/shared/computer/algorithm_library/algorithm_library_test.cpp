@@ -143,14 +143,15 @@ TEST_F(AlgorithmLibrary, AFileThatIsNoLibraryIsNamed) {
 TEST_F(AlgorithmLibrary, TheRegistryFindsLoadedAlgorithmsBesideTheOthers) {
   const auto algorithm = make_algorithm(good(), "good.so");
   const std::array<const ActuationModule*, 1> loaded{algorithm.get()};
+  const LoadedAlgorithms list(loaded);
   const std::size_t built_in = algorithm_count();
-  set_loaded_algorithms(loaded);
+  set_loaded_algorithms(&list);
   EXPECT_EQ(algorithm_count(), built_in + 1);
   EXPECT_EQ(find_algorithm("counter"), algorithm.get());
   EXPECT_EQ(find_algorithm(std::uint8_t{96}), algorithm.get());
   EXPECT_EQ(&algorithm_at(built_in), algorithm.get());
   EXPECT_NE(find_algorithm("PatternGenerator_sinusoidal"), nullptr);
-  set_loaded_algorithms({});
+  set_loaded_algorithms(nullptr);
   EXPECT_EQ(find_algorithm("counter"), nullptr);
 }
 

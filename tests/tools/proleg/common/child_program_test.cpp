@@ -1,0 +1,94 @@
+#include "tools/proleg/common/child_program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::tools {
+namespace {
+
+struct Ended {
+  int status;
+  std::string output;
+};
+
+Ended wait_for(ChildProgram& child) {
+  std::string output;
+  while (true) {
+    const std::optional<int> status = child.status();
+    output += child.read();
+    if (status) {
+      return {*status, output};
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+Ended run(const std::vector<std::string>& command, const std::string& folder = "/") {
+  ChildProgram child(command, folder);
+  return wait_for(child);
+}
+
+TEST(ChildProgram, GivesTheOutputAndTheStatusOfItsEnd) {
+  const Ended ended = run({"sh", "-c", "echo out; echo err >&2; exit 3"});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_EQ(ended.output, "out\nerr\n");
+  EXPECT_EQ(run({"sh", "-c", "kill -9 $$"}).status, 128 + SIGKILL);
+}
+
+TEST(ChildProgram, PassesArgumentsAsTheyAre) {
+  EXPECT_EQ(run({"printf", "%s|", "a b", "$HOME", "; exit 1", "*"}).output, "a b|$HOME|; exit 1|*|");
+}
+
+TEST(ChildProgram, RunsInItsFolderWithoutInputAndInEnglish) {
+  EXPECT_EQ(run({"pwd"}, "/usr").output, "/usr\n");
+  EXPECT_EQ(run({"cat"}).output, "");
+  setenv("LC_ALL", "de_DE.UTF-8", 1);
+  EXPECT_EQ(run({"sh", "-c", "echo $LC_ALL"}).output, "C\n");
+}
+
+TEST(ChildProgram, AProgramThatIsMissingIsNamed) {
+  try {
+    const ChildProgram child({"no-such-compiler"}, "/");
+    ADD_FAILURE() << "started";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()), "found no program no-such-compiler, expected it in a folder of PATH");
+  }
+}
+
+TEST(ChildProgram, EndsWithAllThatItHasStarted) {
+  ChildProgram child({"sh", "-c", "sleep 1000 & echo $!; wait"}, "/");
+  std::string output;
+  while (output.find('\n') == std::string::npos) {
+    output += child.read();
+  }
+  const auto other = parse_whole<pid_t>(trimmed(output));
+  ASSERT_TRUE(other.has_value()) << output;
+  child.end();
+  EXPECT_EQ(wait_for(child).status, 128 + SIGTERM);
+  // Its new parent may not have waited for it yet: a signal still finds it then.
+  for (int i = 0; i < 1000 && kill(*other, 0) == 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_NE(kill(*other, 0), 0);
+}
+
+TEST(ChildProgram, EndsAlsoIfItIgnoresTheRequest) {
+  ChildProgram child({"sh", "-c", "trap '' TERM; echo ready; while :; do sleep 1; done"}, "/");
+  std::string output;
+  while (output != "ready\n") {
+    output += child.read();
+  }
+  child.end();
+  EXPECT_EQ(wait_for(child).status, 128 + SIGKILL);
+}
+
+}  // namespace
+}  // namespace proleg::tools

@@ -1,0 +1,253 @@
+#include "tools/proleg/ui/algorithm_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "shared/gait/registry.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "viewers.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class AlgorithmSessionTest : public ::testing::Test {
+ protected:
+  AlgorithmSessionTest() { open(); }
+  void open(const std::string& refusal = "") {
+    session_.reset();
+    requests_.emplace();
+    AlgorithmSessionOptions options{project(), refusal, [this] { ++loads_; }};
+    session_.emplace(options, *requests_, viewers_);
+  }
+  [[nodiscard]] fs::path project() const {
+    const fs::path folder = folder_ / "project";
+    fs::create_directories(folder);
+    return folder;
+  }
+
+  Viewers::Answer ask(const std::string& name, json arguments = json::object(), host::ClientId client = 1) {
+    requests_->operate({++request_, name, std::move(arguments), client, "a test"});
+    return viewers_.answer(request_);
+  }
+  json must(const std::string& name, json arguments = json::object()) {
+    const Viewers::Answer answer = ask(name, std::move(arguments));
+    EXPECT_TRUE(answer.is_done) << name << ": " << answer.text;
+    return answer.is_done ? json::parse(answer.text) : json::object();
+  }
+  json form(const std::string& name, unsigned id) {
+    json filled = viewers_.document("algorithm_folders")["form"];
+    filled["name"] = name;
+    filled["id"] = id;
+    return filled;
+  }
+  json finished_build() {
+    must("algorithm.build", {{"folder", "test_wave"}});
+    return viewers_.document_when(
+        "algorithm_build", [](const json& document) { return document.is_object() && document["state"] != "running"; });
+  }
+  void replace(const std::string& part, const std::string& by) {
+    const json source = must("algorithm.read", {{"folder", "test_wave"}});
+    std::string text = source["text"];
+    const std::size_t at = text.find(part);
+    ASSERT_NE(at, std::string::npos) << part;
+    text.replace(at, part.size(), by);
+    must("algorithm.save", {{"folder", "test_wave"}, {"version", source["version"]}, {"text", text}});
+  }
+
+  TemporaryFolder folder_;
+  Viewers viewers_;
+  std::optional<SessionRequests> requests_;
+  std::atomic<int> loads_ = 0;
+  std::optional<AlgorithmSession> session_;
+  std::uint64_t request_ = 0;
+};
+
+TEST_F(AlgorithmSessionTest, ListsWhatAScenarioCanName) {
+  const json algorithms = viewers_.document("algorithms");
+  ASSERT_GE(algorithms.size(), 15U);
+  const auto sine = std::ranges::find_if(
+      algorithms, [](const json& algorithm) { return algorithm["name"] == "PatternGenerator_sinusoidal"; });
+  ASSERT_NE(sine, algorithms.end());
+  EXPECT_EQ((*sine)["own"], false);
+  const json amplitude = (*sine)["parameters"][0];
+  EXPECT_EQ(amplitude["name"], "amplitude");
+  EXPECT_EQ(amplitude["unit"], "deg");
+  EXPECT_EQ(amplitude["minimum"], 0);
+  EXPECT_EQ(amplitude["maximum"], quarter_turn);
+  EXPECT_EQ(amplitude["scale"], 90.0 / quarter_turn);
+}
+
+TEST_F(AlgorithmSessionTest, WritesANewOneFromItsForm) {
+  EXPECT_EQ(must("algorithm.create", form("my_wave", 100))["folder"], "my_wave");
+  const json folders = viewers_.document("algorithm_folders")["folders"];
+  ASSERT_EQ(folders.size(), 1U);
+  EXPECT_EQ(folders[0]["name"], "my_wave");
+  EXPECT_EQ(folders[0]["loaded"], false);
+  const json source = must("algorithm.read", {{"folder", "my_wave"}});
+  EXPECT_EQ(source["file"], "my_wave.cpp");
+  EXPECT_EQ(source["text"], file_contents(project() / "my_wave/my_wave.cpp"));
+  EXPECT_TRUE(ask("algorithm.create", form("my_wave", 101)).text.starts_with("name: found 'my_wave', the algorithm"));
+  fs::create_directory(project() / "taken");
+  EXPECT_TRUE(ask("algorithm.create", form("taken", 101)).text.starts_with("name: found 'taken', a folder that"));
+  EXPECT_TRUE(ask("algorithm.create", form("class", 101)).text.starts_with("name: found 'class'"));
+  EXPECT_TRUE(ask("algorithm.create", form("wave", 95)).text.starts_with("id: found 95"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(project()), fs::directory_iterator()), 2);
+}
+
+TEST_F(AlgorithmSessionTest, AFormOfTheWrongKindIsRefusedWithItsField) {
+  const json good = form("my_wave", 100);
+  const std::vector<std::pair<json, std::string>> cases{
+      {{{"name", 1}}, "name: "},
+      {{{"id", "100"}}, "id: "},
+      {{{"id", 1e99}}, "id: "},
+      {{{"id", 356}}, "id: found 356"},
+      {{{"parameters", 1}}, "parameters: "},
+      {{{"parameters", {1}}}, "parameters.0: "},
+      {{{"parameters", json::array({json::object()})}}, "parameters.0.name: "},
+      {{{"values", {{{"name", "a"}, {"unit", "mile"}, {"help", "x"}}}}}, "values.0.unit: found 'mile'"},
+      {{{"touch", 1}}, "touch: "}};
+  for (const auto& [part, begin] : cases) {
+    json bad = good;
+    bad.update(part);
+    const Viewers::Answer answer = ask("algorithm.create", bad);
+    EXPECT_FALSE(answer.is_done) << begin;
+    EXPECT_TRUE(answer.text.starts_with(begin)) << begin << ": " << answer.text;
+  }
+  EXPECT_TRUE(fs::is_empty(project()));
+}
+
+TEST_F(AlgorithmSessionTest, SavesInPartsAndNeverOverAFileThatHasChanged) {
+  must("algorithm.create", form("my_wave", 100));
+  const json source = must("algorithm.read", {{"folder", "my_wave"}});
+  const json begin{{"folder", "my_wave"}, {"version", source["version"]}};
+  const auto part = [&](const char* text, unsigned number, bool more, host::ClientId client = 1) {
+    json arguments = begin;
+    arguments.update({{"text", text}, {"part", number}, {"more", more}});
+    return ask("algorithm.save", arguments, client);
+  };
+  EXPECT_TRUE(part("int a;\n", 0, true).is_done);
+  EXPECT_NE(file_contents(project() / "my_wave/my_wave.cpp"), "int a;\n") << "not before the last part";
+  EXPECT_FALSE(part("int b;\n", 2, false).is_done) << "a part is missing";
+  EXPECT_FALSE(part("int b;\n", 1, false).is_done) << "it begins again";
+  EXPECT_TRUE(part("int a;\n", 0, true).is_done);
+  EXPECT_FALSE(part("int c;\n", 1, false, 2).is_done) << "of another viewer";
+  EXPECT_TRUE(part("int a;\n", 0, true).is_done);
+  const Viewers::Answer saved = part("int b;\n", 1, false);
+  ASSERT_TRUE(saved.is_done) << saved.text;
+  EXPECT_EQ(file_contents(project() / "my_wave/my_wave.cpp"), "int a;\nint b;\n");
+  const Viewers::Answer late = part("int c;\n", 0, false);
+  EXPECT_EQ(late.text.substr(0, 49), "my_wave.cpp: found a file that has changed since ");
+  EXPECT_EQ(file_contents(project() / "my_wave/my_wave.cpp"), "int a;\nint b;\n");
+  EXPECT_FALSE(part(std::string(256 * 1024 + 1, 'x').c_str(), 0, false).is_done);
+}
+
+TEST_F(AlgorithmSessionTest, NothingOutsideOfTheProjectIsReached) {
+  must("algorithm.create", form("my_wave", 100));
+  fs::create_directory(folder_ / "outside");
+  fs::copy(project() / "my_wave", folder_ / "outside/other", fs::copy_options::recursive);
+  fs::create_directory_symlink(folder_ / "outside/other", project() / "linked");
+  fs::copy(project() / "my_wave", project() / "linked_source", fs::copy_options::recursive);
+  fs::remove(project() / "linked_source/my_wave.cpp");
+  fs::create_symlink(folder_ / "outside/other/my_wave.cpp", project() / "linked_source/my_wave.cpp");
+  must("algorithm.refresh");
+  EXPECT_EQ(viewers_.document("algorithm_folders")["folders"].size(), 1U);
+  for (const char* name : {"linked", "linked_source", "../outside/other", "..", ".", "", "/", "my_wave/../my_wave"}) {
+    for (const char* operation : {"algorithm.read", "algorithm.build", "algorithm.check"}) {
+      const Viewers::Answer answer = ask(operation, {{"folder", name}});
+      EXPECT_FALSE(answer.is_done) << operation << ' ' << name;
+      EXPECT_TRUE(answer.text.starts_with("folder: found")) << answer.text;
+    }
+  }
+}
+
+TEST_F(AlgorithmSessionTest, WithoutPermissionEverythingIsRefused) {
+  must("algorithm.create", form("my_wave", 100));
+  open("no code here");
+  EXPECT_EQ(viewers_.document("algorithm_folders")["refusal"], "no code here");
+  EXPECT_EQ(viewers_.document("algorithm_folders")["folders"], json::array());
+  for (const char* operation : {"refresh", "read", "create", "save", "build", "check", "cancel"}) {
+    const Viewers::Answer answer = ask(std::string("algorithm.") + operation, {{"folder", "my_wave"}});
+    EXPECT_FALSE(answer.is_done);
+    EXPECT_EQ(answer.text, "no code here") << operation;
+  }
+}
+
+// One test, because the core is compiled for it.
+TEST_F(AlgorithmSessionTest, ABuildNamesTheLineOfAnErrorAndLoadsWhatPasses) {
+  json filled = form("test_wave", 126);
+  filled["touch"] = true;
+  filled["values"] = {{{"name", "waited"}, {"unit", "count"}, {"help", "ticks since the last touch"}}};
+  filled["parameters"].push_back({{"name", "delay"},
+                                  {"unit", "count"},
+                                  {"minimum", "0"},
+                                  {"default", "3"},
+                                  {"maximum", "250"},
+                                  {"help", "ticks to wait after a touch"}});
+  must("algorithm.create", filled);
+  replace("return about; }", "return abut; }");
+  json build = finished_build();
+  EXPECT_EQ(build["state"], "failed");
+  ASSERT_GE(build["messages"].size(), 1U) << build;
+  EXPECT_EQ(build["messages"][0]["file"], "test_wave.cpp");
+  EXPECT_EQ(build["messages"][0]["severity"], "error");
+  EXPECT_NE(build["messages"][0]["text"].get<std::string>().find("abut"), std::string::npos);
+  EXPECT_EQ(find_algorithm("test_wave"), nullptr);
+  EXPECT_EQ(loads_, 0);
+
+  replace("return abut; }", "return about; }");
+  build = finished_build();
+  ASSERT_EQ(build["state"], "passed") << build;
+  EXPECT_EQ(build["version"], must("algorithm.read", {{"folder", "test_wave"}})["version"]);
+  EXPECT_EQ(loads_, 1);
+  const ActuationModule* const first = find_algorithm("test_wave");
+  ASSERT_NE(first, nullptr);
+  EXPECT_TRUE(first->senses_contacts());
+  EXPECT_EQ(first->declaration().parameters.back().maximum, 250);
+  EXPECT_EQ(first->declaration().internal_values.size(), 4U);
+  const std::size_t count = algorithm_count();
+  EXPECT_EQ(viewers_.document("algorithms").back()["name"], "test_wave");
+  EXPECT_EQ(viewers_.document("algorithm_folders")["folders"][0]["loaded"], true);
+
+  replace("a sine with a second harmonic", "another sine");
+  ASSERT_EQ(finished_build()["state"], "passed");
+  EXPECT_EQ(loads_, 2);
+  const ActuationModule* const second = find_algorithm("test_wave");
+  EXPECT_NE(second, first);
+  EXPECT_EQ(std::string_view(second->declaration().help), "another sine");
+  EXPECT_EQ(std::string_view(first->declaration().help), "a sine with a second harmonic") << "who has it goes on";
+  EXPECT_EQ(algorithm_count(), count);
+
+  replace("    126, \"test_wave\"", "    126, \"PatternGenerator_sinusoidal\"");
+  build = finished_build();
+  EXPECT_EQ(build["state"], "failed");
+  EXPECT_NE(build["error"].get<std::string>().find("expected another name and id"), std::string::npos) << build;
+  EXPECT_EQ(find_algorithm("test_wave"), second) << "what was loaded before stays";
+}
+
+TEST_F(AlgorithmSessionTest, OnlyOneBuildAtATimeAndItCanBeCancelled) {
+  json filled = form("other_wave", 125);
+  filled["parameters"].erase(0);  // it is no wave then
+  must("algorithm.create", filled);
+  EXPECT_EQ(ask("algorithm.cancel").text, "nothing is being built or verified");
+  must("algorithm.build", {{"folder", "other_wave"}});
+  EXPECT_EQ(ask("algorithm.build", {{"folder", "other_wave"}}).text, "other_wave is being built; wait, or cancel it");
+  must("algorithm.cancel");
+  const json build = viewers_.document_when(
+      "algorithm_build", [](const json& document) { return document.is_object() && document["state"] != "running"; });
+  EXPECT_EQ(build["state"], "cancelled");
+  must("algorithm.build", {{"folder", "other_wave"}});
+  const json again = viewers_.document_when("algorithm_build", [](const json& document) {
+    return document["state"] == "passed" || document["state"] == "failed";
+  });
+  EXPECT_EQ(again["state"], "passed") << again;
+}
+
+}  // namespace
+}  // namespace proleg::tools

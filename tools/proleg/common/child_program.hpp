@@ -1,0 +1,41 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace proleg::tools {
+
+/// Another program that runs beside this one: its output is read as it comes, and it can be ended. It gets no input, no
+/// open files of this program, and English messages; it gives way to other programs. It runs without a shell.
+class ChildProgram {
+ public:
+  /// Starts it in a folder. command: the program, which is searched for as in a shell, and its arguments. Throws
+  /// std::runtime_error if it cannot be started.
+  ChildProgram(const std::vector<std::string>& command, const std::string& folder);
+  /// Ends it, with the programs that it has started.
+  ~ChildProgram();
+  ChildProgram(const ChildProgram&) = delete;
+  ChildProgram& operator=(const ChildProgram&) = delete;
+
+  /// What it has written since the last call, to standard output and standard error. Does not wait.
+  [[nodiscard]] std::string read();
+  /// Its exit status, or 128 + the number of a signal, as a shell reports it; nothing as long as it runs. Does not
+  /// wait. What it has started ends with it. Output that it wrote before can still be read.
+  [[nodiscard]] std::optional<int> status();
+  /// Asks it to end, and ends it if it has not done so after three seconds; status() says when it has ended.
+  void end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  pid_t process_ = 0;
+  int output_ = -1;
+  std::optional<int> status_;
+  std::optional<Clock::time_point> killed_at_;
+};
+
+}  // namespace proleg::tools

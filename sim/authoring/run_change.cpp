@@ -48,10 +48,10 @@ void RunChange::set_physics(std::string_view tag, const std::string& content) {
   const std::string& file = scenario_.environment_file;
   const ElementNumber engine = physics();
   if (change_.xml(file).children(engine).empty()) {
-    const std::string name = std::string(name_of(scenario_.environment.engine)) + "properties_tag";
+    const std::string name = std::string(name_of(scenario_.environment.engine)) + "properties";
     change_.apply(file, change_.xml(file).add_last(engine, "<" + name + ">\n</" + name + ">"));
   }
-  // All engines read the properties_tag of each other (docs/scenario-files.md).
+  // All engines read the properties of each other (docs/scenario-files.md).
   set_tag(change_, file, change_.xml(file).children(engine).front(), tag, content);
 }
 

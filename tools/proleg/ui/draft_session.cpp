@@ -219,10 +219,11 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
       {"draft.discard", &DraftSession::discard}, {"draft.refresh", &DraftSession::refresh},
       {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
       {"draft.save_as", &DraftSession::save_as}};
-  if (operation.name == run_operation_name || !operation.name.starts_with(draft_operations)) {
-    return change_draft(operation);
-  }
-  return (this->*handler_of(handlers, operation.name))(operation.arguments);
+  const bool is_change = operation.name == run_operation_name || !operation.name.starts_with(draft_operations);
+  json value = is_change ? change_draft(operation) : (this->*handler_of(handlers, operation.name))(operation.arguments);
+  // The answer comes behind what it is about, and the next operation that waits is compared with this layout.
+  publish();
+  return value;
 }
 
 json DraftSession::change_draft(const host::OperationRequest& operation) {
@@ -240,13 +241,21 @@ json DraftSession::change_draft(const host::OperationRequest& operation) {
   }
   draft().change(change.label, gesture, change.change);
   is_layout_new_ = is_layout_new_ || change.moves_positions;
-  publish();  // the next operation that waits is compared with this layout
   return {{"revision", draft().revision()}};
 }
 
+/// Changes of a scenario with files are kept beside them, and offered when it is opened again.
+void DraftSession::require_kept_changes(const json& arguments) const {
+  const bool discards = argument<bool>(arguments, "discard", "true or false").value_or(false);
+  if (draft_ && !options_.has_file && !discards && !draft_->changed_files().empty()) {
+    throw std::runtime_error(
+        "the changes of this new scenario are not saved; save them into a folder, or discard them");
+  }
+}
+
 json DraftSession::make_new(const json& arguments) {
+  require_kept_changes(arguments);
   begin(new_scenario(arguments), false);
-  publish();  // the answer comes behind what it is about
   return {{"revision", draft().revision()}};
 }
 
@@ -261,9 +270,9 @@ std::string DraftSession::file_to_open(const json& arguments) const {
 
 json DraftSession::open(const json& arguments) {
   const std::string file = file_to_open(arguments);
+  require_kept_changes(arguments);
   begin(sim::read_scenario(file, disk_), true);
   note_opened(file);
-  publish();
   return {{"revision", draft().revision()}};
 }
 
@@ -295,7 +304,6 @@ json DraftSession::take(const json& arguments) {
     }
   });
   is_layout_new_ = true;
-  publish();
   return {{"revision", draft().revision()}};
 }
 

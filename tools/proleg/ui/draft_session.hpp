@@ -61,6 +61,7 @@ class DraftSession final : private SessionThread {
   nlohmann::json change_draft(const host::OperationRequest& operation);
   void note_robot(const std::string& before);
   void note_opened(const std::string& file) const;
+  void require_kept_changes(const nlohmann::json& arguments) const;
   /// Reads the draft again if an algorithm was loaded again since it was read.
   void read_algorithms_again();
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);

@@ -34,6 +34,7 @@ export class MakeApp {
   readonly panel = signal<'none' | 'new' | 'open' | 'save'>('none'); // what is open below the bar
   readonly part = signal<PartName>('world');
   readonly chosenJoints = signal<readonly number[]>([]); // kernel order
+  readonly discards = signal(false); // changes of a draft without files may be lost
   readonly refit = signal(0); // counts the times when the drawings show everything anew
   readonly chosenModule = signal(0); // an actuation module
   // The joints of an actuation module while a change of them is on its way.
@@ -90,7 +91,7 @@ export class MakeApp {
 
   // Opens a scenario of the gallery.
   async open(file: string): Promise<void> {
-    if ((await this.page.operations.tell('draft.open', { file })) !== null) {
+    if ((await this.page.operations.tell('draft.open', { file, ...this.discard() })) !== null) {
       this.forgetChoice();
       this.panel.value = 'none';
     }
@@ -104,11 +105,22 @@ export class MakeApp {
     }
   }
 
+  // Whether a new draft would lose the changes of this one: those of a scenario with files are kept beside them.
+  wouldLose(): boolean {
+    const draft = this.draft.value;
+    return draft !== null && !draft.has_file && draft.changed.length > 0 && !this.discards.value;
+  }
+
+  private discard(): { discard?: boolean } {
+    return this.discards.peek() ? { discard: true } : {};
+  }
+
   // Another scenario has other parts.
   private forgetChoice(): void {
     this.chosen.value = null;
     this.chosenJoints.value = [];
     this.chosenModule.value = 0;
+    this.discards.value = false;
     this.refit.value += 1;
   }
 
@@ -281,7 +293,7 @@ export class MakeApp {
   // or null.
   makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
     this.send(() =>
-      this.page.operations.ask('draft.new', words).then(
+      this.page.operations.ask('draft.new', { ...words, ...this.discard() }).then(
         () => {
           this.forgetChoice();
           answered(null);
@@ -295,7 +307,7 @@ export class MakeApp {
   async createNew(words: NewScenario, folder: string): Promise<string | null> {
     const { operations } = this.page;
     try {
-      await operations.ask('draft.new', words);
+      await operations.ask('draft.new', { ...words, ...this.discard() });
       await operations.ask('draft.save_as', { folder });
       this.panel.value = 'none';
       if (this.page.state.robot.value?.kind !== 'bus') {

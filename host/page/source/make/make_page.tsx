@@ -5,7 +5,7 @@ import type { ForesightDocument } from '../wire/messages.js';
 import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
-import { NewPanel } from './new_panel.js';
+import { LossQuestion, NewPanel } from './new_panel.js';
 import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';
 import { FileList, RunForm } from './run_form.js';
@@ -200,10 +200,11 @@ export function MakePage({ app: page }: { app: MakeStores }) {
       <div class="make">
         <div class="make-bar">
           <h1 class="name">No scenario is open</h1>
-          <span class="hint">Make a new one, or open one.</span>
+          <button type="button" aria-pressed={app.panel.value === 'new'} title="A robot, its gait and its world in four steps (N)" onClick={() => app.toggle('new')}>
+            New …
+          </button>
         </div>
-        <NewPanel app={app} />
-        <OpenPanel app={app} />
+        {app.panel.value === 'new' ? <NewPanel app={app} /> : <OpenPanel app={app} />}
       </div>
     );
   }
@@ -211,7 +212,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
     <div class="make">
       <Bar app={app} />
       {app.panel.value === 'save' && <SavePanel app={app} />}
-      {app.panel.value === 'open' && <OpenPanel app={app} />}
+      {app.panel.value === 'open' && (app.wouldLose() ? <LossQuestion app={app} /> : <OpenPanel app={app} />)}
       <Unsaved app={app} />
       {draft.warnings.map((warning) => (
         <div class="band info" role="status" key={warning}>

@@ -172,17 +172,39 @@ function WorldStep({ send }: { send(): void }) {
   );
 }
 
+// Before a draft that has no files is replaced.
+export function LossQuestion({ app }: { app: MakeApp }) {
+  return (
+    <section class="panel make-panel" aria-label="Unsaved" data-testid="loss-question">
+      <p>The changes of the present scenario are not saved, and it has no files in which they could be kept.</p>
+      <div class="fields">
+        <button type="button" class="primary" onClick={() => (app.panel.value = 'save')}>
+          Save …
+        </button>
+        <button type="button" onClick={() => (app.discards.value = true)}>
+          Go on without them
+        </button>
+        <button type="button" onClick={() => (app.panel.value = 'none')}>
+          Close
+        </button>
+      </div>
+    </section>
+  );
+}
+
 export function NewPanel({ app }: { app: MakeApp }) {
   const obstacle = app.obstacle();
   const step = choices.step.value;
   const last = steps.length - 1;
+  const wouldLose = app.wouldLose();
   const send = () => {
     app.makeNew(choices.words, (refusal) => (choices.problem.value = refusal));
   };
   useEffect(() => {
     choices.step.value = 0;
-    if (obstacle === null) send();
-  }, [obstacle]);
+    if (obstacle === null && !wouldLose) send();
+  }, [obstacle, wouldLose]);
+  if (wouldLose) return <LossQuestion app={app} />;
   const name = choices.name.value.trim();
   const create = async () => {
     const folder = name === '' ? `robot ${new Date().toISOString().slice(0, 10)}` : name;

@@ -650,6 +650,7 @@ export interface NewScenario {
   item?: string; // of the library, in front of the robot
   values?: Record<string, number>;
   friction?: number; // of the ground
+  discard?: boolean; // the changes of a draft without files
 }
 
 export interface Operations {
@@ -661,7 +662,7 @@ export interface Operations {
   'algorithm.check': { folder: string };
   'algorithm.cancel': Record<string, never>;
   'draft.new': NewScenario;
-  'draft.open': { file: string }; // a file of `gallery`
+  'draft.open': { file: string; discard?: boolean }; // a file of `gallery`
   'draft.take': { file: string; parts: readonly ('robot' | 'actuation' | 'environment')[] };
   'gallery.look': Record<string, never>;
   'draft.undo': Record<string, never>;

@@ -41,7 +41,7 @@ describe("an algorithm of one's own", () => {
 
   it('begins with a form, which says at the field what is wrong', async () => {
     await page().keyboard.press('3');
-    await page().getByRole('button', { name: 'Algorithm', exact: true }).click();
+    await page().getByRole('tab', { name: 'Algorithm', exact: true }).click();
     await part().getByRole('button', { name: 'New …' }).click();
     await form().locator('input[name=name]').fill('class');
     await form().locator('input[name="parameters.1.default"]').fill('21');
@@ -160,7 +160,7 @@ describe("an algorithm of one's own", () => {
   it('only shows to those who do not drive', async () => {
     const other = await ui.look();
     await other.page.keyboard.press('3');
-    await other.page.getByRole('button', { name: 'Algorithm', exact: true }).click();
+    await other.page.getByRole('tab', { name: 'Algorithm', exact: true }).click();
     await other.page.getByRole('button', { name: 'my_wave', exact: true }).click();
     await other.page.getByRole('textbox', { name: 'Source of my_wave' }).waitFor();
     assert.equal(await other.page.getByRole('button', { name: 'Build', exact: true }).isDisabled(), true);

@@ -17,7 +17,7 @@ import { waitUntil } from './support/waiting.js';
 
 const isPath = (red: number, green: number, blue: number) => red > green + 50 && blue > green + 50;
 
-const entriesIn = (page: Page, group: string) => page.getByTestId('open-panel').getByRole('region', { name: group, exact: true }).getByRole('button');
+const entriesIn = (page: Page, group: string) => page.getByTestId('open-panel').getByRole('region', { name: group, exact: true }).locator('.gallery-entry');
 
 describe('the list of what can be opened', () => {
   const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
@@ -68,6 +68,22 @@ describe('the list of what can be opened', () => {
     assert.ok(countPixels(await pixelsOf(page(), picture('Forward')), isPath) > 50, 'the way of the head');
     assert.match((await picture('Forward').getAttribute('aria-label')) ?? '', /^The robot with 5 joints and its way of 0\.5\d m in 10 s, from the side$/);
     assert.match((await picture('Sidewinding').getAttribute('aria-label')) ?? '', /from above$/);
+  });
+
+  it('opens what is pressed, and takes the world of another one', async () => {
+    await entry('Sidewinding').click();
+    await page().getByTestId('draft-file').filter({ hasText: 'sidewinding.simulation.xml' }).waitFor();
+    assert.equal(await panel().count(), 0);
+    await page().keyboard.press('Control+o');
+    await find().fill('terrace');
+    await panel().getByRole('button', { name: /^Use the world of/ }).first().click();
+    await page().getByRole('button', { name: 'Undo' }).and(page().locator('[title*="environment of"]')).waitFor();
+    await page().keyboard.press('Control+o');
+    await find().fill('');
+    await entry('mine/uniform').click();
+    await page().getByTestId('draft-file').filter({ hasText: 'uniform.simulation.xml' }).waitFor();
+    assert.equal(await page().getByTestId('draft-state').textContent(), 'saved', 'what was not saved belongs to the other scenario');
+    await page().keyboard.press('Control+o');
   });
 
   it('is searched by words of the title, the text, the algorithm and the file', async () => {

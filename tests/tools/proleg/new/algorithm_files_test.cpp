@@ -11,7 +11,7 @@ const AlgorithmPlace place{"/home/me/my_wave", "/home/me/proleg"};
 
 std::string file_of(const AlgorithmForm& form, const std::string& name) {
   const std::vector<sim::SourceFile> files = algorithm_files(form, place);
-  const auto file = std::ranges::find(files, name, &sim::SourceFile::name);
+  const auto file = std::ranges::find(files, name, &sim::SourceFile::path);
   return file == files.end() ? "no file " + name : file->text;
 }
 

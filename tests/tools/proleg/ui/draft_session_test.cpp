@@ -500,6 +500,16 @@ TEST_F(DraftSessionTest, ANewScenarioOfEachKindHasItsUsualForm) {
   }
 }
 
+TEST_F(DraftSessionTest, ChangesOfAScenarioWithoutFilesAreNotDroppedUnasked) {
+  must("draft.new", {{"kind", "snake"}});
+  must("draft.new", {{"kind", "cubo"}});
+  must("robot.rename", {{"name", "mine"}});
+  EXPECT_NE(ask("draft.new").text.find("not saved"), std::string::npos);
+  EXPECT_NE(ask("draft.open", {{"file", file_}}).text.find("not saved"), std::string::npos);
+  EXPECT_EQ(viewers_.document("draft")["robot"]["name"], "mine");
+  must("draft.new", {{"discard", true}});
+}
+
 TEST_F(DraftSessionTest, OpensScenariosOfItsFolderAndShippedOnes) {
   const std::string shipped = source_path("/sim/scenarios/robots/snake/robot.simulation.xml");
   json document = draft(must("draft.open", {{"file", shipped}})["revision"]);
@@ -533,7 +543,8 @@ TEST_F(DraftSessionTest, APartOfAnotherScenarioCanBeTaken) {
   const sim::Scenario both = sim::read_scenario(copy, disk_);
   EXPECT_EQ(both.robot.joints.size(), 8U);
   for (const sim::SourceFile& source : both.sources) {
-    EXPECT_TRUE(source.path.starts_with(std::string(folder_ / "both"))) << "the copy needs no other folder: " << source.path;
+    EXPECT_TRUE(source.path.starts_with(std::string(folder_ / "both")))
+        << "the copy needs no other folder: " << source.path;
   }
   EXPECT_EQ(file_contents(file_), before);
   for (const json& bad : std::vector<json>{{{"file", "/etc/passwd"}, {"parts", {"robot"}}},

@@ -173,6 +173,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
       {document !== null && document.refusal !== null && <p class="hint">Algorithms cannot be written here: {document.refusal}.</p>}
       {document !== null && document.refusal === null && (
         <>
+          <p class="hint">A gait or a reflex of your own, in C++: a form writes the source, which you then edit, build and run here.</p>
           <div class="fields" role="group" aria-label="Algorithms of your own">
             {document.folders.map(({ folder, name }) => (
               <button

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -238,112 +237,6 @@ TEST_F(DraftTest, UndoAndRedoReturnToEveryEarlierState) {
     ASSERT_EQ(text(), states[--at]);
   }
   EXPECT_EQ(text(), world_text);
-}
-
-/// A text with changes that mean nothing to a parser: blanks, line ends, comments, quotes and the case of tags.
-std::string mutated(std::string text, std::mt19937& random) {
-  const auto below = [&](std::size_t bound) {
-    return std::uniform_int_distribution<std::size_t>(0, bound - 1)(random);
-  };
-  for (int i = 0; i < 6; ++i) {
-    const XmlText xml("mutated", text);
-    const ElementNumber element = below(xml.size());
-    const TextTag& tag = xml.at(element).tag;
-    switch (below(5)) {
-      case 0:
-        text.insert(tag.begin, "<!-- <Body> & 'quotes' -->");
-        break;
-      case 1:
-        text.insert(tag.begin, below(2) == 0 ? "\r\n\t" : "\n\n   ");
-        break;
-      case 2:
-        text.insert(tag.begin + 1 + tag.name.size(), below(2) == 0 ? "\n  " : "  ");
-        break;
-      case 3:
-        if (xml.children(element).empty() && tag.kind == TextTag::Kind::start) {
-          text.insert(tag.end, " \n ");
-        }
-        break;
-      default:
-        if (xml.at(element).end != tag.end) {
-          const std::size_t end = xml.at(element).end_tag + 2;
-          for (std::size_t at = 0; at < tag.name.size(); ++at) {
-            const auto upper = static_cast<char>(std::toupper(static_cast<unsigned char>(tag.name[at])));
-            text[tag.begin + 1 + at] = upper;
-            text[end + at] = upper;
-          }
-        }
-    }
-  }
-  return text;
-}
-
-// Whatever a person's file looks like: opened it has its bytes, and a change of an object changes that object's group.
-TEST(DraftOfMutatedFiles, ChangesOnlyWhatItIsAskedTo) {
-  constexpr unsigned seed = 300;
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
-  DiskFiles disk;
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("/sim/scenarios"))) {
-    if (entry.path().string().ends_with(".simulation.xml")) {
-      paths.push_back(entry.path());
-    }
-  }
-  paths.push_back(source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml"));
-  std::ranges::sort(paths);
-  std::vector<Scenario> originals;
-  for (const std::filesystem::path& path : paths) {
-    originals.push_back(read_scenario(path, disk));
-  }
-  std::size_t changes = 0;
-  for (int i = 0; i < 300; ++i) {
-    const Scenario& original = originals[static_cast<std::size_t>(i) % originals.size()];
-    SCOPED_TRACE(original.path + ", mutation " + std::to_string(i));
-    SourceTexts texts;
-    for (const SourceFile& source : original.sources) {
-      texts.add(source.path, source.path == original.environment_file ? mutated(source.text, random) : source.text);
-    }
-    const std::string before = *texts.read(original.environment_file);
-    Draft draft(read_scenario(original.path, texts), texts);
-    ASSERT_EQ(draft.text(original.environment_file), before);
-    const WorldContents world = read_world_contents(draft);
-    ASSERT_EQ(world.objects.size(), original.environment.objects.size() + original.environment.moving_objects.size());
-    const std::size_t object = std::uniform_int_distribution<std::size_t>(0, world.objects.size() - 1)(random);
-    const WorldObject& chosen = world.objects[object];
-    if (!chosen.body || !chosen.group) {
-      continue;
-    }
-    const XmlText xml("before", before);
-    const std::size_t begin = xml.at(*chosen.group).tag.begin;
-    const std::size_t behind = before.size() - xml.at(*chosen.group).end;
-    const int kind = i % 4;
-    draft.change("test", {}, [&](DraftChange& edit) {
-      WorldChange change(world, edit);
-      switch (kind) {
-        case 0:
-          return change.set_friction(object, 0.375);
-        case 1:
-          return change.set_colour(object, {0.25, 0.5, 0.75});
-        case 2:
-          return change.rename(object, "renamed");
-        default:
-          return change.place(object, {chosen.pose.position + Eigen::Vector3d(0.0625, 0, 0), chosen.pose.orientation},
-                              i % 8 == 3);
-      }
-    });
-    const std::string after = draft.text(original.environment_file);
-    EXPECT_EQ(after.substr(0, begin), before.substr(0, begin));
-    EXPECT_EQ(after.substr(after.size() - behind), before.substr(before.size() - behind));
-    const WorldObject changed = read_world_contents(draft).objects[object];
-    EXPECT_TRUE(kind != 0 || chosen.shapes.empty() || changed.shapes[0].friction == 0.375);
-    EXPECT_TRUE(kind != 2 || changed.name == "renamed");
-    EXPECT_TRUE(kind != 3 || std::abs(changed.pose.position.x() - chosen.pose.position.x() - 0.0625) < 2e-6);
-    ASSERT_TRUE(draft.undo());
-    ASSERT_EQ(draft.text(original.environment_file), before);
-    ++changes;
-  }
-  EXPECT_GT(changes, 250U);
 }
 
 TEST(DraftOfShippedFiles, OpensAndKeepsEveryByte) {

@@ -1,7 +1,7 @@
 // What can be opened in the page Make: a list with pictures of the project's scenarios, of those opened before, and of those that
 // ship with Proleg.
 import assert from 'node:assert/strict';
-import { cpSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -178,6 +178,19 @@ describe('a project', () => {
       await page.getByRole('button', { name: 'Open …' }).click();
       await entriesIn(page, 'Last: school').nth(2).waitFor();
       assert.equal(await entriesIn(page, 'My project').count(), 0);
+    });
+  });
+
+  it('gets its first robot in the page, which then crawls', async () => {
+    await look([join(folder, 'empty')], async ({ page }) => {
+      await page.keyboard.press('3');
+      await page.getByRole('button', { name: 'New …' }).click();
+      for (let i = 0; i < 3; i++) await page.getByRole('button', { name: 'Next' }).click();
+      await page.getByRole('textbox', { name: 'name of the robot and of its folder' }).fill('first');
+      await page.getByRole('button', { name: 'Create and start' }).click();
+      await page.getByTestId('state').filter({ hasText: 'running' }).waitFor();
+      await page.getByRole('navigation').locator('[aria-current=page]', { hasText: 'Live' }).waitFor();
+      assert.ok(existsSync(join(folder, 'empty/first/robot.simulation.xml')));
     });
   });
 });

@@ -8,7 +8,7 @@ const seconds = 30;
 const settling = 5000; // milliseconds: the view chooses its resolution
 
 // Times of the frames in which the 3D view drew something.
-async function countFrames(page: Page): Promise<() => Promise<number[]>> {
+export async function countFrames(page: Page): Promise<() => Promise<number[]>> {
   const worker = page.workers().find((candidate) => candidate.url().includes('scene_worker'));
   if (worker === undefined) {
     throw new Error('found no worker of the 3D view, expected one');

@@ -5,6 +5,7 @@ import { sliderToSetpoint, stopToStopped } from './controls.js';
 import { besideSimulation, stalledViewer } from './daemon.js';
 import { drawing } from './drawing.js';
 import { describeMachine, machineText } from './machine.js';
+import { make } from './make.js';
 import { summarise, summaryText, type Summary } from './report.js';
 import { seek } from './seek.js';
 import { soak } from './soak.js';
@@ -16,6 +17,7 @@ const measurements: Record<string, Measurement> = {
   slider: sliderToSetpoint,
   stop: stopToStopped,
   drawing,
+  make,
   intake,
   bytes,
   stalled: stalledViewer,

@@ -1,9 +1,11 @@
 #include "tools/proleg/ui/draft_session.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -375,6 +377,41 @@ TEST_F(DraftSessionTest, ASaveThatFailedInTheMiddleCanBeRepeated) {
   add_box();
   std::ofstream(world_file()) << must("draft.diff")["files"][0]["new"].get<std::string>();
   EXPECT_EQ(must("draft.save")["written"], 1);
+}
+
+TEST_F(DraftSessionTest, AFullDiskAtSaveLosesNothing) {
+  add_box();
+  const std::string before = file_contents(world_file());
+  // As a full disk does, this limit ends a write in the middle.
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{100, limit.rlim_max};
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Viewers::Answer answer = ask("draft.save");
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  EXPECT_FALSE(answer.is_done);
+  EXPECT_NE(answer.text.find("flat.environment.xml"), std::string::npos) << answer.text;
+  EXPECT_EQ(viewers_.document("draft")["changed"], json({world_file()}));
+  EXPECT_EQ(file_contents(world_file()), before) << "the file is as it was";
+  EXPECT_EQ(must("draft.save")["written"], 1);
+  std::signal(SIGXFSZ, old_handler);
+}
+
+TEST_F(DraftSessionTest, AWorldOfFiveHundredObjectsCanBeChangedAndSimulated) {
+  add_box();
+  for (const int count : {200, 200, 98}) {
+    must("world.duplicate", {{"object", 1}, {"group", true}, {"step", {0.0, 0.5, 0.0}}, {"count", count}});
+  }
+  const json document = draft(4);
+  ASSERT_EQ(document["world"]["objects"].size(), 500U);
+  must("world.friction", {{"object", 499}, {"value", 0.25}});
+  const sim::Scenario scenario = *present_.get().scenario;
+  sim::Simulation simulation(scenario);
+  for (int tick = 0; tick < 10; ++tick) {
+    simulation.advance();
+  }
+  EXPECT_EQ(scenario.environment.objects.size(), 500U);
 }
 
 TEST_F(DraftSessionTest, AJournalThatCannotBeWrittenIsSaidOnce) {

@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 13> property_tags{"axis",     "limitsdeg"
 template <typename Part>
 std::vector<std::string> names_of(const std::vector<Part>& parts) {
   std::vector<std::string> names;
+  names.reserve(parts.size());
   for (const Part& part : parts) {
     names.push_back(part.name);
   }

@@ -76,13 +76,6 @@ struct ChainChange::State {
 
   [[nodiscard]] const std::string& file() const { return scenario.robot_file; }
   [[nodiscard]] std::size_t joint_count() const { return chain.joints.size(); }
-  /// How far the chain in front of a link moves if a copy of the link comes in; in the robot's frame, m.
-  [[nodiscard]] Eigen::Vector3d length_of_link(std::size_t link) const {
-    const auto anchor = [this](std::size_t joint) -> const Eigen::Vector3d& {
-      return scenario.robot.joints[joint_count() - 1 - joint].anchor;
-    };
-    return anchor(link) - anchor(link - 1);
-  }
   [[nodiscard]] const Eigen::Vector3d& axis(std::size_t joint) const {
     return scenario.robot.joints[joint_count() - 1 - joint].axis;
   }
@@ -90,8 +83,7 @@ struct ChainChange::State {
 
 ChainChange::State ChainChange::read() {
   State state{change_.scenario(), {}};
-  state.chain = read_chain_text(state.scenario, change_.xml(state.file()),
-                                [this](const std::string& name) { return change_.text(name); });
+  state.chain = read_chain_text(change_, state.scenario);
   const XmlText& actuation = change_.xml(state.scenario.actuation_file);
   for (const ElementNumber parameter : from_the_end(actuation, "parameter")) {
     if (!actuation.attribute(parameter, "joint") &&
@@ -115,17 +107,17 @@ void ChainChange::duplicate(std::size_t joint) {
     throw InputError("joint", 0, "a robot with one joint", "a link between two joints, to copy it");
   }
   if (joint + 1 < count) {
-    duplicate_link(joint + 1);
+    duplicate_link(state, joint + 1);
     return;
   }
-  duplicate_link(joint);
+  duplicate_link(state, joint);
   std::vector<std::size_t> source = present_order(count + 1);
   source[joint] = count;
   assign(read(), source);
 }
 
 void ChainChange::remove(std::size_t joint) {
-  const State state = read();
+  State state = read();
   const std::size_t count = state.joint_count();
   if (joint >= count) {
     throw InputError("joint", 0, std::to_string(joint), "a number below " + std::to_string(count));
@@ -137,9 +129,10 @@ void ChainChange::remove(std::size_t joint) {
     std::vector<std::size_t> source = present_order(count);
     std::swap(source[joint - 1], source[joint]);
     assign(state, source);
+    state = read();
     --joint;
   }
-  remove_link(joint + 1);
+  remove_link(std::move(state), joint + 1);
 }
 
 void ChainChange::set_joint_count(std::size_t count) {
@@ -253,8 +246,7 @@ void ChainChange::assign_values(const State& state, const std::vector<std::size_
   }
 }
 
-void ChainChange::duplicate_link(std::size_t link) {
-  const State state = read();
+void ChainChange::duplicate_link(const State& state, std::size_t link) {
   const ChainText& chain = state.chain;
   std::vector<std::string> links = names_of(chain.links);
   std::vector<std::string> joints = names_of(chain.joints);
@@ -266,9 +258,9 @@ void ChainChange::duplicate_link(std::size_t link) {
   const std::string new_joint =
       free_name(joints, counted_names(joints).value_or(CountedNames{without_number(chain.joints[link - 1].name), ""}));
 
-  const Eigen::Vector3d length = state.length_of_link(link);
+  const Eigen::Vector3d length = length_of_link(state.scenario, link);
   shift_links_in_front(change_, state.scenario, chain, link, length);
-  replace_link_names(change_, state.file(), elements_of(state).joints.at(joints[link]).joint,
+  replace_link_names(change_, state.file(), find_robot_elements(change_, state.scenario).joints.at(joints[link]).joint,
                      {{original.name, new_link}});
   copy_joint(state, link - 1, new_joint, new_link);
   copy_link(state, link, new_link, length);
@@ -283,7 +275,8 @@ void ChainChange::duplicate_link(std::size_t link) {
 
 void ChainChange::copy_joint(const State& state, std::size_t joint, const std::string& name, const std::string& link) {
   const std::string& file = state.file();
-  const ElementNumber original = elements_of(state).joints.at(state.chain.joints[joint].name).joint;
+  const ElementNumber original =
+      find_robot_elements(change_, state.scenario).joints.at(state.chain.joints[joint].name).joint;
   const std::string lines = unindented(change_.xml(file), original);
   change_.apply(file, change_.xml(file).add_behind(original, lines));
   const ElementNumber copy = next_sibling(change_.xml(file), original);
@@ -297,7 +290,7 @@ void ChainChange::copy_link(const State& state, std::size_t link, const std::str
                             const Eigen::Vector3d& shift) {
   const std::string& file = state.file();
   const ChainText::Link& original = state.chain.links[link];
-  const ElementNumber place = elements_of(state).links.at(original.name).place.value();
+  const ElementNumber place = find_robot_elements(change_, state.scenario).links.at(original.name).place.value();
   const std::string lines = unindented(change_.xml(file), place);
   change_.apply(file, change_.xml(file).add_behind(place, lines));
   const ElementNumber copy = next_sibling(change_.xml(file), place);
@@ -307,13 +300,7 @@ void ChainChange::copy_link(const State& state, std::size_t link, const std::str
   set_pose(change_, file, copy, pose);
 }
 
-RobotElements ChainChange::elements_of(const State& state) {
-  return find_robot_elements(change_.xml(state.file()), state.scenario.path,
-                             [this](const std::string& name) { return change_.text(name); });
-}
-
-void ChainChange::remove_link(std::size_t link) {
-  State state = read();
+void ChainChange::remove_link(State state, std::size_t link) {
   // A joint in the frame of the link in front of it stays with that link; the joint behind goes with this one.
   const bool goes_with_rear = !state.chain.joints[link].is_framed_by_rear;
   if (!goes_with_rear) {
@@ -328,11 +315,16 @@ void ChainChange::remove_link(std::size_t link) {
   const std::string& neighbour = chain.links[goes_with_rear ? link - 1 : link + 1].name;
   std::vector<std::string> links = names_of(chain.links);
   std::vector<std::string> joints = names_of(chain.joints);
-  shift_links_in_front(change_, state.scenario, chain, link, -state.length_of_link(link));
-  replace_link_names(change_, state.file(), elements_of(state).joints.at(chain.joints[kept].name).joint,
+  shift_links_in_front(change_, state.scenario, chain, link, -length_of_link(state.scenario, link));
+  replace_link_names(change_, state.file(),
+                     find_robot_elements(change_, state.scenario).joints.at(chain.joints[kept].name).joint,
                      {{chain.links[link].name, neighbour}});
-  change_.apply(state.file(), change_.xml(state.file()).remove(elements_of(state).joints.at(joints[removed]).joint));
-  change_.apply(state.file(), change_.xml(state.file()).remove(elements_of(state).links.at(links[link]).place.value()));
+  change_.apply(
+      state.file(),
+      change_.xml(state.file()).remove(find_robot_elements(change_, state.scenario).joints.at(joints[removed]).joint));
+  change_.apply(state.file(),
+                change_.xml(state.file())
+                    .remove(find_robot_elements(change_, state.scenario).links.at(links[link]).place.value()));
   remove_mentions(state, joints[removed], links[link]);
   const std::size_t at = chain.joints[removed].file_index;
   edit_masks(state, [at](std::string& mask) { mask.erase(at, 1); });
@@ -428,7 +420,7 @@ void ChainChange::count_names(const State& before, const std::vector<std::string
   if (new_links.empty()) {
     return;
   }
-  const RobotElements elements = elements_of(before);
+  const RobotElements elements = find_robot_elements(change_, before.scenario);
   std::vector<TextPatch> patches;
   for (const auto& [old_name, name] : new_links) {
     const LinkElements& link = elements.links.at(old_name);

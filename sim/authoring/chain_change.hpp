@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include "sim/authoring/draft.hpp"
-#include "sim/authoring/robot_elements.hpp"
 
 namespace proleg::sim {
 
@@ -39,15 +38,13 @@ class ChainChange {
   using MaskEdit = std::function<void(std::string&)>;
 
   [[nodiscard]] State read();
-  void duplicate_link(std::size_t link);
-  void remove_link(std::size_t link);
+  void duplicate_link(const State& state, std::size_t link);
+  void remove_link(State state, std::size_t link);
   void assign(const State& state, const std::vector<std::size_t>& source);
   void assign_properties(const State& state, const std::vector<std::size_t>& source);
   void assign_values(const State& state, const std::vector<std::size_t>& source);
   void copy_joint(const State& state, std::size_t joint, const std::string& name, const std::string& link);
   void copy_link(const State& state, std::size_t link, const std::string& name, const Eigen::Vector3d& shift);
-  /// As they are after the edits so far.
-  [[nodiscard]] RobotElements elements_of(const State& state);
   void remove_mentions(const State& state, const std::string& joint, const std::string& link);
   void edit_masks(const State& state, const MaskEdit& edit);
   void copy_values(const State& state, const std::string& joint, const std::string& copy);

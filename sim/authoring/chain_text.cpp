@@ -71,6 +71,17 @@ ChainText read_chain_text(const Scenario& scenario, const XmlText& robot, const 
   return chain;
 }
 
+ChainText read_chain_text(DraftChange& change, const Scenario& scenario) {
+  return read_chain_text(scenario, change.xml(scenario.robot_file),
+                         [&change](const std::string& name) { return change.text(name); });
+}
+
+Eigen::Vector3d length_of_link(const Scenario& scenario, std::size_t link) {
+  const std::vector<Joint>& joints = scenario.robot.joints;  // from the head
+  const std::size_t front = joints.size() - 1 - link;
+  return joints[front].anchor - joints[front + 1].anchor;
+}
+
 Eigen::Vector3d in_frame_around(const XmlText& robot, ElementNumber element, const Eigen::Vector3d& vector) {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   for (std::optional<ElementNumber> around = robot.at(element).parent; around; around = robot.at(*around).parent) {

@@ -35,6 +35,12 @@ struct ChainText {
 /// The chain of a scenario. Throws InputError with the reason if the file has a form whose links cannot be added,
 /// removed or exchanged: links that are not beside each other, joints in other files, prefixes around them.
 [[nodiscard]] ChainText read_chain_text(const Scenario& scenario, const XmlText& robot, const TextOf& text_of);
+/// The same after the edits of a change so far; scenario: of this state.
+[[nodiscard]] ChainText read_chain_text(DraftChange& change, const Scenario& scenario);
+
+/// How far the chain in front of a link between two joints moves if a copy of the link comes in; in the robot's frame,
+/// m. link: from the tail.
+[[nodiscard]] Eigen::Vector3d length_of_link(const Scenario& scenario, std::size_t link);
 
 /// Moves the links in front of link `behind` by a vector in the robot's frame, in m.
 void shift_links_in_front(DraftChange& change, const Scenario& scenario, const ChainText& chain, std::size_t behind,

@@ -52,16 +52,19 @@ std::string add_module_files(DraftChange& change, const std::string& robot_file,
 }  // namespace
 
 void set_kind_of_links(DraftChange& change, const RobotKind& kind, std::optional<std::size_t> link) {
-  const std::string file = change.scenario().robot_file;
-  const std::string folder = add_module_files(change, file, kind);
-  const std::size_t count = change.scenario().robot.links.size();
+  Scenario scenario = change.scenario();
+  const std::string file = scenario.robot_file;
+  const std::size_t count = scenario.robot.links.size();
   if (link && *link >= count) {
     throw InputError("link", 0, std::to_string(*link), "a number below " + std::to_string(count));
   }
-  for (std::size_t i = link.value_or(0); i < (link ? *link + 1 : count); ++i) {
-    const Scenario scenario = change.scenario();
-    const ChainText chain =
-        read_chain_text(scenario, change.xml(file), [&change](const std::string& name) { return change.text(name); });
+  const std::string folder = add_module_files(change, file, kind);
+  const std::size_t first = link.value_or(0);
+  for (std::size_t i = first; i < (link ? *link + 1 : count); ++i) {
+    if (i > first) {
+      scenario = change.scenario();
+    }
+    const ChainText chain = read_chain_text(change, scenario);
     for (const ChainText::Joint& joint : chain.joints) {
       if (joint.is_framed_by_rear) {
         throw InputError(file, change.xml(file).at(joint.element).tag.line,
@@ -79,17 +82,11 @@ void set_kind_of_links(DraftChange& change, const RobotKind& kind, std::optional
     const std::string prefix = change.xml(file).attribute(old.place, "prefix").value_or("");
     const std::string name = prefix + std::string(role.body);
     if (i > 0 && i + 1 < count) {
-      const auto anchor = [&](std::size_t joint) -> const Eigen::Vector3d& {
-        return scenario.robot.joints[chain.joints.size() - 1 - joint].anchor;
-      };
-      const Eigen::Vector3d length = anchor(i) - anchor(i - 1);
+      const Eigen::Vector3d length = length_of_link(scenario, i);
       const double new_length = static_cast<double>(kind.module_mm) / 1000.0;
       shift_links_in_front(change, scenario, chain, i, length.normalized() * new_length - length);
     }
-    const ElementNumber place = find_robot_elements(change.xml(file), scenario.path,
-                                                    [&change](const std::string& other) { return change.text(other); })
-                                    .links.at(old.name)
-                                    .place.value();
+    const ElementNumber place = find_robot_elements(change, scenario).links.at(old.name).place.value();
     change.apply(file, change.xml(file).set_attribute(place, "file", folder + "/" + std::string(role.file)));
     if (name != old.name) {
       replace_link_names(change, file, {{old.name, name}});

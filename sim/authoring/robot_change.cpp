@@ -24,12 +24,8 @@ void check_name(const std::string& name) {
 
 }  // namespace
 
-RobotElements RobotChange::elements() {
-  return find_robot_elements(xml(), scenario_.path, [this](const std::string& name) { return change_.text(name); });
-}
-
 std::vector<ElementNumber> RobotChange::joints_from_the_end(JointMask joints) {
-  const RobotElements all = elements();
+  const RobotElements all = find_robot_elements(change_, scenario_);
   std::vector<ElementNumber> found;
   for (const unsigned joint : joints) {
     if (joint >= scenario_.robot.joints.size()) {
@@ -55,7 +51,7 @@ LinkElements RobotChange::link_elements(std::size_t link) {
   if (link >= scenario_.robot.links.size()) {
     throw InputError("link", 0, std::to_string(link), "a number below " + std::to_string(scenario_.robot.links.size()));
   }
-  RobotElements all = elements();
+  RobotElements all = find_robot_elements(change_, scenario_);
   const auto found = all.links.find(scenario_.robot.links[link].name);
   if (found == all.links.end()) {
     throw InputError("link", 0, in_quotes(scenario_.robot.links[link].name) + ", whose <Body> was not found",
@@ -109,7 +105,7 @@ void RobotChange::rename_joint(unsigned joint, const std::string& name) {
   check_name(name);
   const std::vector<ElementNumber> element = joints_from_the_end(JointMask::of(joint));
   const std::string& old_name = scenario_.robot.joints[joint].name;
-  const std::string prefix = elements().joints.at(old_name).prefix;
+  const std::string prefix = find_robot_elements(change_, scenario_).joints.at(old_name).prefix;
   if (!name.starts_with(prefix) || name.size() == prefix.size()) {
     throw InputError("name", 0, in_quotes(name),
                      "a name that begins with " + in_quotes(prefix) + ", as its file has it");

@@ -42,7 +42,6 @@ class RobotChange {
 
  private:
   [[nodiscard]] const XmlText& xml() { return change_.xml(scenario_.robot_file); }
-  [[nodiscard]] RobotElements elements();
   /// The elements of joints, the last one of the file first: an edit does not move the elements before it.
   [[nodiscard]] std::vector<ElementNumber> joints_from_the_end(JointMask joints);
   [[nodiscard]] LinkElements link_elements(std::size_t link);

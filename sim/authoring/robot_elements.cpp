@@ -111,4 +111,9 @@ RobotElements find_robot_elements(const XmlText& robot, const std::string& top, 
   return Walk(robot, top, text_of).run();
 }
 
+RobotElements find_robot_elements(DraftChange& change, const Scenario& scenario) {
+  return find_robot_elements(change.xml(scenario.robot_file), scenario.path,
+                             [&change](const std::string& name) { return change.text(name); });
+}
+
 }  // namespace proleg::sim

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/authoring/draft.hpp"
 #include "sim/authoring/xml_text.hpp"
 
 namespace proleg::sim {
@@ -38,5 +39,7 @@ using TextOf = std::function<const std::string*(const std::string& name)>;
 /// Follows the <KinBody>s of a robot, and the files that they name, as the scenario reader does. robot: its file. top:
 /// path of the top-level file.
 [[nodiscard]] RobotElements find_robot_elements(const XmlText& robot, const std::string& top, const TextOf& text_of);
+/// The elements of a draft's robot, as they are after the edits of the change so far.
+[[nodiscard]] RobotElements find_robot_elements(DraftChange& change, const Scenario& scenario);
 
 }  // namespace proleg::sim

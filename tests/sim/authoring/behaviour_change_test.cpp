@@ -79,11 +79,14 @@ TEST_F(BehaviourTest, EachAlgorithmCanMoveARobot) {
 
 TEST_F(BehaviourTest, AnotherAlgorithmKeepsTheValuesThatItHas) {
   ASSERT_NE(original_.find("\"amplitude\" value=\"30\""), std::string::npos);
+  change([](BehaviourChange& behaviour) { behaviour.set_algorithm(0, "PatternGenerator_sinusoidal_extended"); });
+  EXPECT_EQ(text(), replaced(original_, "PatternGenerator_sinusoidal", "PatternGenerator_sinusoidal_extended"));
   change([](BehaviourChange& behaviour) { behaviour.set_algorithm(0, "PatternGenerator_serpenoid"); });
   const Declaration& declaration = slot(0).algorithm->declaration();
   for (const Setting& setting : draft_.scenario().settings) {
     EXPECT_LT(setting.number, declaration.parameters.size());
   }
+  ASSERT_TRUE(draft_.undo());
   ASSERT_TRUE(draft_.undo());
   EXPECT_EQ(text(), original_);
 }

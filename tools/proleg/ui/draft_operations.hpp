@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "sim/authoring/draft.hpp"
 
@@ -15,6 +16,8 @@ struct DraftOperation {
   std::function<void(sim::DraftChange&)> change;
   /// Afterwards a position in one of the draft's lists can mean something else.
   bool moves_positions = false;
+  /// It names a part of the draft by its position in a list.
+  bool names_positions = true;
 };
 
 // Each function reads an operation. All throw InputError for one that does not exist, and for arguments of the wrong
@@ -30,6 +33,12 @@ struct DraftOperation {
 [[nodiscard]] DraftOperation behaviour_operation(const std::string& name, const nlohmann::json& arguments,
                                                  const sim::Draft& draft);
 /// "draft.run": how the draft is run.
-[[nodiscard]] DraftOperation run_operation(const nlohmann::json& arguments, const sim::Draft& draft);
+[[nodiscard]] DraftOperation run_operation(const std::string& name, const nlohmann::json& arguments,
+                                           const sim::Draft& draft);
+
+using DraftOperationReader = DraftOperation (*)(const std::string& name, const nlohmann::json& arguments,
+                                                const sim::Draft& draft);
+/// Which of them reads an operation; null: none.
+[[nodiscard]] DraftOperationReader reader_of(std::string_view operation);
 
 }  // namespace proleg::tools

@@ -35,16 +35,6 @@ json lines_json(const std::vector<std::string>& texts) {
   return lines;
 }
 
-constexpr std::string_view run_operation_name = "draft.run";
-
-DraftOperation operation_of(const host::OperationRequest& operation, const sim::Draft& draft) {
-  const auto read = operation.name == run_operation_name                 ? nullptr
-                    : operation.name.starts_with(world_operations)       ? world_operation
-                    : operation.name.starts_with(draft_robot_operations) ? robot_operation
-                                                                         : behaviour_operation;
-  return read == nullptr ? run_operation(operation.arguments, draft) : read(operation.name, operation.arguments, draft);
-}
-
 json unsaved_json(const KeptChanges& kept) {
   json files = json::array();
   for (const auto& [name, text] : kept.texts) {
@@ -219,24 +209,24 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
       {"draft.discard", &DraftSession::discard}, {"draft.refresh", &DraftSession::refresh},
       {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
       {"draft.save_as", &DraftSession::save_as}};
-  const bool is_change = operation.name == run_operation_name || !operation.name.starts_with(draft_operations);
-  json value = is_change ? change_draft(operation) : (this->*handler_of(handlers, operation.name))(operation.arguments);
+  const DraftOperationReader reader = reader_of(operation.name);
+  json value = reader != nullptr ? change_draft(operation, reader)
+                                 : (this->*handler_of(handlers, operation.name))(operation.arguments);
   // The answer comes behind what it is about, and the next operation that waits is compared with this layout.
   publish();
   return value;
 }
 
-json DraftSession::change_draft(const host::OperationRequest& operation) {
+json DraftSession::change_draft(const host::OperationRequest& operation, DraftOperationReader reader) {
   const json& arguments = operation.arguments;
   if (draft().refresh()) {
     publish();
   }
-  const bool has_positions = operation.name != run_operation_name;
-  const DraftOperation change = operation_of(operation, draft());
+  const DraftOperation change = reader(operation.name, arguments, draft());
   const auto layout = argument<std::uint64_t>(arguments, "layout", "the layout of the draft");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
   // Positions in lists that another change has altered would name other parts.
-  if (has_positions && layout != layout_since_) {
+  if (change.names_positions && layout != layout_since_) {
     throw std::runtime_error("the parts of the draft have changed meanwhile; look at them again");
   }
   draft().change(change.label, gesture, change.change);

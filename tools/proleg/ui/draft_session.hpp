@@ -16,6 +16,7 @@
 #include "sim/authoring/robot_contents.hpp"
 #include "sim/authoring/world_contents.hpp"
 #include "tools/proleg/ui/draft_journal.hpp"
+#include "tools/proleg/ui/draft_operations.hpp"
 #include "tools/proleg/ui/foresight.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -58,7 +59,7 @@ class DraftSession final : private SessionThread {
   void publish();
   void note_layout(const sim::WorldContents& world, const sim::RobotContents& robot);
   [[nodiscard]] sim::Draft& draft();
-  nlohmann::json change_draft(const host::OperationRequest& operation);
+  nlohmann::json change_draft(const host::OperationRequest& operation, DraftOperationReader reader);
   void note_robot(const std::string& before);
   void note_opened(const std::string& file) const;
   void require_kept_changes(const nlohmann::json& arguments) const;

@@ -52,7 +52,7 @@ std::uint64_t seed(const json& arguments) {
 
 }  // namespace
 
-DraftOperation run_operation(const json& arguments, const sim::Draft& draft) {
+DraftOperation run_operation(const std::string& /*name*/, const json& arguments, const sim::Draft& draft) {
   using Change = std::function<void(sim::RunChange&)>;
   using Reader = Change (*)(const json&);
   static const std::map<std::string_view, Reader> readers{
@@ -89,11 +89,28 @@ DraftOperation run_operation(const json& arguments, const sim::Draft& draft) {
       {"self_collision", [](const json& words) -> Change {
          return [value = is_set(words, "value")](sim::RunChange& run) { run.set_self_collision(value); };
        }}};
-  const std::string name = argument<std::string>(arguments, "name", "the name of a value").value_or("");
-  return {name, [change = handler_of(readers, name)(arguments), &draft](sim::DraftChange& edit) {
+  const std::string value = argument<std::string>(arguments, "name", "the name of a value").value_or("");
+  return {value,
+          [change = handler_of(readers, value)(arguments), &draft](sim::DraftChange& edit) {
             sim::RunChange run(draft.scenario(), edit);
             change(run);
-          }};
+          },
+          false, false};
+}
+
+DraftOperationReader reader_of(std::string_view operation) {
+  if (operation == "draft.run") {
+    return run_operation;
+  }
+  for (const auto& [begin, reader] : std::initializer_list<std::pair<std::string_view, DraftOperationReader>>{
+           {world_operations, world_operation},
+           {draft_robot_operations, robot_operation},
+           {behaviour_operations, behaviour_operation}}) {
+    if (operation.starts_with(begin)) {
+      return reader;
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace proleg::tools

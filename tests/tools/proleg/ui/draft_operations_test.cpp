@@ -86,9 +86,9 @@ class RandomOperations {
                                  {"joints", some_joints},
                                  {"value", std::to_string(10 + below(30))}});
       case 18:
-        return run_operation({{"name", "duration"}, {"value", 5.0 + number()}}, draft_);
+        return run_operation("draft.run", {{"name", "duration"}, {"value", 5.0 + number()}}, draft_);
       case 19:
-        return run_operation({{"name", "engine"}, {"value", below(2) == 0 ? "ode" : "reduced"}}, draft_);
+        return run_operation("draft.run", {{"name", "engine"}, {"value", below(2) == 0 ? "ode" : "reduced"}}, draft_);
       case 20:
         return world("add", {{"item", sim::library()[below(sim::library().size())].name},
                              {"position", {number(), number(), 0}}});

@@ -2,7 +2,7 @@
 // all modules of its column give.
 import { useRef } from 'preact/hooks';
 import type { AlgorithmDocument, BehaviourModule, DraftRobot } from '../wire/messages.js';
-import { fromTail } from './axis_text.js';
+import { algorithmTitle, fromTail } from './robot_text.js';
 import type { MakeApp } from './make_app.js';
 import { ModuleForm } from './module_form.js';
 
@@ -11,10 +11,6 @@ interface Paint {
   isOn: boolean;
   joints: Set<number>;
   gesture: number;
-}
-
-function algorithmTitle(name: string): string {
-  return name.replace(/^PatternGenerator_/, '').replaceAll('_', ' ');
 }
 
 function ModuleRow({ app, robot, module, number, paint }: {

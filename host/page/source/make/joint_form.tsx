@@ -1,6 +1,6 @@
 // The numbers of the chosen joints, and of a link.
 import type { DraftJoint, DraftRobot } from '../wire/messages.js';
-import { axisAngle, axisOfAngle } from './axis_text.js';
+import { axisAngle, axisOfAngle } from './robot_text.js';
 import type { MakeApp } from './make_app.js';
 import { NumberField } from './number_field.js';
 import { TextField } from './text_field.js';

@@ -128,12 +128,15 @@ export class MakeApp {
   async change<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<string | null> {
     const layout = this.draft.peek()?.layout ?? 0;
     const all = { ...words, layout, ...(gesture === undefined ? {} : { gesture }) } as unknown as Operations[Name];
-    try {
-      await this.page.operations.ask(name, all);
-      return null;
-    } catch (error) {
-      return (error as Error).message;
-    }
+    return this.refusal(this.page.operations.ask(name, all));
+  }
+
+  // The reason if what was asked for is refused, else null.
+  private refusal(asked: Promise<unknown>): Promise<string | null> {
+    return asked.then(
+      () => null,
+      (error: Error) => error.message,
+    );
   }
 
   // As change(), with a notice if it was refused.
@@ -144,13 +147,8 @@ export class MakeApp {
   }
 
   // Requests another value of the run. Returns the reason if it was refused, else null.
-  async changeRun(words: Operations['draft.run']): Promise<string | null> {
-    try {
-      await this.page.operations.ask('draft.run', words);
-      return null;
-    } catch (error) {
-      return (error as Error).message;
-    }
+  changeRun(words: Operations['draft.run']): Promise<string | null> {
+    return this.refusal(this.page.operations.ask('draft.run', words));
   }
 
   // Requests a change that follows a slider or a pointer: of several that wait the newest is sent.
@@ -292,15 +290,11 @@ export class MakeApp {
   // Makes the draft a new scenario. Of several calls in a row the newest counts. answered: with the reason of a refusal,
   // or null.
   makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
-    this.send(() =>
-      this.page.operations.ask('draft.new', { ...words, ...this.discard() }).then(
-        () => {
-          this.forgetChoice();
-          answered(null);
-        },
-        (error: Error) => answered(error.message),
-      ),
-    );
+    this.send(async () => {
+      const refusal = await this.refusal(this.page.operations.ask('draft.new', { ...words, ...this.discard() }));
+      if (refusal === null) this.forgetChoice();
+      answered(refusal);
+    });
   }
 
   // Writes a new scenario into a new folder, and starts it on the page Live. Returns the reason of a refusal, or null.

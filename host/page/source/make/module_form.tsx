@@ -3,7 +3,7 @@ import { useSignal } from '@preact/signals';
 import { ParameterSlider } from '../panels/parameter_slider.js';
 import { formatNumber, formatRaw, parseValue, splitHelp } from '../state/parameter_values.js';
 import type { AlgorithmDocument, AlgorithmParameter, BehaviourModule, DraftRobot } from '../wire/messages.js';
-import { fromTail } from './axis_text.js';
+import { fromTail } from './robot_text.js';
 import { ChoiceField } from './choice_field.js';
 import type { MakeApp } from './make_app.js';
 import { TextField } from './text_field.js';

@@ -4,6 +4,7 @@ import { signal } from '@preact/signals-core';
 import { useEffect } from 'preact/hooks';
 import type { NewScenario } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
+import { algorithmTitle } from './robot_text.js';
 
 const steps = ['robot', 'gait', 'world', 'name'] as const;
 
@@ -136,7 +137,7 @@ function GaitStep({ app, send }: { app: MakeApp; send(): void }) {
       name="algorithm"
       label="How does it move?"
       value={choices.algorithm.value}
-      all={[usualGait, ...algorithms.map(({ name, help }) => ({ value: name, title: name.replace(/^PatternGenerator_/, '').replaceAll('_', ' '), text: help }))]}
+      all={[usualGait, ...algorithms.map(({ name, help }) => ({ value: name, title: algorithmTitle(name), text: help }))]}
       set={(value) => {
         choices.algorithm.value = value;
         send();

@@ -4,18 +4,14 @@ import { useEffect, useRef } from 'preact/hooks';
 import type { GalleryEntry } from '../wire/messages.js';
 import { Picture } from './gallery_picture.js';
 import type { MakeApp } from './make_app.js';
-
-// "sinusoidal extended" for PatternGenerator_sinusoidal_extended.
-function algorithmText(name: string): string {
-  return name.replace(/^(PatternGenerator|SensingModule)_/, '').replaceAll('_', ' ');
-}
+import { algorithmTitle } from './robot_text.js';
 
 function distanceText(distance: number): string {
   return `${distance.toFixed(distance < 10 ? 2 : 1)} m in 10 s`;
 }
 
 function factsOf({ joints, algorithms, distance }: GalleryEntry): string[] {
-  const facts = algorithms.map(algorithmText);
+  const facts = algorithms.map(algorithmTitle);
   if (joints !== null) facts.unshift(joints === 1 ? '1 joint' : `${joints} joints`);
   if (distance !== null) facts.push(distanceText(distance));
   return facts;

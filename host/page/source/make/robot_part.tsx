@@ -1,6 +1,6 @@
 // The robot as a chain: joints and links in a table from the tail to the head, and the numbers of what is chosen.
 import type { DraftRobot } from '../wire/messages.js';
-import { axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from './axis_text.js';
+import { axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from './robot_text.js';
 import { JointForm, LinkForm } from './joint_form.js';
 import type { MakeApp } from './make_app.js';
 import { NumberField } from './number_field.js';

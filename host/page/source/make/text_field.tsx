@@ -4,6 +4,7 @@ import { useSignal } from '@preact/signals';
 interface Field {
   label: string;
   value: string;
+  unit?: string;
   title?: string;
   placeholder?: string;
   size?: number;
@@ -13,7 +14,7 @@ interface Field {
   commit(value: string): Promise<string | null> | string | null;
 }
 
-export function TextField({ label, value, title, placeholder, size, isNumeric, isDisabled, commit }: Field) {
+export function TextField({ label, value, unit = '', title, placeholder, size, isNumeric, isDisabled, commit }: Field) {
   const typed = useSignal<string | null>(null);
   const problem = useSignal<string | null>(null);
   const send = async () => {
@@ -32,6 +33,7 @@ export function TextField({ label, value, title, placeholder, size, isNumeric, i
         size={size}
         placeholder={placeholder}
         autocomplete="off"
+        aria-label={unit === '' ? label : `${label} in ${unit}`}
         value={typed.value ?? value}
         disabled={isDisabled === true}
         aria-invalid={problem.value !== null}
@@ -41,6 +43,7 @@ export function TextField({ label, value, title, placeholder, size, isNumeric, i
           if (event.key === 'Enter') void send();
         }}
       />
+      {unit !== '' && <span class="unit">{unit}</span>}
       {problem.value !== null && (
         <span class="problem" role="alert">
           {problem.value}

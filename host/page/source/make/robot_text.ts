@@ -1,4 +1,4 @@
-// Axes of joints in words. In files of robots that lie along y, 1 0 0 is pitch and 0 0 1 yaw.
+// Axes, order of joints and algorithms in words. In files of robots that lie along y, 1 0 0 is pitch and 0 0 1 yaw.
 
 const degree = Math.PI / 180;
 const nearly = 1e-4;
@@ -39,4 +39,9 @@ export function movedOrder(count: number, from: number, to: number): number[] {
   const order = Array.from({ length: count }, (_, i) => i);
   order.splice(to, 0, ...order.splice(from, 1));
   return order;
+}
+
+// "sinusoidal extended" for PatternGenerator_sinusoidal_extended.
+export function algorithmTitle(name: string): string {
+  return name.replace(/^(PatternGenerator|SensingModule)_/, '').replaceAll('_', ' ');
 }

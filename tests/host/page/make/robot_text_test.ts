@@ -1,0 +1,45 @@
+// Words for joints, and the order of a chain.
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from '../../../../host/page/source/make/robot_text.js';
+
+describe('the axis of a joint', () => {
+  it('is pitch, yaw or an angle between them', () => {
+    assert.equal(axisLetter([1, 0, 0]), 'p');
+    assert.equal(axisLetter([0, 0, 2]), 'y');
+    assert.equal(axisLetter([Math.cos(Math.PI / 6), 0, Math.sin(Math.PI / 6)]), '30°');
+    assert.equal(axisLetter([-1, 0, 0]), '180°');
+    assert.equal(axisWord([0, 0, 1]), 'yaw: to the sides');
+  });
+
+  it('has no angle if it is not across the robot', () => {
+    assert.equal(axisAngle([0, 1, 0]), null);
+    assert.equal(axisAngle([0, 0, 0]), null);
+    assert.equal(axisLetter([1, 1, 0]), '…');
+  });
+
+  it('comes back from its angle', () => {
+    for (let angle = -179; angle <= 180; angle += 1) {
+      assert.ok(Math.abs((axisAngle(axisOfAngle(angle)) as number) - angle) < 1e-3, `${angle}`);
+    }
+    assert.deepEqual(axisOfAngle(90), [0, 0, 1]);
+  });
+});
+
+describe('the order of a chain', () => {
+  it('is shown from the tail', () => {
+    assert.deepEqual(fromTail(3), [2, 1, 0]);
+  });
+
+  it('says what each position gets when a joint goes elsewhere', () => {
+    assert.deepEqual(movedOrder(4, 0, 2), [1, 2, 0, 3]);
+    assert.deepEqual(movedOrder(4, 3, 0), [3, 0, 1, 2]);
+  });
+});
+
+describe('the name of an algorithm', () => {
+  it('is without what all names have', () => {
+    assert.equal(algorithmTitle('PatternGenerator_sinusoidal_extended'), 'sinusoidal extended');
+    assert.equal(algorithmTitle('DirectJointAccess'), 'DirectJointAccess');
+  });
+});

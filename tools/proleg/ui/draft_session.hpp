@@ -41,7 +41,9 @@ class DraftSession final : private SessionThread {
   ~DraftSession() override;
 
   /// Operations that anybody may use.
-  [[nodiscard]] static std::vector<std::string> free_operations() { return {"draft.diff", "draft.refresh"}; }
+  [[nodiscard]] static std::vector<std::string> free_operations() {
+    return {"draft.diff", "draft.copy", "draft.refresh"};
+  }
 
  private:
   // SessionThread
@@ -63,6 +65,7 @@ class DraftSession final : private SessionThread {
   void note_robot(const std::string& before);
   void note_opened(const std::string& file) const;
   void require_kept_changes(const nlohmann::json& arguments) const;
+  void require_layout(const nlohmann::json& arguments) const;
   /// Reads the draft again if an algorithm was loaded again since it was read.
   void read_algorithms_again();
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
@@ -76,6 +79,7 @@ class DraftSession final : private SessionThread {
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json refresh(const nlohmann::json& arguments);
   nlohmann::json diff(const nlohmann::json& arguments);
+  nlohmann::json copy(const nlohmann::json& arguments);
   nlohmann::json restore(const nlohmann::json& arguments);
   nlohmann::json discard(const nlohmann::json& arguments);
   nlohmann::json save(const nlohmann::json& arguments);

@@ -4,10 +4,12 @@ import { ForwardKinematics } from '../geometry/forward_kinematics.js';
 import { compose, fromAxisAngle, multiply, poseFromArray, rotate, type Pose, type Vector } from '../geometry/quaternion.js';
 import type { Body, Joint, Mesh, RobotDocument, Ruler, Shape } from '../wire/messages.js';
 import { colours } from './scene_colours.js';
+import type { PlacedObject } from './scene_messages.js';
 
 // A shape of a body, or a mark on it.
 interface Instance {
   link: number; // -1: does not move
+  body: number; // position in the list of links, of the terrain, or of objects
   pose: Pose; // in the link's frame
   scale: Vector;
 }
@@ -105,7 +107,7 @@ function instancesOf(bodies: readonly Body[], isWanted: (shape: Shape) => boolea
       .map((shape) => {
         const local = poseFromArray(shape.pose);
         const pose = areLinks ? local : compose(poseFromArray(body.pose), local);
-        return { link: areLinks ? link : -1, pose, scale: scaleOf(shape) };
+        return { link: areLinks ? link : -1, body: link, pose, scale: scaleOf(shape) };
       }),
   );
 }
@@ -126,6 +128,7 @@ function rulerInstances(rulers: readonly Ruler[]): Instance[] {
       const middle = (begin + end) / 2 / length;
       return {
         link: -1 - number,
+        body: number,
         pose: { position: [from[0] + way[0] * middle, from[1] + way[1] * middle, from[2] + way[2] * middle], orientation },
         scale: [width / 2, (end - begin) / 2, 0.001],
       };
@@ -142,6 +145,19 @@ const ghostLook = {
   polygonOffsetFactor: 2,
   polygonOffsetUnits: 2,
 };
+
+// The first instance that a ray hits.
+function firstHit(caster: THREE.Raycaster, sets: readonly InstanceSet[]): { set: InstanceSet; instance: Instance; point: Vector } | null {
+  sets.forEach(({ mesh }) => mesh.computeBoundingSphere());
+  const found = caster.intersectObjects(sets.map(({ mesh }) => mesh), false)[0];
+  const set = sets.find(({ mesh }) => mesh === found?.object);
+  const instance = set?.instances[found?.instanceId ?? -1];
+  if (found === undefined || set === undefined || instance === undefined) {
+    return null;
+  }
+  const { x, y, z } = found.point;
+  return { set, instance, point: [x, y, z] };
+}
 
 // A link that a ray hits, and the joint that a pull at it turns.
 export interface Hit {
@@ -166,7 +182,8 @@ export class RobotModel {
   private readonly contacts: InstanceSet;
   private readonly centres: Vector[]; // centres of the links, in their frames
   private contactBits: ArrayLike<number> = [];
-  private highlighted: number | null = null;
+  private litJoints: readonly number[] = [];
+  private litObjects: readonly PlacedObject[] = [];
   private displacements: Pose[] = [];
   private isDark: boolean;
 
@@ -262,8 +279,9 @@ export class RobotModel {
     this.move({ ...head, position: [x, y, z + this.floorHeight - lowest] }, angles, contactBits);
   }
 
-  highlight(joint: number | null): void {
-    this.highlighted = joint;
+  highlight(joints: readonly number[], objects: readonly PlacedObject[]): void {
+    this.litJoints = joints;
+    this.litObjects = objects;
     this.paint();
   }
 
@@ -274,16 +292,26 @@ export class RobotModel {
 
   // The link that is pointed at. It turns about the joint behind it; the last link turns about the joint before it.
   hit(caster: THREE.Raycaster): Hit | null {
-    const sets = [...this.links, this.joints];
-    sets.forEach(({ mesh }) => mesh.computeBoundingSphere());
-    const found = caster.intersectObjects(sets.map(({ mesh }) => mesh), false)[0];
-    const instance = sets.find(({ mesh }) => mesh === found?.object)?.instances[found?.instanceId ?? -1];
-    if (found === undefined || instance === undefined) {
+    const found = firstHit(caster, [...this.links, this.joints]);
+    if (found === null) {
       return null;
     }
     const last = this.joints.instances.length - 1;
-    const { x, y, z } = found.point;
-    return { joint: Math.min(instance.link, last), sense: instance.link > last ? -1 : 1, point: [x, y, z] };
+    const { link } = found.instance;
+    return { joint: Math.min(link, last), sense: link > last ? -1 : 1, point: found.point };
+  }
+
+  // The joint of the link that is pointed at, as hit() has it, or the object that is in front of it.
+  partAt(caster: THREE.Raycaster): { joint: number | null; object: PlacedObject | null } {
+    const found = firstHit(caster, [...this.links, this.joints, ...this.terrain, ...this.objects]);
+    if (found === null) {
+      return { joint: null, object: null };
+    }
+    const { set, instance } = found;
+    if (this.terrain.includes(set) || this.objects.includes(set)) {
+      return { joint: null, object: { moves: this.objects.includes(set), index: instance.body } };
+    }
+    return { joint: Math.min(instance.link, this.joints.instances.length - 1), object: null };
   }
 
   // The present place of a joint's axis; `axis` has length 1.
@@ -311,7 +339,9 @@ export class RobotModel {
       [...this.links, this.joints].forEach((set) => set.paint(() => colour.ghost));
       return;
     }
-    const isLit = (instance: Instance) => instance.link === this.highlighted;
+    const isLit = (instance: Instance) => this.litJoints.includes(instance.link);
+    const lit = (moves: boolean) => new Set(this.litObjects.filter((object) => object.moves === moves).map(({ index }) => index));
+    const [litTerrain, litMoving] = [lit(false), lit(true)];
     this.links.forEach((set) =>
       set.paint((instance) => {
         const own = set.isColoured ? white : instance.link === 0 ? colour.head : colour.link;
@@ -319,8 +349,10 @@ export class RobotModel {
       }),
     );
     this.joints.paint((instance) => (isLit(instance) ? colour.highlight : colour.joint));
-    this.terrain.forEach((set) => set.paint((_, i) => (set.isColoured ? white : i === 0 ? colour.floor : colour.obstacle)));
-    this.objects.forEach((set) => set.paint(() => (set.isColoured ? white : colour.object)));
+    this.terrain.forEach((set) =>
+      set.paint(({ body }, i) => (litTerrain.has(body) ? colour.highlight : set.isColoured ? white : i === 0 ? colour.floor : colour.obstacle)),
+    );
+    this.objects.forEach((set) => set.paint(({ body }) => (litMoving.has(body) ? colour.highlight : set.isColoured ? white : colour.object)));
     this.rulers.paint(({ link }, i) => {
       const first = this.rulers.instances.findIndex((other) => other.link === link);
       return (i - first) % 2 === 0 ? colour.rulerOdd : colour.rulerEven;
@@ -371,6 +403,7 @@ export class RobotModel {
       ];
       return {
         link: j,
+        body: j,
         pose: { position: rotate(inverse, offset), orientation: multiply(inverse, fromYTo(joint.axis)) },
         scale: [thickness * 0.45, 1.04 * Math.max(thickness, halfExtent(robot.links[j] as Body, joint.axis)), thickness * 0.45],
       };
@@ -401,6 +434,7 @@ export class RobotModel {
         const moved = rotate(inverse, offset as unknown as Vector);
         return {
           link,
+          body: link,
           pose: { position: [centre[0] + moved[0], centre[1] + moved[1], centre[2] + moved[2]], orientation: [1, 0, 0, 0] },
           scale: [along(0), along(1), along(2)],
         };

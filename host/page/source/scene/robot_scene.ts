@@ -8,7 +8,7 @@ import { HeadPath } from './head_path.js';
 import type { Detail } from './drawing_budget.js';
 import { RobotModel } from './robot_model.js';
 import { colours } from './scene_colours.js';
-import type { DragWay, ScenePose } from './scene_messages.js';
+import type { DragWay, PlacedObject, ScenePose } from './scene_messages.js';
 
 const fieldOfView = 40; // degrees, vertical
 const gridCells = 60;
@@ -38,6 +38,7 @@ export class RobotScene {
   private run = -1;
   private robotKey = '';
   private lastMove: number | null = null;
+  private lit: { joints: readonly number[]; objects: readonly PlacedObject[] } = { joints: [], objects: [] };
   private hasWholePath = false;
   private width = 1;
   private height = 1;
@@ -108,6 +109,7 @@ export class RobotScene {
     const isSameRobot = robotKey === this.robotKey;
     this.robotKey = robotKey;
     this.model = new RobotModel(robot, this.isDark);
+    this.model.highlight(this.lit.joints, this.lit.objects);
     this.path = new HeadPath(this.model.length / 200);
     this.path.setColour(colours(this.isDark).path);
     this.scene.add(this.model.group, this.path.line);
@@ -209,9 +211,15 @@ export class RobotScene {
     this.isDirty = true;
   }
 
-  highlight(joint: number | null): void {
-    this.model?.highlight(joint);
+  highlight(joints: readonly number[], objects: readonly PlacedObject[]): void {
+    this.lit = { joints, objects };
+    this.model?.highlight(joints, objects);
     this.isDirty = true;
+  }
+
+  // The joint or the object at a point; x and y are those of the messages: -1 to 1.
+  partAt(x: number, y: number): { joint: number | null; object: PlacedObject | null } {
+    return this.model?.partAt(this.casterAt(x, y)) ?? { joint: null, object: null };
   }
 
   // The joint at a point; x and y are those of the messages: -1 to 1.

@@ -8,6 +8,7 @@ import type {
   DraftDocument,
   ForesightDocument,
   GalleryEntry,
+  JointValues,
   LibraryItem,
   NewScenario,
   PartOperation,
@@ -364,6 +365,7 @@ export interface Operations {
   'draft.restore': Record<string, never>;
   'draft.discard': Record<string, never>;
   'draft.diff': Record<string, never>;
+  'draft.copy': { layout: number; objects: readonly number[] };
   'draft.save': Record<string, never>;
   'draft.save_as': { folder: string };
   load_draft: Record<string, never>;
@@ -374,8 +376,9 @@ export interface Operations {
   'world.moves': PartOperation & { object: number; value: boolean };
   'world.mass': PartOperation & { object: number; value: number };
   'world.rename': PartOperation & { object: number; name: string };
-  'world.remove': PartOperation & { object: number; group?: boolean };
-  'world.duplicate': PartOperation & { object: number; group?: boolean; step: [number, number, number]; count: number };
+  'world.remove': PartOperation & { objects: readonly number[]; group?: boolean };
+  'world.duplicate': PartOperation & { objects: readonly number[]; group?: boolean; step: [number, number, number]; count: number };
+  'world.paste': PartOperation & { text: string; step: [number, number, number] };
   'world.add': PartOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
   'world.start': PartOperation & { position: [number, number, number]; degrees: [number, number, number] };
   'world.ruler': PartOperation & { ruler?: number; from: [number, number, number]; to: [number, number, number] };
@@ -385,6 +388,7 @@ export interface Operations {
   'robot.torque': PartOperation & { joints: readonly number[]; value: number };
   'robot.speed': PartOperation & { joints: readonly number[]; value: number };
   'robot.rename_joint': PartOperation & { joint: number; name: string };
+  'robot.table': PartOperation & { joints: readonly JointValues[]; count?: number };
   'robot.rename': PartOperation & { name: string };
   'robot.servo': PartOperation & { name: keyof ServoDocument; value: number };
   'robot.mass': PartOperation & { link: number; value: number };

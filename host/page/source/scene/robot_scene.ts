@@ -26,6 +26,8 @@ export class RobotScene {
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.01, 200);
   private readonly orbit = new OrbitCamera();
+  private readonly frustum = new THREE.Frustum();
+  private readonly viewMatrix = new THREE.Matrix4();
   private readonly sun = new THREE.DirectionalLight(0xffffff, 2.2);
   private readonly sky = new THREE.HemisphereLight(0xffffff, 0x8090a0, 1.3);
   private readonly axes = new THREE.AxesHelper(0.1);
@@ -322,6 +324,10 @@ export class RobotScene {
     // The edge of the grid fades before it ends.
     this.fog.near = this.orbit.distance * 1.3;
     this.fog.far = this.orbit.distance + this.gridCell * gridCells * 0.45;
+    this.camera.updateMatrixWorld();
+    this.viewMatrix.multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    // Behind the fog everything has the colour of the background.
+    this.model?.showIn(this.frustum.setFromProjectionMatrix(this.viewMatrix), this.fog.far);
     this.renderer.render(this.scene, this.camera);
     return true;
   }

@@ -205,6 +205,12 @@ DraftOperation order(const json& words, const sim::Draft& draft) {
   return chain("order of joints", [counted](ChainChange& changed) { changed.order(counted); });
 }
 
+DraftOperation move_joint(const json& words, const sim::Draft& draft) {
+  return chain("move joint",
+               [from = from_tail(position_of(words, "joint"), draft),
+                to = from_tail(position_of(words, "to"), draft)](ChainChange& changed) { changed.move(from, to); });
+}
+
 DraftOperation kind(const json& words, const sim::Draft& draft) {
   const std::string name = text(words, "kind");
   const sim::RobotKind* const found = sim::find_robot_kind(name);
@@ -305,6 +311,7 @@ DraftOperation robot_operation(const std::string& name, const json& arguments, c
                                                           {"robot.remove", remove_joint},
                                                           {"robot.count", count},
                                                           {"robot.order", order},
+                                                          {"robot.move", move_joint},
                                                           {"robot.kind", kind},
                                                           {"robot.add_sensor", add_sensor},
                                                           {"robot.remove_sensor", remove_sensor},

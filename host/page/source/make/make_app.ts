@@ -10,7 +10,6 @@ import type { Stores } from '../view/robot_view.js';
 import type { DraftDocument, NewScenario, Operations, PartOperation, WorldObject } from '../wire/messages.js';
 import { DraftView } from './draft_view.js';
 import { copyJoints, jointColumns, type JointPaste } from './joint_table.js';
-import { movedOrder } from './robot_text.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -436,10 +435,9 @@ export class MakeApp {
     this.chosenJoints.value = adds ? (others.length === chosen.length ? [...chosen, joint] : others) : [joint];
   }
 
-  // Moves a joint to the place of another one. Returns whether that was possible.
+  // Moves a joint, with its link, to the place of another one. Returns whether that was possible.
   async moveJoint(joint: number, to: number): Promise<boolean> {
-    const count = this.draft.peek()?.robot.joints.length ?? 0;
-    const isDone = to !== joint && (await this.tell('robot.order', { order: movedOrder(count, joint, to) }));
+    const isDone = to !== joint && (await this.tell('robot.move', { joint, to }));
     if (isDone) this.chosenJoints.value = [to];
     return isDone;
   }

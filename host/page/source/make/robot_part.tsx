@@ -42,10 +42,10 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
         <button type="button" disabled={isDisabled || count < 2} title={why ?? 'Undo brings it back (Delete)'} onClick={() => void app.removeJoint()}>
           Delete
         </button>
-        <button type="button" disabled={isDisabled || joint === count - 1} title={why ?? 'Exchanges it with the joint behind it'} onClick={() => void app.moveJoint(joint!, joint! + 1)}>
+        <button type="button" disabled={isDisabled || joint === count - 1} title={why ?? 'Exchanges it, with its link, with the joint behind it'} onClick={() => void app.moveJoint(joint!, joint! + 1)}>
           ← to the tail
         </button>
-        <button type="button" disabled={isDisabled || joint === 0} title={why ?? 'Exchanges it with the joint in front of it'} onClick={() => void app.moveJoint(joint!, joint! - 1)}>
+        <button type="button" disabled={isDisabled || joint === 0} title={why ?? 'Exchanges it, with its link, with the joint in front of it'} onClick={() => void app.moveJoint(joint!, joint! - 1)}>
           to the head →
         </button>
         <button

@@ -397,6 +397,7 @@ export interface Operations {
   'robot.remove': PartOperation & { joint: number };
   'robot.count': PartOperation & { value: number };
   'robot.order': PartOperation & { order: readonly number[] };
+  'robot.move': PartOperation & { joint: number; to: number };
   'robot.kind': PartOperation & { kind: string; link: number | null };
   'robot.add_sensor': PartOperation & { kind: string; part: number; place?: string };
   'robot.remove_sensor': PartOperation & { sensor: number };

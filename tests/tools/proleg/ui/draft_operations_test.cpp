@@ -36,7 +36,7 @@ class RandomOperations {
     const std::size_t modules = sim::used_slots(draft_.scenario()).size();
     const std::size_t objects = read_world_contents(draft_).objects.size();
     const json some_joints = json::array({below(joints), below(joints)});
-    switch (below(26)) {
+    switch (below(27)) {
       case 0:
         return robot("axis", {{"joints", some_joints}, {"value", {below(2), 0, 1}}});
       case 1:
@@ -104,6 +104,8 @@ class RandomOperations {
         return world("paste",
                      {{"text", sim::copied_objects(draft_, {below(objects)})}, {"step", {0.25 + number() / 8, 0, 0}}});
       case 24:
+        return robot("move", {{"joint", below(joints)}, {"to", below(joints)}});
+      case 25:
         return world("friction", {{"object", below(objects)}, {"value", std::abs(number())}});
       default:
         return world("start", {{"position", {number(), number(), 0.1}}, {"degrees", {0, 0, 90.0 * number()}}});
@@ -211,16 +213,17 @@ TEST(DraftOperations, ArgumentsOfAnyKindAreTakenOrRefused) {
                                  "TactileSensor",
                                  json::array({json{{"joint", 0}, {"torque", 0.5}}}),
                                  "<KinBody/>"};
-  const std::vector<const char*> words{"joint", "joints",    "value",   "lower", "upper", "name",      "link",
-                                       "kind",  "sensor",    "part",    "place", "order", "algorithm", "module",
-                                       "pose",  "parameter", "objects", "text",  "step",  "count",     "torque"};
+  const std::vector<const char*> words{
+      "joint", "joints",    "value",  "lower", "upper",     "name",    "link", "kind", "sensor", "part",   "place",
+      "order", "algorithm", "module", "pose",  "parameter", "objects", "text", "step", "count",  "torque", "to"};
   const std::vector<const char*> names{
       "robot.axis",          "robot.limits",        "robot.torque",       "robot.speed",         "robot.rename_joint",
       "robot.rename",        "robot.servo",         "robot.mass",         "robot.friction",      "robot.duplicate",
       "robot.remove",        "robot.count",         "robot.order",        "robot.kind",          "robot.add_sensor",
       "robot.remove_sensor", "robot.rename_sensor", "robot.place_sensor", "robot.sensor_part",   "robot.set_sensor",
       "behaviour.add",       "behaviour.duplicate", "behaviour.remove",   "behaviour.algorithm", "behaviour.joints",
-      "behaviour.set",       "robot.table",         "world.paste",        "world.remove",        "world.duplicate"};
+      "behaviour.set",       "robot.table",         "robot.move",         "world.paste",         "world.remove",
+      "world.duplicate"};
   sim::SourceTexts texts;
   for (const sim::SourceFile& file : sim::new_scenario_files(sim::robot_kinds().front(), "pyp")) {
     texts.add(file.path, file.text);

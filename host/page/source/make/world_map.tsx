@@ -256,7 +256,8 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
   const head = app.drag.value?.moved.get(startOfRobot) ?? (draft === null ? null : poseFromArray(draft.head));
   const chosen = app.chosen.value;
   const title = plane === 'top' ? 'The world from above' : 'The world from the side';
-  const path = app.page.state.foresight.value?.path ?? [];
+  const start = app.page.state.foresightStart.value;
+  const rest = app.page.state.foresight.value?.path.slice(start.length) ?? []; // that of the path before, until it comes
   return (
     <div class={`map ${plane}`}>
       <svg
@@ -299,7 +300,10 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
           {draft?.world.rulers.map(({ from, to }, i) => (
             <polyline key={i} class="ruler" points={pathOf([flat(plane, from), flat(plane, to)])} />
           ))}
-          {path.length > 1 && <polyline class="foresight" data-testid={`foresight-${plane}`} points={pathOf(path.map((point) => flat(plane, point)))} />}
+          {start.length > 1 && <polyline class="foresight" data-testid={`foresight-start-${plane}`} points={pathOf(start.map((point) => flat(plane, point)))} />}
+          {rest.length > 1 && (
+            <polyline class={start.length > 1 ? 'foresight old' : 'foresight'} data-testid={`foresight-${plane}`} points={pathOf(rest.map((point) => flat(plane, point)))} />
+          )}
           {robot !== null && head !== null && (
             <g class="robot" onPointerDown={(event) => press(event, 'start', startOfRobot, head)}>
               <title>The robot at its start</title>

@@ -172,6 +172,7 @@ export interface LibraryItem {
 // Where the robot of the draft will be.
 export interface ForesightDocument {
   revision: number; // of the draft
+  is_complete: boolean; // else it is the first seconds, and the rest follows
   engine: string;
   seconds: number;
   path: [number, number, number][]; // of the head's frame, a point each 0.1 s

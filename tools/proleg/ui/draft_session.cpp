@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -42,6 +43,38 @@ json unsaved_json(const KeptChanges& kept) {
   }
   return {{"time_ms", kept.time_ms}, {"files", std::move(files)}};
 }
+
+/// The folders that new files need, such as those of a kind of module. Those that stay empty are removed again.
+class NewFolders {
+ public:
+  explicit NewFolders(const std::vector<sim::Draft::ChangedFile>& files) {
+    for (const sim::Draft::ChangedFile& file : files) {
+      create(std::filesystem::path(file.name).parent_path());
+    }
+  }
+  ~NewFolders() {
+    std::error_code has_files;
+    for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
+      std::filesystem::remove(*folder, has_files);
+    }
+  }
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+
+ private:
+  /// What cannot be created is named when its files are checked.
+  void create(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::exists(folder, error)) {
+      create(folder.parent_path());
+      if (std::filesystem::create_directory(folder, error)) {
+        folders_.push_back(folder);
+      }
+    }
+  }
+
+  std::vector<std::filesystem::path> folders_;
+};
 
 }  // namespace
 
@@ -392,6 +425,7 @@ json DraftSession::save(const json& /*arguments*/) {
     require_unchanged_on_disk(file);
     outputs.push_back({"draft.save", file.name, "file", [](const std::filesystem::path&) { return true; }, true});
   }
+  const NewFolders folders(changed);
   // None is written if one of them may not be written; a disk can be full in the middle.
   check_outputs(outputs);
   for (const sim::Draft::ChangedFile& file : changed) {

@@ -74,7 +74,8 @@ void Foresight::run() {
 void Foresight::compute(const Task& task) {
   sim::Scenario scenario = *task.scenario;
   json document{{"revision", task.revision}, {"is_complete", false}, {"seconds", 0.0},    {"path", json::array()},
-                {"distance", json()},        {"heading", json()},    {"failure", json()}, {"servo_problem", json()}};
+                {"distance", json()},        {"heading", json()},    {"failure", json()}, {"servo_problem", json()},
+                {"refusal", json()}};
   std::unique_ptr<sim::Simulation> simulation;
   const auto publish = [&] {
     document["engine"] = sim::name_of(scenario.environment.engine);
@@ -85,6 +86,10 @@ void Foresight::compute(const Task& task) {
   const auto is_late = [&begin] { return std::chrono::steady_clock::now() - begin > time_for_old; };
   try {
     simulation = make_fast_simulation(scenario);
+    if (scenario.environment.engine != task.scenario->environment.engine &&
+        task.scenario->environment.engine == sim::PhysicsEngine::reduced) {
+      document["refusal"] = refusal_of_engine(*task.scenario).value_or("");
+    }
     const std::uint32_t ticks = ticks_in(seconds_ahead, scenario);
     const std::uint32_t ticks_of_point = std::max(1U, ticks_in(seconds_between_points, scenario));
     const std::uint32_t ticks_of_first_part = ticks_in(seconds_of_first_part, scenario);

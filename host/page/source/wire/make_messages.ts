@@ -180,6 +180,7 @@ export interface ForesightDocument {
   heading: number | null; // degrees
   failure: string | null;
   servo_problem: string | null;
+  refusal: string | null; // why the engine that the scenario names does not have such a scenario
 }
 
 // A picture of a scenario, 1000 wide and 500 high, y downwards. Lines are x, y, x, y, ...; a side of a solid begins with its

@@ -117,6 +117,7 @@ Draft::Draft(Scenario scenario, FileSource& disk, std::uint64_t revision)
 Scenario Draft::read() {
   Scenario scenario = read_scenario(scenario_.path, texts_, scenario_.overrides);
   scenario.moves = scenario_.moves;  // of the command line, as the overrides
+  texts_.known_meshes()->forget_unused();
   // What the change names for the first time, such as a mesh, belongs to the draft from now on: it must not change
   // behind it.
   for (const SourceFile& source : scenario.sources) {

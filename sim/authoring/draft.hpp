@@ -29,6 +29,7 @@ class DraftTexts final : public FileSource {
 
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
   [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
+  [[nodiscard]] KnownMeshes* known_meshes() override { return &meshes_; }
 
   /// The text of a file of the draft; null if it has no such file.
   [[nodiscard]] const std::string* find(const std::string& name) const;
@@ -42,6 +43,7 @@ class DraftTexts final : public FileSource {
  private:
   FileSource* disk_;
   std::map<std::string, std::string> texts_;
+  KnownMeshes meshes_;
 };
 
 class Draft;

@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view head = "data:application/octet-stream;base64,";
 constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr unsigned digit_bits = 6;
+constexpr std::uint8_t no_digit = 0xFF;
 constexpr std::size_t group_digits = 4;
 constexpr std::size_t group_bytes = 3;
 
@@ -29,6 +30,19 @@ constexpr std::size_t max_path_size = 4096;
 constexpr const char* readable_file = "a readable file of at most 16 MiB";
 
 }  // namespace
+
+void KnownMeshes::forget_unused() {
+  const auto forget = [](auto& known) {
+    std::erase_if(known, [](const auto& entry) { return !entry.second.is_used; });
+    for (auto& [key, entry] : known) {
+      entry.is_used = false;
+    }
+  };
+  forget(imports_);
+  for (auto& [name, import] : imports_) {
+    forget(import.made);
+  }
+}
 
 std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
   std::error_code error;
@@ -65,6 +79,7 @@ std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path&
 
 std::string data_url(std::string_view bytes) {
   std::string text(head);
+  text.reserve(head.size() + (bytes.size() / group_bytes + 1) * group_digits);
   for (std::size_t at = 0; at < bytes.size(); at += group_bytes) {
     const std::string_view group = bytes.substr(at, group_bytes);
     std::uint32_t bits = 0;
@@ -79,19 +94,29 @@ std::string data_url(std::string_view bytes) {
   return text;
 }
 
-std::string bytes_of_source(const std::string& text) {
-  if (!text.starts_with(head)) {
-    return text;
+std::optional<std::string> decode_base64(std::string_view text) {
+  static const std::array<std::uint8_t, 256> values = [] {
+    std::array<std::uint8_t, 256> table{};
+    table.fill(no_digit);
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+      table.at(static_cast<std::uint8_t>(digits[i])) = static_cast<std::uint8_t>(i);
+    }
+    return table;
+  }();
+  if (text.size() % group_digits != 0) {
+    return std::nullopt;
   }
+  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
   std::string bytes;
+  bytes.reserve(text.size() / group_digits * group_bytes);
   std::uint32_t bits = 0;
   unsigned count = 0;
-  for (const char character : std::string_view(text).substr(head.size())) {
-    const std::size_t digit = digits.find(character);
-    if (digit == std::string_view::npos) {
-      break;  // "=" at the end
+  for (const char character : text.substr(0, text.size() - padding)) {
+    const std::uint8_t digit = values.at(static_cast<std::uint8_t>(character));
+    if (digit == no_digit) {
+      return std::nullopt;
     }
-    bits = bits << digit_bits | static_cast<std::uint32_t>(digit);
+    bits = bits << digit_bits | digit;
     count += digit_bits;
     if (count >= 8) {
       count -= 8;
@@ -99,6 +124,10 @@ std::string bytes_of_source(const std::string& text) {
     }
   }
   return bytes;
+}
+
+std::string bytes_of_source(const std::string& text) {
+  return text.starts_with(head) ? decode_base64(std::string_view(text).substr(head.size())).value_or("") : text;
 }
 
 std::size_t size_of_source(std::string_view text) {

@@ -49,7 +49,7 @@ std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, error)) {
     return std::nullopt;
   }
-  if (const auto size = std::filesystem::file_size(path, error); error || size > max_file_bytes) {
+  if (const auto size = std::filesystem::file_size(path, error); error || size > most_bytes_) {
     return std::nullopt;
   }
   std::ifstream stream(path, std::ios::binary);
@@ -73,7 +73,7 @@ std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path&
   }
   constexpr std::uintmax_t mebibyte = 1U << 20U;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  return !error && size > max_file_bytes ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
+  return !error && size > most_bytes_ ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
                                          : "a file that cannot be read";
 }
 
@@ -92,6 +92,10 @@ std::string data_url(std::string_view bytes) {
     }
   }
   return text;
+}
+
+std::string source_text(std::string bytes) {
+  return find_invalid_utf8(bytes) || bytes.find('\0') != std::string::npos ? data_url(bytes) : std::move(bytes);
 }
 
 std::optional<std::string> decode_base64(std::string_view text) {
@@ -148,9 +152,8 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path, Content
     return nullptr;
   }
   recorded_.emplace(name, record_->size());
-  // Recordings and documents keep sources as text.
-  if (contents == Contents::any && (find_invalid_utf8(*text) || text->find('\0') != std::string::npos)) {
-    text = data_url(*text);
+  if (contents == Contents::any) {
+    text = source_text(std::move(*text));
   }
   record_->push_back({name, std::move(*text)});
   return &record_->back().text;

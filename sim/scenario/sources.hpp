@@ -68,11 +68,16 @@ class FileSource {
 
 inline constexpr std::size_t max_file_bytes = std::size_t{16} << 20U;
 
-/// Files on disk, at most max_file_bytes each. Reads regular files only: a device or a pipe might never end.
+/// Files on disk, at most `most_bytes` each. Reads regular files only: a device or a pipe might never end.
 class DiskFiles final : public FileSource {
  public:
+  explicit DiskFiles(std::size_t most_bytes = max_file_bytes) : most_bytes_(most_bytes) {}
+
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
   [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
+
+ private:
+  std::size_t most_bytes_;
 };
 
 /// Files as they were read before: the sources of a scenario or of a recording.
@@ -93,6 +98,9 @@ class SourceTexts final : public FileSource {
 /// Bytes as text, for sources that are no text, such as a binary STL file: "data:application/octet-stream;base64,..."
 /// (RFC 2397).
 [[nodiscard]] std::string data_url(std::string_view bytes);
+
+/// A file of any bytes as recordings and documents keep it: its text; for what is no text, that of data_url().
+[[nodiscard]] std::string source_text(std::string bytes);
 
 /// The bytes of a text in base64 (RFC 4648) with "=" at its end; nothing for another text.
 [[nodiscard]] std::optional<std::string> decode_base64(std::string_view text);

@@ -1,10 +1,12 @@
 #include "tools/proleg/ui/draft_session.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -27,6 +29,7 @@ namespace proleg::tools {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 json lines_json(const std::vector<std::string>& texts) {
   json lines = json::array();
@@ -41,6 +44,39 @@ bool is_binary(const sim::Draft::ChangedFile& file) {
   return sim::size_of_source(file.text) != file.text.size() ||
          (file.saved && sim::size_of_source(*file.saved) != file.saved->size());
 }
+
+/// Folders for new files, such as meshes. They are removed again if nothing is written.
+class NewFolders {
+ public:
+  NewFolders() = default;
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  ~NewFolders() {
+    std::error_code ignored;
+    for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
+      fs::remove(*folder, ignored);
+    }
+  }
+
+  void create_for(const fs::path& file) {
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (fs::path folder = file.parent_path(); !folder.empty() && !fs::exists(folder, error);
+         folder = folder.parent_path()) {
+      missing.push_back(folder);
+    }
+    for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) {
+      if (!fs::create_directory(*folder, error)) {
+        throw FileError(*folder, "cannot be created: " + error.message());
+      }
+      created_.push_back(*folder);
+    }
+  }
+  void keep() { created_.clear(); }
+
+ private:
+  std::vector<fs::path> created_;
+};
 
 json unsaved_json(const KeptChanges& kept) {
   json files = json::array();
@@ -411,8 +447,13 @@ json DraftSession::save(const json& /*arguments*/) {
     require_unchanged_on_disk(file);
     outputs.push_back({"draft.save", file.name, "file", [](const std::filesystem::path&) { return true; }, true});
   }
+  NewFolders folders;
+  for (const sim::Draft::ChangedFile& file : changed) {
+    folders.create_for(file.name);
+  }
   // None is written if one of them may not be written; a disk can be full in the middle.
   check_outputs(outputs);
+  folders.keep();
   for (const sim::Draft::ChangedFile& file : changed) {
     write_file(file.name, sim::bytes_of_source(file.text));
   }

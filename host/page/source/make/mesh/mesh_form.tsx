@@ -204,14 +204,7 @@ export function ModuleMeshForm({ app }: { app: MakeApp }) {
   const mesh = own.mesh.value;
   const obstacle = app.obstacle() ?? (own.factor.value === null ? 'Choose the unit first.' : null);
   return (
-    <form
-      class="item-form"
-      aria-label="Module of my own"
-      onSubmit={(event) => {
-        event.preventDefault();
-        if (obstacle === null) void own.makeModule();
-      }}
-    >
+    <div class="item-form" role="form" aria-label="Module of my own">
       <p class="hint">
         A link with a shape of your own: an STL, OBJ (with its .mtl), COLLADA or OFF file, dropped on this page or chosen. It touches with the convex hull of the
         mesh. Joints keep their axes, servos and gait.
@@ -226,7 +219,7 @@ export function ModuleMeshForm({ app }: { app: MakeApp }) {
           <MeshNumbers app={app} mesh={mesh} />
           <ModuleNumbers app={app} />
           <div class="fields">
-            <button type="submit" class="primary" disabled={obstacle !== null} title={obstacle ?? 'Undo brings the old modules back.'}>
+            <button type="button" class="primary" onClick={() => void own.makeModule()} disabled={obstacle !== null} title={obstacle ?? 'Undo brings the old modules back.'}>
               {own.links.value === null ? 'Use it for all links' : own.links.value.length === 1 ? 'Use it for 1 link' : `Use it for ${own.links.value.length} links`}
             </button>
             <button type="button" onClick={() => own.close()}>
@@ -240,7 +233,7 @@ export function ModuleMeshForm({ app }: { app: MakeApp }) {
           )}
         </>
       )}
-    </form>
+    </div>
   );
 }
 
@@ -249,14 +242,7 @@ export function WorldMeshForm({ app }: { app: MakeApp }) {
   const mesh = own.mesh.value;
   const obstacle = app.obstacle() ?? (own.factor.value === null ? 'Choose the unit first.' : mesh?.gap != null && !own.isSheet.value ? 'Its surface is not closed.' : null);
   return (
-    <form
-      class="item-form"
-      aria-label="New mesh"
-      onSubmit={(event) => {
-        event.preventDefault();
-        if (obstacle === null) void own.add();
-      }}
-    >
+    <div class="item-form" role="form" aria-label="New mesh">
       <p class="hint">
         A shape of your own: an STL, OBJ (with its .mtl), COLLADA or OFF file, dropped anywhere on this page or chosen. It stands still and touches with all its
         triangles, at most 100,000.
@@ -287,7 +273,7 @@ export function WorldMeshForm({ app }: { app: MakeApp }) {
             </>
           )}
           <div class="fields">
-            <button type="submit" class="primary" disabled={obstacle !== null} title={obstacle ?? 'It comes in front of the robot.'}>
+            <button type="button" class="primary" onClick={() => void own.add()} disabled={obstacle !== null} title={obstacle ?? 'It comes in front of the robot.'}>
               Add {mesh.name}
             </button>
             <button type="button" onClick={() => own.close()}>
@@ -301,6 +287,6 @@ export function WorldMeshForm({ app }: { app: MakeApp }) {
           )}
         </>
       )}
-    </form>
+    </div>
   );
 }

@@ -40,8 +40,8 @@ export function MeshPreview({ shape, lowest, highest, quarters, colour, axisText
     context.fillStyle = style.color;
     context.font = '12px sans-serif';
     const seen = projection(camera.value);
-    const origin: [number, number] = [52, size.height - 46];
-    const length = 30; // pixels
+    const origin: [number, number] = [36, size.height - 30];
+    const length = 24; // pixels
     for (const [axis, text] of axisTexts.entries()) {
       const [x, y] = seen([axis === 0 ? length : 0, axis === 1 ? length : 0, axis === 2 ? length : 0]);
       context.beginPath();

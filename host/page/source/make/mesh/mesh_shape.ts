@@ -71,10 +71,10 @@ export function drawShape(picture: Picture, shape: MeshShape, turn: Quaternion, 
     const [cx, cy, cz] = [points[c]! - ax, points[c + 1]! - ay, points[c + 2]! - az];
     const area = bx * cy - by * cx;
     if (area === 0) continue;
-    // The normal in the picture: light comes from the upper left, in front. Both sides of a sheet are seen.
-    const normal: Vector = [by * cz - bz * cy, bz * cx - bx * cz, area];
-    const light = Math.abs(-0.4 * normal[0] - 0.6 * normal[1] - 0.7 * normal[2]) / Math.hypot(...normal);
-    const shade = 0.3 + 0.7 * light;
+    // The normal towards the eye, because both sides of a sheet are seen. Light comes from above, a little from the left.
+    const sense = Math.sign(area);
+    const normal = [sense * (by * cz - bz * cy), sense * (bz * cx - bx * cz), sense * area] as const;
+    const shade = 0.35 + 0.65 * Math.max(0, (-0.35 * normal[0] - 0.75 * normal[1] + 0.56 * normal[2]) / Math.hypot(...normal));
     const left = Math.max(0, Math.ceil(Math.min(ax, ax + bx, ax + cx) - 0.5));
     const right = Math.min(width - 1, Math.floor(Math.max(ax, ax + bx, ax + cx) + 0.5));
     const top = Math.max(0, Math.ceil(Math.min(ay, ay + by, ay + cy) - 0.5));

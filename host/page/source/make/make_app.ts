@@ -8,6 +8,8 @@ import type { Stores } from '../view/robot_view.js';
 import type { Body, DraftDocument, NewScenario, Operations, PartOperation, RobotDocument, WorldObject } from '../wire/messages.js';
 import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
+import { OwnMesh } from './mesh/own_mesh.js';
+import type { MeshFile } from './mesh/mesh_transfer.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -47,6 +49,7 @@ export class MakeApp {
   readonly newJoints = signal<{ module: number; joints: readonly number[] } | null>(null);
   readonly actions: ActionList;
   readonly view: DraftView;
+  readonly mesh = new OwnMesh(this); // of one's own, before it is part of the draft
   readonly draft = computed(() => this.page.state.draft.value);
   readonly objects = computed(() => this.draft.value?.world.objects ?? []);
   readonly chosenObject = computed(() => {
@@ -280,7 +283,19 @@ export class MakeApp {
   }
 
   // Adds an item of the library in front of the robot, and chooses it. Returns the reason if it was refused.
-  async add(item: string, values: Record<string, number>): Promise<string | null> {
+  add(item: string, values: Record<string, number>): Promise<string | null> {
+    return this.addInFront((place) => this.change('world.add', { item, values, ...place }));
+  }
+
+  // What was dropped on the page: a module while the robot is shown, else an object of the world.
+  dropMesh(files: readonly MeshFile[]): void {
+    if (this.draft.peek() === null) return;
+    if (this.part.peek() !== 'robot') this.part.value = 'world';
+    void this.mesh.take(files, this.part.peek() === 'robot' ? 'module' : 'world');
+  }
+
+  // Adds an object in front of the robot, and chooses it. Returns the reason if it was refused.
+  async addInFront(add: (place: { position: [number, number, number]; turn: number }) => Promise<string | null>): Promise<string | null> {
     const draft = this.draft.peek();
     if (draft === null) return null;
     const before = draft.world.objects.filter(({ editable }) => editable).length;
@@ -289,7 +304,7 @@ export class MakeApp {
     const distance = freeDistance([x, y], heading, this.outlines());
     const round = (value: number) => Math.round(value * 1000) / 1000;
     const position: [number, number, number] = [round(x + distance * Math.cos(heading)), round(y + distance * Math.sin(heading)), 0];
-    const refusal = await this.change('world.add', { item, values, position, turn: draft.world.start.degrees[2] });
+    const refusal = await add({ position, turn: draft.world.start.degrees[2] });
     if (refusal === null) this.chosen.value = before;
     return refusal;
   }

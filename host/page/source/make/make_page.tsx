@@ -5,6 +5,7 @@ import type { ForesightDocument } from '../wire/messages.js';
 import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
+import { MeshDrop } from './mesh/mesh_drop.js';
 import { LossQuestion, NewPanel } from './new_panel.js';
 import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';
@@ -211,6 +212,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
   }
   return (
     <div class="make">
+      <MeshDrop app={app} />
       <Bar app={app} />
       {app.panel.value === 'save' && <SavePanel app={app} />}
       {app.panel.value === 'open' && (app.wouldLose() ? <LossQuestion app={app} /> : <OpenPanel app={app} />)}

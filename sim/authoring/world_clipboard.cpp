@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
-#include <set>
-#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -24,10 +23,6 @@ constexpr std::array<std::string_view, 3> file_tags{"data", "collision", "render
   throw InputError(clipboard, 0, found, "objects of a world, as Copy makes them");
 }
 
-bool can_name_file(const XmlText& xml, ElementNumber element) {
-  return std::ranges::any_of(file_tags, [&](std::string_view tag) { return xml.is(element, tag); });
-}
-
 std::string without_comments(std::string text) {
   for (std::size_t begin = text.find("<!--"); begin != std::string::npos; begin = text.find("<!--", begin)) {
     const std::size_t end = text.find("-->", begin);
@@ -36,30 +31,35 @@ std::string without_comments(std::string text) {
   return text;
 }
 
-/// The tag and the content of everything in a world that can name a file.
-std::set<std::pair<std::string, std::string>> named_files(const XmlText& xml) {
-  std::set<std::pair<std::string, std::string>> files;
-  for (ElementNumber i = 0; i < xml.size(); ++i) {
-    if (can_name_file(xml, i)) {
-      files.emplace(lower_case(xml.at(i).tag.name), content_of(xml, i));
+/// The name of a file in a text such as "stone.stl 0.001".
+std::string_view without_factors(std::string_view text) {
+  for (text = trimmed(text);; text = trimmed(text)) {
+    const std::size_t blank = text.find_last_of(" \t\r\n");
+    if (blank == std::string_view::npos || !parse_number(text.substr(blank + 1))) {
+      return text;
     }
+    text = text.substr(0, blank);
   }
-  return files;
+}
+
+/// Whether the draft has a file, which the environment names so. The disk is not asked.
+bool has_file(const DraftChange& change, const std::string& environment, std::string_view file) {
+  return change.text(name_of(std::filesystem::path(environment).parent_path() / file)) != nullptr;
 }
 
 /// Of all elements, as the reader's parser has them: a text that looks different to another parser hides nothing.
-void require_known_files(const XmlElement& element, const std::set<std::pair<std::string, std::string>>& known) {
+void require_known_files(const XmlElement& element, const DraftChange& change, const std::string& environment) {
   if (const auto file = element.attribute("file")) {
     refuse_clipboard(element.label() + " that names the file " + in_quotes(one_line(shortened(*file))));
   }
   for (const std::string_view tag : file_tags) {
-    if (element.is(tag) && !known.contains({std::string(tag), element.text()})) {
+    if (element.is(tag) && !has_file(change, environment, without_factors(element.text()))) {
       throw InputError(clipboard, 0, element.label() + " with " + in_quotes(one_line(shortened(element.text()))),
-                       "a file that this world uses already; copy the file into its folder, and add the object there");
+                       "a mesh that this scenario has already; add it here by itself");
     }
   }
   for (const XmlElement& child : element.children()) {
-    require_known_files(child, known);
+    require_known_files(child, change, environment);
   }
 }
 
@@ -135,7 +135,7 @@ void paste_objects(const WorldContents& world, DraftChange& change, std::string_
   const XmlDocument document(clipboard, wrapped, nullptr);
   const XmlElement root = document.root(outer_tag);
   root.allow({}, {"KinBody"});
-  require_known_files(root, named_files(change.xml(world.file)));
+  require_known_files(root, change, world.file);
   const std::vector<ElementNumber> elements = xml.children(0);
   if (elements.empty() || elements.size() != root.children().size() || xml.at(0).end != wrapped.size()) {
     refuse_clipboard("a text without whole elements");

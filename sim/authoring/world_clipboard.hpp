@@ -24,7 +24,7 @@ inline constexpr std::size_t max_copied_bytes = std::size_t{48} << 10U;
 
 /// Adds the objects of a text from copied_objects(), or from anywhere. They stand where the text has them; if objects
 /// of the world stand there, they are moved by `step` (m) until none does. Throws InputError for a text that has more
-/// than objects, is too long, or names a file that the world does not use in the same way; the reader judges the rest.
+/// than objects, is too long, or names a file that the draft does not have; the reader judges the rest.
 void paste_objects(const WorldContents& world, DraftChange& change, std::string_view text, const Eigen::Vector3d& step);
 
 }  // namespace proleg::sim

@@ -109,9 +109,9 @@ TEST_F(WorldClipboardTest, ATextThatIsNoObjectOfAWorldGetsOneLine) {
                         {R"(<KinBody FILE='/etc/passwd'/>)", "names the file '/etc/passwd'"},
                         {R"(<KinBody name="a"><KinBody file="../x.xml"/></KinBody>)", "names the file '../x.xml'"},
                         {mesh("<data>../secret.stl</data>"), "<data> with '../secret.stl'"},
-                        {mesh("<DATA>&#x2f;etc/passwd</DATA>"), "a file that this world uses already"},
-                        {mesh("<collision>http://a/b.stl</collision>"), "a file that this world uses already"},
-                        {mesh("<render>secret.stl</render>"), "a file that this world uses already"},
+                        {mesh("<DATA>&#x2f;etc/passwd</DATA>"), "a mesh that this scenario has already"},
+                        {mesh("<collision>http://a/b.stl</collision>"), "a mesh that this scenario has already"},
+                        {mesh("<render>secret.stl</render>"), "a mesh that this scenario has already"},
                         {"<!DOCTYPE a [<!ENTITY b SYSTEM 'file:///etc/passwd'>]><KinBody/>", "found a text with '<!'"},
                         {"<KinBody/><!--Pose: ,0 0 9,0 0 0,-->", "found a text with '<!'"},
                         {"<![CDATA[<KinBody/>]]>", "found a text with '<!'"},
@@ -152,7 +152,11 @@ TEST_F(WorldClipboardTest, AMeshIsPastedWhereTheWorldHasItsFile) {
   EXPECT_EQ(text.find("grey"), std::string::npos) << "without comments";
   paste(draft, text);
   EXPECT_EQ(read_world_contents(draft).objects.size(), now.objects.size() + 1);
-  EXPECT_NE(refusal(text).find("a file that this world uses already"), std::string::npos) << "another world";
+  const std::size_t at = static_cast<std::size_t>(stone - now.objects.begin());
+  change_world(draft, [&](WorldChange& change) { change.remove({at, at + 1}, true); });
+  paste(draft, replaced(text, "stone.stl", "stone.stl 0.5"));  // cut and paste; with another factor, too
+  EXPECT_EQ(read_world_contents(draft).objects.size(), now.objects.size());
+  EXPECT_NE(refusal(text).find("a mesh that this scenario has already"), std::string::npos) << "another world";
 }
 
 TEST_F(WorldClipboardTest, SelectionsThatAreTooLongAreNotCopied) {

@@ -23,7 +23,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr int journal_format = 1;
-constexpr std::size_t most_bytes = std::size_t{16} << 20U;  // what DiskFiles reads
+constexpr std::size_t most_bytes = std::size_t{96} << 20U;  // meshes of 64 MiB in base64, and their files
 
 std::int64_t now_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -79,7 +79,7 @@ std::string process_identity(pid_t process) {
 }
 
 std::optional<KeptChanges> DraftJournal::read(const sim::Draft& draft) {
-  sim::DiskFiles disk;
+  sim::DiskFiles disk(2 * most_bytes);  // with the names, and texts as JSON has them
   const std::optional<std::string> text = disk.read(path_);
   if (!text) {
     return std::nullopt;

@@ -10,6 +10,7 @@ import type {
   GalleryEntry,
   JointValues,
   LibraryItem,
+  MeshFit,
   NewScenario,
   PartOperation,
   PartsDocument,
@@ -380,6 +381,13 @@ export interface Operations {
   'world.duplicate': PartOperation & { objects: readonly number[]; group?: boolean; step: [number, number, number]; count: number };
   'world.paste': PartOperation & { text: string; step: [number, number, number] };
   'world.add': PartOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
+  'mesh.begin': { files: { name: string; bytes: number }[] };
+  'mesh.part': { mesh: number; file: number; at: number; data: string }; // base64
+  'mesh.look': { mesh: number };
+  'mesh.shape': { mesh: number };
+  'mesh.drop': { mesh: number };
+  'world.add_mesh': PartOperation & MeshFit & { sheet: boolean; position: [number, number, number]; turn: number };
+  'robot.own_module': PartOperation & MeshFit & { name: string; length: number; mass: number; links: readonly number[] };
   'world.start': PartOperation & { position: [number, number, number]; degrees: [number, number, number] };
   'world.ruler': PartOperation & { ruler?: number; from: [number, number, number]; to: [number, number, number] };
   'world.remove_ruler': PartOperation & { ruler: number };

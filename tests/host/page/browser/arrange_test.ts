@@ -276,7 +276,7 @@ describe('what is arranged in Make', () => {
       for (const [text, reason] of [
         ['hello', "found 'hello', expected objects of a world"],
         ['<KinBody file="/etc/passwd"/>', "names the file '/etc/passwd'"],
-        ['<KinBody name="a"><Body type="static"><Geom type="trimesh"><data>../../etc/passwd</data></Geom></Body></KinBody>', 'a file that this world uses already'],
+        ['<KinBody name="a"><Body type="static"><Geom type="trimesh"><data>../../etc/passwd</data></Geom></Body></KinBody>', 'a mesh that this scenario has already'],
         [`<KinBody name="${'x'.repeat(70000)}"/>`, 'KiB of text'],
       ] as const) {
         await writeClipboard(page(), text);

@@ -74,7 +74,7 @@ std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path&
   constexpr std::uintmax_t mebibyte = 1U << 20U;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   return !error && size > most_bytes_ ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
-                                         : "a file that cannot be read";
+                                      : "a file that cannot be read";
 }
 
 std::string data_url(std::string_view bytes) {
@@ -95,6 +95,9 @@ std::string data_url(std::string_view bytes) {
 }
 
 std::string source_text(std::string bytes) {
+  if (bytes.starts_with(head)) {
+    return bytes;  // it is one already
+  }
   return find_invalid_utf8(bytes) || bytes.find('\0') != std::string::npos ? data_url(bytes) : std::move(bytes);
 }
 

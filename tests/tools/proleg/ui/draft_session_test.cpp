@@ -90,12 +90,17 @@ class DraftSessionTest : public ::testing::Test {
     meshes_.set(1, std::make_shared<const sim::OwnMesh>(sim::read_own_mesh({{"box.stl", box_stl()}})));
   }
   static json mesh_words() {
-    return {{"mesh", 1},       {"factor", 0.001},     {"quarters", {1, 0, 0}}, {"colour", {1, 0, 0}},
-            {"sheet", false}, {"position", {0, 1, 0}}, {"turn", 0}};
+    return {{"mesh", 1},
+            {"factor", 0.001},
+            {"quarters", {1, 0, 0}},
+            {"colour", {1, 0, 0}},
+            {"sheet", false},
+            {"position", {0, 1, 0}},
+            {"turn", 0}};
   }
   static json module_words() {
     return {{"mesh", 1},       {"factor", 0.0001}, {"quarters", {1, 0, 0}}, {"colour", {1, 0, 0}},
-            {"name", "shell"}, {"length", 0.08},  {"mass", 0.15},          {"links", json::array()}};
+            {"name", "shell"}, {"length", 0.08},   {"mass", 0.15},          {"links", json::array()}};
   }
   [[nodiscard]] std::string world_file() const { return folder_ / "mine/flat.environment.xml"; }
 
@@ -416,8 +421,10 @@ TEST_F(DraftSessionTest, AMeshBecomesAModuleOfSomeLinksOrAll) {
 
 TEST_F(DraftSessionTest, OperationsWithAMeshAreRefusedInOneLine) {
   send_box();
-  const std::vector<json> values{json(), -1, 0, 2, 1e99, "a", json::array(), json({1, 2}), json({9, 0, 0}), json::object(), true, 4294967295U};
-  for (const auto& [name, good] : {std::pair("world.add_mesh", mesh_words()), std::pair("robot.own_module", module_words())}) {
+  const std::vector<json> values{
+      json(), -1, 0, 2, 1e99, "a", json::array(), json({1, 2}), json({9, 0, 0}), json::object(), true, 4294967295U};
+  for (const auto& [name, good] :
+       {std::pair("world.add_mesh", mesh_words()), std::pair("robot.own_module", module_words())}) {
     for (const auto& [member, value] : good.items()) {
       for (const json& bad : values) {
         json words = good;

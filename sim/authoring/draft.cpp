@@ -318,7 +318,12 @@ void Draft::read_again() {
   ++revision_;
 }
 
-void Draft::mark_saved() { saved_ = texts_.all(); }
+void Draft::mark_saved() {
+  // A file that a change has added, and that undo has taken out of the draft, stays on the disk as it was saved.
+  for (const auto& [name, text] : texts_.all()) {
+    saved_[name] = text;
+  }
+}
 
 void Draft::rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path,
                          FileSource& disk) {

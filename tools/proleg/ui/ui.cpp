@@ -32,6 +32,7 @@
 #include "tools/proleg/ui/algorithm_session.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
+#include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gallery.hpp"
 #include "tools/proleg/ui/mesh_session.hpp"
 #include "tools/proleg/ui/page_access.hpp"
@@ -281,7 +282,15 @@ int serve(UiOptions& options) {
                    requests, remote);
   } else {
     std::unique_ptr<LiveSimulation> live;
-    if (run) {
+    std::optional<std::string> refusal;
+    if (run && has_file && !options.scenario.overrides.engine) {
+      refusal = refusal_of_engine(run->scenario);
+    }
+    if (refusal) {  // Make can change what the engine refuses
+      const std::string text = "there is no simulation: " + *refusal;
+      print_warning("proleg ui", text);
+      page.notice(host::NoticeLevel::error, text);
+    } else if (run) {
       live = std::make_unique<LiveSimulation>(run->scenario, options.scenario.settings, &run->losses);
     }
     simulated.emplace(

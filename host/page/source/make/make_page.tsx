@@ -132,6 +132,7 @@ function Foresight({ app }: { app: MakeApp }) {
           ({foresight.engine.toUpperCase()})
         </span>
       )}
+      {foresight?.refusal != null && <span class="servo-problem"> The engine that Run has cannot simulate this scenario: {foresight.refusal}</span>}
       {foresight?.servo_problem != null && <span class="servo-problem"> {foresight.servo_problem}</span>}
     </p>
   );

@@ -173,6 +173,7 @@ export interface LibraryItem {
 // Where the robot of the draft will be.
 export interface ForesightDocument {
   revision: number; // of the draft
+  is_complete: boolean; // else it is the first seconds, and the rest follows
   engine: string;
   seconds: number;
   path: [number, number, number][]; // of the head's frame, a point each 0.1 s
@@ -180,6 +181,7 @@ export interface ForesightDocument {
   heading: number | null; // degrees
   failure: string | null;
   servo_problem: string | null;
+  refusal: string | null; // why the engine that the scenario names does not have such a scenario
 }
 
 // A picture of a scenario, 1000 wide and 500 high, y downwards. Lines are x, y, x, y, ...; a side of a solid begins with its

@@ -64,6 +64,12 @@ class DraftSessionTest : public ::testing::Test {
       return document.contains("revision") && document["revision"] >= revision;
     });
   }
+  /// Where the robot of a revision will be.
+  json path_of_revision(std::uint64_t revision) {
+    return viewers_.document_when("foresight", [&](const json& document) {
+      return document.contains("revision") && document["revision"] == revision && document["is_complete"] == true;
+    });
+  }
   json add_box() {
     const json answer = must("world.add", {{"item", "box"}, {"values", {{"height", 0.05}}}, {"position", {0, 1, 0}}});
     return draft(answer["revision"]);
@@ -270,8 +276,7 @@ TEST_F(DraftSessionTest, BadArgumentsAreRefusedWithTheirReason) {
 // What the path says is what a simulation then does, to the bit of the reduced engine.
 TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
   must("world.friction", {{"object", 0}, {"value", 0.3}});
-  const json foresight = viewers_.document_when(
-      "foresight", [](const json& document) { return document.contains("revision") && document["revision"] == 1; });
+  const json foresight = path_of_revision(1);
   ASSERT_EQ(foresight["failure"], json()) << foresight;
   EXPECT_EQ(foresight["engine"], "reduced");
   must("draft.save");
@@ -294,8 +299,7 @@ TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
 
 TEST_F(DraftSessionTest, AWorldThatTheReducedEngineLacksIsForeseenByOde) {
   must("world.add", {{"item", "sphere"}, {"position", {0, 2, 0}}});
-  const json foresight = viewers_.document_when(
-      "foresight", [](const json& document) { return document.contains("revision") && document["revision"] == 1; });
+  const json foresight = path_of_revision(1);
   EXPECT_EQ(foresight["engine"], "ode");
   EXPECT_EQ(foresight["failure"], json());
 }

@@ -37,8 +37,8 @@ class Paths final : public host::SessionOutput {
 
   std::vector<json> until(const std::function<bool(const json&)>& is_last) {
     std::unique_lock lock(mutex_);
-    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::minutes(5),
-                                  [&] { return !paths_.empty() && is_last(paths_.back()); }));
+    EXPECT_TRUE(
+        changed_.wait_for(lock, std::chrono::minutes(5), [&] { return !paths_.empty() && is_last(paths_.back()); }));
     return paths_;
   }
   std::size_t count() {
@@ -89,8 +89,8 @@ TEST(ForesightTest, PathsComeWhileChangesDo) {
   }
   EXPECT_GE(output.count(), 4U);
   foresight.look_at(scenario, ++revision);
-  const std::vector<json> paths = output.until(
-      [&](const json& path) { return path["revision"] == revision && path["is_complete"] == true; });
+  const std::vector<json> paths =
+      output.until([&](const json& path) { return path["revision"] == revision && path["is_complete"] == true; });
   std::uint64_t before = 0;
   for (const json& path : paths) {
     EXPECT_GE(path["revision"], before) << "the newest is computed next";

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { sendMesh, type MeshFile } from '../../../../../host/page/source/make/mesh/mesh_transfer.js';
+import { sendMesh, type MeshFile } from '../../../../host/page/source/make/mesh_transfer.js';
 
 function file(name: string, bytes: Uint8Array): MeshFile {
   return { name, size: bytes.length, slice: (from, to) => ({ arrayBuffer: async () => bytes.slice(from, to).buffer }) };

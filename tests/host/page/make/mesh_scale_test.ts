@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { isPlausible, sidesOf, sizeText, suggestedUnit, turnedSides } from '../../../../../host/page/source/make/mesh/mesh_scale.js';
+import { isPlausible, sidesOf, sizeText, suggestedUnit, turnedSides } from '../../../../host/page/source/make/mesh_scale.js';
 
 const box = (longest: number) => ({ lowest: [-longest / 2, 0, 0] as [number, number, number], highest: [longest / 2, longest / 3, longest / 4] as [number, number, number] });
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { rotate, type Vector } from '../../../../../host/page/source/geometry/quaternion.js';
-import { drawShape, projection, quarterTurns, readShape, type MeshShape } from '../../../../../host/page/source/make/mesh/mesh_shape.js';
+import { rotate, type Vector } from '../../../../host/page/source/geometry/quaternion.js';
+import { drawShape, projection, quarterTurns, readShape, type MeshShape } from '../../../../host/page/source/make/mesh_shape.js';
 
 const near = (a: Vector, b: Vector) => a.every((value, i) => Math.abs(value - b[i]!) < 1e-12);
 

@@ -1,6 +1,6 @@
 // Sends mesh files to the program in parts: a message is at most 64 KiB.
-import type { OperationQueue } from '../../state/operations.js';
-import type { SentMesh } from '../../wire/messages.js';
+import type { OperationQueue } from '../state/operations.js';
+import type { SentMesh } from '../wire/messages.js';
 
 const partBytes = 45_000; // 60,000 characters in base64
 const partsOnTheWay = 8;

@@ -118,8 +118,8 @@ TEST_F(MeshSessionTest, WhatCannotBeAMeshIsRefusedBeforeItIsSent) {
       begin("big.stl", 100'000'084),
       "file: found 'big.stl' of 96 MiB, expected at most 16 MiB and 100000 triangles; a modeller can reduce them");
   EXPECT_EQ(begin("empty.stl", 0), "file: found 'empty.stl', which is empty, expected a mesh");
-  for (const char* const name :
-       {"", "../a.stl", "a/b.stl", ".stl", "a\\b.stl", " a.stl", "a\nb.stl", "a.step", "a", "a.mtl"}) {
+  for (const char* const name : {"", "../a.stl", "a/b.stl", ".stl", "a\\b.stl", " a.stl", "a\nb.stl",
+                                 "a\xEF\xBF\xBD.stl", "a.step", "a", "a.mtl"}) {
     EXPECT_NE(begin(name, 100), "") << name;
   }
   for (const json& bytes : std::vector<json>{-1, 1e99, "5", json(), 1.5}) {

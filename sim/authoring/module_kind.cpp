@@ -37,8 +37,7 @@ std::string kinbody_name(const ModuleRole& role) { return std::string(role.file.
 std::string own_module_text(const ModuleRole& role, const OwnMesh& mesh, const OwnModule& module) {
   const FittedBox box = fitted_box(mesh.facts, module.fit);
   const Eigen::Vector3d middle(0.0, role.side * module.length / 2.0, 0.0);
-  const std::string lines =
-      mesh_lines(mesh.files.front().name, module.fit, middle - (box.lowest + box.highest) / 2.0);
+  const std::string lines = mesh_lines(mesh.files.front().name, module.fit, middle - (box.lowest + box.highest) / 2.0);
   std::string text = comment_of(role, module.length) + "\n<KinBody name=\"" + kinbody_name(role) +
                      "\">\n  <Body name=\"" + std::string(role.body) +
                      "\" type=\"dynamic\">\n    <Geom type=\"trimesh\">\n";
@@ -108,18 +107,18 @@ ModuleKind module_kind(const RobotKind& kind) {
 
 ModuleKind own_module_kind(const OwnMesh& mesh, const OwnModule& module) {
   require_fit(module.fit);
-  const bool is_name = !module.name.empty() && module.name.front() != '.' && module.name.find_first_of("/\\\"<>&") == std::string::npos &&
-                       is_visible_line(module.name) && trimmed(module.name) == module.name &&
-                       shortened(module.name, 30) == module.name;
+  const bool is_name = !module.name.empty() && module.name.front() != '.' &&
+                       module.name.find_first_of("/\\\"<>&") == std::string::npos && is_visible_line(module.name) &&
+                       trimmed(module.name) == module.name && shortened(module.name, 30) == module.name;
   if (!is_name || find_robot_kind(module.name) != nullptr) {
     throw InputError("name", 0, in_quotes(one_line(module.name)),
                      "a new name for the kind of module: 1 to 30 characters, without a folder");
   }
   const auto require_in = [](const char* name, double value, const Range& range) {
     if (!(value >= range.min && value <= range.max)) {
-      throw InputError(name, 0, number_text(value),
-                       "a number from " + number_text(range.min) + " to " + number_text(range.max) + " " +
-                           std::string(range.unit));
+      throw InputError(
+          name, 0, number_text(value),
+          "a number from " + number_text(range.min) + " to " + number_text(range.max) + " " + std::string(range.unit));
     }
   };
   require_in("length", module.length, module_lengths);
@@ -151,8 +150,7 @@ std::vector<ModuleKind> own_kinds(const Scenario& scenario) {
     }
     ModuleKind kind{folder.substr(folder_beginning.size()), *length_of(xml), {}, folder};
     for (const ModuleRole& other : roles) {
-      kind.files.push_back(
-          {std::string(other.file), with_role(source.path, source.text, *role, other, kind.length)});
+      kind.files.push_back({std::string(other.file), with_role(source.path, source.text, *role, other, kind.length)});
     }
     kinds.emplace(folder, std::move(kind));
   }

@@ -22,12 +22,15 @@ struct ModuleRole {
   double side;            ///< in which direction of y its middle is: -1 or 1
   std::string_view comment;
 };
-inline constexpr ModuleRole tail_role{"tail.kinbody.xml", "Tail", -1.0,
-                                      "The last link; the origin is at its joint, and the link lies towards negative y."};
+inline constexpr ModuleRole tail_role{
+    "tail.kinbody.xml", "Tail", -1.0,
+    "The last link; the origin is at its joint, and the link lies towards negative y."};
 inline constexpr ModuleRole segment_role{
-    "segment.kinbody.xml", "Seg", 1.0, "A link between two joints along y; the origin is at the joint towards the tail."};
-inline constexpr ModuleRole head_role{"head.kinbody.xml", "Head", 1.0,
-                                      "The first link; the origin is at its joint, and the link lies towards positive y."};
+    "segment.kinbody.xml", "Seg", 1.0,
+    "A link between two joints along y; the origin is at the joint towards the tail."};
+inline constexpr ModuleRole head_role{
+    "head.kinbody.xml", "Head", 1.0,
+    "The first link; the origin is at its joint, and the link lies towards positive y."};
 
 struct ModuleKind {
   std::string name;
@@ -47,8 +50,8 @@ struct OwnModule {
   double mass = 0.0;    ///< kg
 };
 
-/// A kind whose links have the shape of a mesh. Throws InputError for values out of range, the name of a kind that Proleg
-/// knows, and a flat mesh.
+/// A kind whose links have the shape of a mesh. Throws InputError for values out of range, the name of a kind that
+/// Proleg knows, and a flat mesh.
 [[nodiscard]] ModuleKind own_module_kind(const OwnMesh& mesh, const OwnModule& module);
 
 /// The kinds of a draft that own_module_kind() has made: those whose modules its scenario names.

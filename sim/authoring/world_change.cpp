@@ -42,7 +42,8 @@ Eigen::Vector3d middle_of_mesh(const WorldShape& shape, const std::vector<double
   return growth_of_mesh(shape, size).cwiseProduct((shape.mesh_box->first + shape.mesh_box->second) / 2.0);
 }
 
-/// The lowest point of an object's boxes, spheres, cylinders and boxes around meshes, in m; nothing if it has other shapes.
+/// The lowest point of an object's boxes, spheres, cylinders and boxes around meshes, in m; nothing if it has other
+/// shapes.
 std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShape>& shapes) {
   std::optional<double> lowest;
   for (const WorldShape& shape : shapes) {
@@ -118,8 +119,7 @@ void WorldChange::set_size(std::size_t number, std::size_t shape_number, const s
   changed.size = size;
   if (shape.mesh_box) {
     // The middle stays where it is.
-    changed.pose.position +=
-        shape.pose.orientation * (middle_of_mesh(shape, shape.size) - middle_of_mesh(shape, size));
+    changed.pose.position += shape.pose.orientation * (middle_of_mesh(shape, shape.size) - middle_of_mesh(shape, size));
     set_pose(change_, world_.file, shape.element, changed.pose);
   }
   const std::optional<double> bottom = lowest_point(found.pose, found.shapes);

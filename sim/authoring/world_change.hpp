@@ -45,8 +45,8 @@ class WorldChange {
   void add(LibraryItem item, const std::map<std::string, double>& values, const Eigen::Vector3d& position,
            double turn_degrees);
   /// Adds a static object with the shape of a mesh, whose files come into a folder beside the environment file. It
-  /// stands on the ground, turned about the vertical; position: m, of the middle of its front edge. is_sheet: its surface
-  /// is not closed, and touches from the side that it faces.
+  /// stands on the ground, turned about the vertical; position: m, of the middle of its front edge. is_sheet: its
+  /// surface is not closed, and touches from the side that it faces.
   void add_mesh(const OwnMesh& mesh, const MeshFit& fit, bool is_sheet, const Eigen::Vector3d& position,
                 double turn_degrees);
   void add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& to);

@@ -19,8 +19,8 @@ namespace proleg::sim {
 struct WorldShape {
   ElementNumber element = 0;
   std::string type;  ///< "box", "sphere", "cylinder", "trimesh" or "heightfield"
-  /// m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y; mesh of a file: sides x,
-  /// y, z of the box around it; other mesh: nothing
+  /// m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y; mesh of a file: sides
+  /// x, y, z of the box around it; other mesh: nothing
   std::vector<double> size;
   std::optional<double> friction;
   std::optional<Eigen::Vector3d> colour;  ///< red, green, blue, 0 to 1

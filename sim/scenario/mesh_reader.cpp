@@ -133,13 +133,14 @@ KnownMeshes::Import& imported(const XmlElement& mention, const std::string& refe
   import.mesh = std::make_shared<const TriangleMesh>(with_place(mention, "", [&] {
     return read_mesh_file(reference, bytes_of_source(import.source), [&](const std::string& beside) {
       std::filesystem::path path = file.path.parent_path() / std::filesystem::path(beside).filename();
-      std::optional<std::string> text = sources.companion(mention, path);
-      import.companions.push_back({std::move(path), text});
-      return text;
-    });
-  }));
-  return imports.insert_or_assign(name, std::move(import)).first->second;
-}
+  std::optional<std::string> text = sources.companion(mention, path);
+  import.companions.push_back({std::move(path), text});
+  return text;
+});
+}  // namespace
+));
+return imports.insert_or_assign(name, std::move(import)).first->second;
+}  // namespace proleg::sim
 
 NumberText numbers_of(const XmlElement& element) { return {element.text(), element.label()}; }
 

@@ -74,7 +74,7 @@ std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path&
   constexpr std::uintmax_t mebibyte = 1U << 20U;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   return !error && size > most_bytes_ ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
-                                         : "a file that cannot be read";
+                                      : "a file that cannot be read";
 }
 
 std::string data_url(std::string_view bytes) {

@@ -22,8 +22,8 @@
 
 namespace proleg::sim {
 
-/// Meshes of earlier reads of a scenario, for one that is read again and again while a person changes it: an import takes
-/// up to a second.
+/// Meshes of earlier reads of a scenario, for one that is read again and again while a person changes it: an import
+/// takes up to a second.
 class KnownMeshes {
  public:
   /// A file that an import has asked for, beside the mesh.

@@ -29,7 +29,8 @@ class OwnModuleTest : public testing::Test {
     draft_.emplace(read_scenario("robot.simulation.xml", files_), files_);
   }
 
-  /// A module of a box with the sides 40, 20 and 60 mm in a file in centimetres, whose longest side lies along the robot.
+  /// A module of a box with the sides 40, 20 and 60 mm in a file in centimetres, whose longest side lies along the
+  /// robot.
   static OwnModule module() { return {"foot", {0.1, {1, 0, 0}, {1, 0, 0}}, 0.08, 0.15}; }
   static OwnMesh mesh() { return read_own_mesh({{"box.off", box_off}}); }
   void set(const ModuleKind& kind, std::vector<std::size_t> links) {
@@ -91,7 +92,8 @@ TEST_F(OwnModuleTest, ItsKindIsOneOfTheDraftForOtherLinks) {
   for (std::size_t link = 0; link < 5; ++link) {
     const Link& expected = all.scenario().robot.links[link];
     EXPECT_TRUE(one_by_one.links[link].pose.position.isApprox(expected.pose.position, 1e-6)) << link;
-    EXPECT_TRUE(one_by_one.links[link].geometries[0].pose.position.isApprox(expected.geometries[0].pose.position, 1e-6));
+    EXPECT_TRUE(
+        one_by_one.links[link].geometries[0].pose.position.isApprox(expected.geometries[0].pose.position, 1e-6));
   }
   EXPECT_EQ(draft_->changed_files().size(), 5U) << "the robot, three modules and one mesh";
 }
@@ -126,7 +128,8 @@ TEST_F(OwnModuleTest, ValuesOutOfRangeAreRefused) {
     change(changed);
     return message_of<InputError>([&] { static_cast<void>(own_module_kind(mesh(), changed)); });
   };
-  for (const char* const name : {"", "cubo", "a/b", "..", " a", "a\nb", "a\"b", "<a>", "a123456789a123456789a123456789a"}) {
+  for (const char* const name :
+       {"", "cubo", "a/b", "..", " a", "a\nb", "a\"b", "<a>", "a123456789a123456789a123456789a"}) {
     EXPECT_NE(refusal([&](OwnModule& own) { own.name = name; }), "") << name;
   }
   for (const double value : {0.0, -1.0, 1e9, std::nan("")}) {

@@ -52,11 +52,16 @@ TEST(OwnMesh, ATriangleWithoutAreaIsAFlaw) {
 }
 
 TEST(OwnMesh, WhatIsNoMeshIsRefusedWithOneLine) {
-  const std::vector<std::pair<std::string, std::string>> bad{{"a.off", ""},          {"a.off", "OFF\n"},
-                                                             {"a.stl", "solid"},     {"a.obj", "v 1 2 3\n"},
-                                                             {"a.txt", box_off},     {"../a.off", box_off},
-                                                             {".a.off", box_off},    {"a\xFF.off", box_off},
-                                                             {"a\n.off", box_off},   {std::string(80, 'a') + ".off", box_off},
+  const std::vector<std::pair<std::string, std::string>> bad{{"a.off", ""},
+                                                             {"a.off", "OFF\n"},
+                                                             {"a.stl", "solid"},
+                                                             {"a.obj", "v 1 2 3\n"},
+                                                             {"a.txt", box_off},
+                                                             {"../a.off", box_off},
+                                                             {".a.off", box_off},
+                                                             {"a\xFF.off", box_off},
+                                                             {"a\n.off", box_off},
+                                                             {std::string(80, 'a') + ".off", box_off},
                                                              {"a.off", "OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n"}};
   for (const auto& [name, text] : bad) {
     const std::string message = message_of<InputError>([&] { static_cast<void>(mesh_of(name, text)); });
@@ -74,8 +79,8 @@ TEST(MeshFit, TurnsAboutXThenYThenZ) {
     for (unsigned y = 0; y < 4; ++y) {
       for (unsigned z = 0; z < 4; ++z) {
         const MeshFit fit{1.0, {x, y, z}, {0, 0, 0}};
-        const Eigen::Matrix3d expected =
-            about(z, Eigen::Vector3d::UnitZ()) * about(y, Eigen::Vector3d::UnitY()) * about(x, Eigen::Vector3d::UnitX());
+        const Eigen::Matrix3d expected = about(z, Eigen::Vector3d::UnitZ()) * about(y, Eigen::Vector3d::UnitY()) *
+                                         about(x, Eigen::Vector3d::UnitX());
         EXPECT_TRUE(fit.rotation().toRotationMatrix().isApprox(expected, 1e-9)) << x << y << z;
       }
     }

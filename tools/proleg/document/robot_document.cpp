@@ -60,25 +60,25 @@ class Meshes {
 json mesh_json(const sim::TriangleMesh& mesh) {
   const sim::Bounds bounds = sim::bounds_of(mesh, {});
   const Eigen::Vector3d middle = (bounds.lowest + bounds.highest) / 2.0;
-    json vertices = json::array();
-    for (const Eigen::Vector3d& vertex : mesh.vertices) {
-      for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
-        vertices.push_back(to_micrometres(coordinate));
-      }
+  json vertices = json::array();
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
+      vertices.push_back(to_micrometres(coordinate));
     }
-    json triangles = json::array();
-    for (const auto& triangle : mesh.triangles) {
-      for (const std::uint32_t corner : triangle) {
-        triangles.push_back(corner);
-      }
+  }
+  json triangles = json::array();
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      triangles.push_back(corner);
     }
-    json colours = json::array();
-    for (const Eigen::Vector3f& colour : mesh.colours) {
-      for (const float part : colour) {
-        colours.push_back(std::lround(part * 255.0F));
-      }
+  }
+  json colours = json::array();
+  for (const Eigen::Vector3f& colour : mesh.colours) {
+    for (const float part : colour) {
+      colours.push_back(std::lround(part * 255.0F));
     }
-    return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
+  }
+  return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
 }
 
 json shapes_json(std::span<const sim::Geometry> geometries, std::span<const sim::Look> looks, Meshes& meshes) {
@@ -286,8 +286,8 @@ RobotMeshes robot_meshes(const sim::Scenario& scenario) {
 
 bool are_same(const RobotMeshes& meshes, const RobotMeshes& others) {
   return std::ranges::equal(meshes, others, [](const auto& one, const auto& other) {
-    return one == other || (one->triangles == other->triangles && one->vertices == other->vertices &&
-                            one->colours == other->colours);
+    return one == other ||
+           (one->triangles == other->triangles && one->vertices == other->vertices && one->colours == other->colours);
   });
 }
 

@@ -73,9 +73,9 @@ void Foresight::run() {
 
 void Foresight::compute(const Task& task) {
   sim::Scenario scenario = *task.scenario;
-  json document{{"revision", task.revision}, {"is_complete", false}, {"seconds", 0.0},    {"path", json::array()},
-                {"distance", json()},        {"heading", json()},    {"failure", json()}, {"servo_problem", json()},
-                {"refusal", json()}};
+  json document{{"revision", task.revision}, {"is_complete", false},    {"seconds", 0.0},
+                {"path", json::array()},     {"distance", json()},      {"heading", json()},
+                {"failure", json()},         {"servo_problem", json()}, {"refusal", json()}};
   std::unique_ptr<sim::Simulation> simulation;
   const auto publish = [&] {
     document["engine"] = sim::name_of(scenario.environment.engine);

@@ -33,7 +33,8 @@ DeclaredFile declared_file(const json& file) {
   const auto bytes = argument<std::uint64_t>(file, "bytes", "a whole number");
   const std::string name = text(file, "name");
   if (!bytes || *bytes == 0) {
-    throw InputError("file", 0, bytes ? in_quotes(one_line(shortened(name))) + ", which is empty" : "no size", "a mesh");
+    throw InputError("file", 0, bytes ? in_quotes(one_line(shortened(name))) + ", which is empty" : "no size",
+                     "a mesh");
   }
   if (*bytes > sim::max_file_bytes) {
     constexpr std::uint64_t mebibyte = 1U << 20U;
@@ -158,7 +159,8 @@ json MeshSession::carry_out(const host::OperationRequest& operation) {
 }
 
 json MeshSession::begin(const json& arguments) {
-  const auto declared = argument<std::vector<json>>(arguments, "files", "a list of files").value_or(std::vector<json>{});
+  const auto declared =
+      argument<std::vector<json>>(arguments, "files", "a list of files").value_or(std::vector<json>{});
   if (declared.size() > most_files) {
     throw InputError("files", 0, std::to_string(declared.size()) + " files",
                      "a mesh and at most " + std::to_string(most_files - 1) + " .mtl files");

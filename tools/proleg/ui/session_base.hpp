@@ -110,9 +110,9 @@ inline constexpr std::string_view behaviour_operations = "behaviour.";
 inline constexpr std::string_view gallery_operations = "gallery.";
 inline constexpr std::string_view mesh_operations = "mesh.";
 
-/// The sessions behind one page: a robot, its remote control, recordings, a draft, meshes for it, the list of what can be
-/// opened, and algorithms. The name of an operation says which of them it is for; STOP and the holder of control go to the robot,
-/// then to the remote control.
+/// The sessions behind one page: a robot, its remote control, recordings, a draft, meshes for it, the list of what can
+/// be opened, and algorithms. The name of an operation says which of them it is for; STOP and the holder of control go
+/// to the robot, then to the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.

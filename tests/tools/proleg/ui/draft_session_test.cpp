@@ -96,12 +96,17 @@ class DraftSessionTest : public ::testing::Test {
     meshes_.set(1, std::make_shared<const sim::OwnMesh>(sim::read_own_mesh({{"box.stl", box_stl()}})));
   }
   static json mesh_words() {
-    return {{"mesh", 1},       {"factor", 0.001},     {"quarters", {1, 0, 0}}, {"colour", {1, 0, 0}},
-            {"sheet", false}, {"position", {0, 1, 0}}, {"turn", 0}};
+    return {{"mesh", 1},
+            {"factor", 0.001},
+            {"quarters", {1, 0, 0}},
+            {"colour", {1, 0, 0}},
+            {"sheet", false},
+            {"position", {0, 1, 0}},
+            {"turn", 0}};
   }
   static json module_words() {
     return {{"mesh", 1},       {"factor", 0.0001}, {"quarters", {1, 0, 0}}, {"colour", {1, 0, 0}},
-            {"name", "shell"}, {"length", 0.08},  {"mass", 0.15},          {"links", json::array()}};
+            {"name", "shell"}, {"length", 0.08},   {"mass", 0.15},          {"links", json::array()}};
   }
   [[nodiscard]] std::string world_file() const { return folder_ / "mine/flat.environment.xml"; }
 
@@ -420,8 +425,10 @@ TEST_F(DraftSessionTest, AMeshBecomesAModuleOfSomeLinksOrAll) {
 
 TEST_F(DraftSessionTest, OperationsWithAMeshAreRefusedInOneLine) {
   send_box();
-  const std::vector<json> values{json(), -1, 0, 2, 1e99, "a", json::array(), json({1, 2}), json({9, 0, 0}), json::object(), true, 4294967295U};
-  for (const auto& [name, good] : {std::pair("world.add_mesh", mesh_words()), std::pair("robot.own_module", module_words())}) {
+  const std::vector<json> values{
+      json(), -1, 0, 2, 1e99, "a", json::array(), json({1, 2}), json({9, 0, 0}), json::object(), true, 4294967295U};
+  for (const auto& [name, good] :
+       {std::pair("world.add_mesh", mesh_words()), std::pair("robot.own_module", module_words())}) {
     for (const auto& [member, value] : good.items()) {
       for (const json& bad : values) {
         json words = good;
@@ -541,6 +548,39 @@ TEST_F(DraftSessionTest, AWorldOfFiveHundredObjectsCanBeChangedAndSimulated) {
     simulation.advance();
   }
   EXPECT_EQ(scenario.environment.objects.size(), 500U);
+}
+
+// A module of another kind was added, saved, and taken back; then it came again.
+TEST_F(DraftSessionTest, FilesThatWereSavedAndTakenBackAreRestored) {
+  must("robot.kind", {{"kind", "snake"}, {"link", json()}});
+  must("draft.save");
+  must("draft.undo");
+  must("draft.save");
+  must("draft.redo");
+  must("robot.rename", {{"name", "viper"}});
+  const json wanted = draft(4)["robot"];
+  open();
+  EXPECT_NE(viewers_.document("draft")["unsaved"], json()) << viewers_.notices();
+  must("draft.restore");
+  EXPECT_EQ(draft(1)["robot"], wanted);
+  must("draft.save");
+}
+
+TEST_F(DraftSessionTest, AJournalRestoresNoFileOutsideOfTheFoldersOfTheScenario) {
+  add_box();
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  session_.reset();
+  const json written = json::parse(file_contents(journal));
+  for (const std::string& outside :
+       {std::string(folder_ / "other.xml"), std::string(folder_ / "mine/../other.xml"), std::string("other.xml")}) {
+    json document = written;
+    document["files"][outside] = {{"base", json()}, {"text", "<a/>"}};
+    std::ofstream(journal) << document;
+    open();
+    EXPECT_EQ(viewers_.document("draft")["unsaved"], json()) << outside;
+    EXPECT_NE(viewers_.notices().find("not beside the scenario"), std::string::npos) << viewers_.notices();
+    session_.reset();
+  }
 }
 
 TEST_F(DraftSessionTest, AJournalThatCannotBeWrittenIsSaidOnce) {

@@ -57,8 +57,7 @@ class MeshSessionTest : public ::testing::Test {
     const json mesh = must("mesh.begin", declared(files))["mesh"];
     for (std::size_t i = 0; i < files.size(); ++i) {
       for (std::size_t at = 0; at < files[i].bytes.size(); at += part) {
-        must("mesh.part",
-             {{"mesh", mesh}, {"file", i}, {"at", at}, {"data", base64(files[i].bytes.substr(at, part))}});
+        must("mesh.part", {{"mesh", mesh}, {"file", i}, {"at", at}, {"data", base64(files[i].bytes.substr(at, part))}});
       }
     }
     return mesh;
@@ -100,8 +99,10 @@ TEST_F(MeshSessionTest, ItsShapeIsVerticesAndTriangles) {
 }
 
 TEST_F(MeshSessionTest, OfTheFilesBesideAMeshThoseStayThatItNames) {
-  const std::string obj = "mtllib red.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-  const std::uint64_t mesh = send({{"other.mtl", "newmtl blue\nKd 0 0 1\n"}, {"a.obj", obj}, {"red.mtl", "newmtl red\nKd 1 0 0\n"}});
+  const std::string obj =
+      "mtllib red.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const std::uint64_t mesh =
+      send({{"other.mtl", "newmtl blue\nKd 0 0 1\n"}, {"a.obj", obj}, {"red.mtl", "newmtl red\nKd 1 0 0\n"}});
   const json facts = must("mesh.look", {{"mesh", mesh}});
   EXPECT_EQ(facts["files"], json({"a.obj", "red.mtl"}));
   EXPECT_EQ(facts["has_colours"], true);
@@ -111,10 +112,12 @@ TEST_F(MeshSessionTest, WhatCannotBeAMeshIsRefusedBeforeItIsSent) {
   const auto begin = [this](const std::string& name, const json& bytes) {
     return refusal("mesh.begin", {{"files", json::array({{{"name", name}, {"bytes", bytes}}})}});
   };
-  EXPECT_EQ(begin("big.stl", 100'000'084),
-            "file: found 'big.stl' of 96 MiB, expected at most 16 MiB and 100000 triangles; a modeller can reduce them");
+  EXPECT_EQ(
+      begin("big.stl", 100'000'084),
+      "file: found 'big.stl' of 96 MiB, expected at most 16 MiB and 100000 triangles; a modeller can reduce them");
   EXPECT_EQ(begin("empty.stl", 0), "file: found 'empty.stl', which is empty, expected a mesh");
-  for (const char* const name : {"", "../a.stl", "a/b.stl", ".stl", "a\\b.stl", " a.stl", "a\nb.stl", "a.step", "a", "a.mtl"}) {
+  for (const char* const name :
+       {"", "../a.stl", "a/b.stl", ".stl", "a\\b.stl", " a.stl", "a\nb.stl", "a.step", "a", "a.mtl"}) {
     EXPECT_NE(begin(name, 100), "") << name;
   }
   for (const json& bytes : std::vector<json>{-1, 1e99, "5", json(), 1.5}) {
@@ -123,7 +126,8 @@ TEST_F(MeshSessionTest, WhatCannotBeAMeshIsRefusedBeforeItIsSent) {
   const json mesh{{"name", "a.stl"}, {"bytes", 100}};
   EXPECT_EQ(refusal("mesh.begin", {{"files", {mesh, {{"name", "b.stl"}, {"bytes", 5}}}}}),
             "file: found 'a.stl' and 'b.stl', expected one mesh at a time");
-  for (const json& files : std::vector<json>{json(), 5, json::array(), json::array({5}), json(9, mesh), {mesh, mesh}, "a.stl"}) {
+  for (const json& files :
+       std::vector<json>{json(), 5, json::array(), json::array({5}), json(9, mesh), {mesh, mesh}, "a.stl"}) {
     EXPECT_NE(refusal("mesh.begin", {{"files", files}}), "");
   }
 }
@@ -153,8 +157,8 @@ TEST_F(MeshSessionTest, APartThatDoesNotFitIsRefusedAndTheTransferGoesOn) {
 
 TEST_F(MeshSessionTest, ADamagedFileIsOneLineAndIsForgotten) {
   const std::string good = stl_of(20);
-  for (const std::string& bytes : {good.substr(0, good.size() - 10), std::string("solid nothing"), std::string(5000, '\xFF'),
-                                   stl_of(100'001)}) {
+  for (const std::string& bytes :
+       {good.substr(0, good.size() - 10), std::string("solid nothing"), std::string(5000, '\xFF'), stl_of(100'001)}) {
     const std::uint64_t mesh = send({{"bad.stl", bytes}});
     const std::string line = refusal("mesh.look", {{"mesh", mesh}});
     EXPECT_TRUE(line.starts_with("bad.stl")) << line;

@@ -318,6 +318,14 @@ void Draft::read_again() {
   ++revision_;
 }
 
+void Draft::adopt(const std::string& name) {
+  if (std::optional<std::string> bytes = disk_->read(name)) {
+    std::string text = source_text(std::move(*bytes));
+    saved_.insert_or_assign(name, text);
+    texts_.set(name, std::move(text));
+  }
+}
+
 void Draft::mark_saved() {
   // A file that a change has added, and that undo has taken out of the draft, stays on the disk as it was saved.
   for (const auto& [name, text] : texts_.all()) {

@@ -137,6 +137,9 @@ class Draft {
   /// Reads the present texts again, for example because an algorithm has other parameters now. Throws InputError, and
   /// then does nothing, if the reader refuses them.
   void read_again();
+  /// A file that only the disk has, such as one that was saved and then taken back, becomes a file of the draft, as it
+  /// is there. Does nothing if the disk does not have it.
+  void adopt(const std::string& name);
   /// The present texts are on disk.
   void mark_saved();
   /// The files have been saved under other names, in `renamed` by their names until now, and the draft goes on there.

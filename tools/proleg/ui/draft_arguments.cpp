@@ -73,8 +73,7 @@ std::vector<std::size_t> links_from_tail(std::vector<std::size_t> links, const s
     link = count - 1 - link;
   }
   std::ranges::sort(links);
-  const auto twice = std::ranges::unique(links);
-  links.erase(twice.begin(), twice.end());
+  links.erase(std::unique(links.begin(), links.end()), links.end());
   return links;
 }
 

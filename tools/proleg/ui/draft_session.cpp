@@ -387,6 +387,11 @@ json DraftSession::restore(const json& /*arguments*/) {
   if (!kept_) {
     throw std::runtime_error("there are no unsaved changes of an earlier program");
   }
+  for (const auto& [name, text] : kept_->texts) {
+    if (!draft().has(name)) {
+      draft().adopt(name);
+    }
+  }
   draft().change("restore unsaved changes", std::nullopt, [this](sim::DraftChange& change) {
     for (const auto& [name, text] : kept_->texts) {
       if (draft_->has(name)) {

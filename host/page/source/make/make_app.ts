@@ -11,8 +11,8 @@ import type { Body, DraftDocument, NewScenario, Operations, PartOperation, Robot
 import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
 import { copyJoints, jointColumns, type JointPaste } from './joint_table.js';
-import { OwnMesh } from './mesh/own_mesh.js';
-import type { MeshFile } from './mesh/mesh_transfer.js';
+import { OwnMesh } from './own_mesh.js';
+import type { MeshFile } from './mesh_transfer.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -55,7 +55,7 @@ export class MakeApp {
   readonly newJoints = signal<{ module: number; joints: readonly number[] } | null>(null);
   readonly actions: ActionList;
   readonly view: DraftView;
-  readonly mesh = new OwnMesh(this); // of one's own, before it is part of the draft
+  readonly mesh: OwnMesh; // before it is part of the draft
   readonly draft = computed(() => this.page.state.draft.value);
   readonly objects = computed(() => this.draft.value?.world.objects ?? []);
   // The only object that is chosen; null: none, or several.
@@ -76,6 +76,12 @@ export class MakeApp {
       joints: this.chosenJoints,
       objects: computed(() => this.objects.value.filter((_, number) => this.isChosen(number))),
       choose: (joint, object, adds) => this.chooseInView(joint, object, adds),
+    });
+    this.mesh = new OwnMesh({
+      operations: page.operations,
+      obstacle: () => this.obstacle(),
+      addObject: (words) => this.addInFront((place) => this.change('world.add_mesh', { ...words, ...place })),
+      makeModule: (words) => this.change('robot.own_module', words),
     });
     const canChange = () => this.obstacle() === null && this.draft.value !== null;
     const hasChosen = () => this.chosenObjects.value.length > 0 && this.chosenObjects.value.every((number) => this.objects.value[number]?.editable === true);

@@ -5,7 +5,7 @@ import { ChainTable } from './chain_table.js';
 import { JointForm, LinkForm } from './joint_form.js';
 import { JointTableDialog } from './joint_table_dialog.js';
 import type { MakeApp } from './make_app.js';
-import { ModuleMeshForm } from './mesh/mesh_form.js';
+import { ModuleMeshForm } from './mesh_form.js';
 import { formatNumber } from '../state/parameter_values.js';
 import { NumberField } from './number_field.js';
 import { SensorPanel } from './sensor_panel.js';

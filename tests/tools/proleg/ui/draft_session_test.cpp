@@ -560,6 +560,39 @@ TEST_F(DraftSessionTest, AWorldOfFiveHundredObjectsCanBeChangedAndSimulated) {
   EXPECT_EQ(scenario.environment.objects.size(), 500U);
 }
 
+// A module of another kind was added, saved, and taken back; then it came again.
+TEST_F(DraftSessionTest, FilesThatWereSavedAndTakenBackAreRestored) {
+  must("robot.kind", {{"kind", "snake"}, {"link", json()}});
+  must("draft.save");
+  must("draft.undo");
+  must("draft.save");
+  must("draft.redo");
+  must("robot.rename", {{"name", "viper"}});
+  const json wanted = draft(4)["robot"];
+  open();
+  EXPECT_NE(viewers_.document("draft")["unsaved"], json()) << viewers_.notices();
+  must("draft.restore");
+  EXPECT_EQ(draft(1)["robot"], wanted);
+  must("draft.save");
+}
+
+TEST_F(DraftSessionTest, AJournalRestoresNoFileOutsideOfTheFoldersOfTheScenario) {
+  add_box();
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  session_.reset();
+  const json written = json::parse(file_contents(journal));
+  for (const std::string& outside :
+       {std::string(folder_ / "other.xml"), std::string(folder_ / "mine/../other.xml"), std::string("other.xml")}) {
+    json document = written;
+    document["files"][outside] = {{"base", json()}, {"text", "<a/>"}};
+    std::ofstream(journal) << document;
+    open();
+    EXPECT_EQ(viewers_.document("draft")["unsaved"], json()) << outside;
+    EXPECT_NE(viewers_.notices().find("not beside the scenario"), std::string::npos) << viewers_.notices();
+    session_.reset();
+  }
+}
+
 TEST_F(DraftSessionTest, AJournalThatCannotBeWrittenIsSaidOnce) {
   session_.reset();
   std::filesystem::create_directory(folder_ / "mine/.uniform.simulation.xml.unsaved");  // nothing can be written there

@@ -77,6 +77,26 @@ TEST(ForesightTest, TheFirstSecondsComeBeforeTheWhole) {
   }
 }
 
+// The path is that of another engine then; a simulation would fail.
+TEST(ForesightTest, SaysWhyTheEngineOfTheScenarioRefusesIt) {
+  const auto with_engine = [](sim::PhysicsEngine engine) {
+    sim::Scenario scenario = sim::shipped("retreat/wall");  // it has touch sensors
+    scenario.environment.engine = engine;
+    return std::make_shared<const sim::Scenario>(scenario);
+  };
+  Paths output;
+  Foresight foresight(output);
+  const auto whole = [](std::uint64_t revision) {
+    return [revision](const json& path) { return path["revision"] == revision && path["is_complete"] == true; };
+  };
+  foresight.look_at(with_engine(sim::PhysicsEngine::reduced), 1);
+  const json refused = output.until(whole(1)).back();
+  EXPECT_EQ(refused["engine"], "ode");
+  EXPECT_NE(refused["refusal"].get<std::string>().find("TactileSensor"), std::string::npos) << refused["refusal"];
+  foresight.look_at(with_engine(sim::PhysicsEngine::ode), 2);
+  EXPECT_EQ(output.until(whole(2)).back()["refusal"], json());
+}
+
 // A person who drags something makes changes faster than a path is computed.
 TEST(ForesightTest, PathsComeWhileChangesDo) {
   Paths output;

@@ -307,7 +307,7 @@ describe('robot and behaviour', () => {
     await page().getByPlaceholder('its name').fill('eight');
     await page().getByRole('button', { name: 'Save a copy' }).click();
     const file = join(folder, 'eight/robot.simulation.xml');
-    assert.ok(await waitUntil(() => Promise.resolve(existsSync(file))));
+    await page().getByRole('list', { name: 'Notices' }).getByText('saved as').waitFor(); // all files of it
     const byHand = 'tests/host/page/browser/by_hand/eight.simulation.xml';
     assert.deepEqual(contents(file), contents(byHand));
     assert.deepEqual(hashes(file, '5'), hashes(byHand, '5'));

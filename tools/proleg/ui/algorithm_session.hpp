@@ -14,9 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/proleg/common/child_program.hpp"
 #include "tools/proleg/ui/algorithm_folders.hpp"
-#include "tools/proleg/ui/compiler_messages.hpp"
+#include "tools/proleg/ui/command_sequence.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -28,6 +27,8 @@ struct AlgorithmSessionOptions {
   std::function<void()> on_loaded = [] {};
   std::chrono::seconds longest_build = std::chrono::minutes(10);
   std::chrono::seconds longest_check = std::chrono::hours(1);
+  /// `proleg verify`; empty: the one beside this program.
+  std::filesystem::path verifier = {};
 };
 
 class AlgorithmSession final : private SessionThread {
@@ -40,17 +41,13 @@ class AlgorithmSession final : private SessionThread {
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"algorithm.refresh", "algorithm.read"}; }
 
  private:
-  /// A build, or a proof: programs that run one after the other.
+  enum class Work : std::uint8_t { build, proof };
+  /// What goes on.
   struct Job {
+    Work work;
     AlgorithmFolder algorithm;
-    bool is_build = false;
-    std::string version;                             ///< of the source
-    std::vector<std::vector<std::string>> commands;  ///< that are still to be started
-    std::unique_ptr<ChildProgram> child;
-    std::string output;
-    BuildProgress progress;
-    Clock::time_point until;
-    std::string end_reason;  ///< why it is ended; empty: it is not
+    std::string version;  ///< of the source
+    std::unique_ptr<CommandSequence> programs;
   };
   struct Upload {
     host::ClientId client = 0;
@@ -64,7 +61,7 @@ class AlgorithmSession final : private SessionThread {
   void fail(const std::string& why) override;
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
 
-  void begin(Job job, std::chrono::seconds longest);
+  void begin(Work work, const AlgorithmFolder& algorithm, const std::vector<std::vector<std::string>>& commands);
   void look_at_job();
   /// error: why it did not pass; empty: it passed.
   void finish(const std::string& state, const std::string& error);

@@ -266,8 +266,39 @@ export interface AlgorithmBuild extends AlgorithmWork {
   messages: BuildMessage[];
 }
 
+// The cases as one build has played them.
+export interface ProofBuild {
+  build: string;
+  kernels: number; // 1: one for all joints
+  result: 'reference' | 'equal' | 'differs' | 'failed' | 'not run';
+  ticks: number; // that were played
+  setpoint_hash: string | null;
+  servo_hash: string | null;
+  text: string | null; // the first difference, the error, or the program that is missing
+}
+
+// What `proleg verify --json` prints.
+export interface Proof {
+  algorithm: string;
+  id: number;
+  sources: string;
+  cases: number;
+  ticks: number; // of a case
+  verified: boolean;
+  builds: ProofBuild[];
+  missing: string[]; // programs that are not installed
+  test: { name: string; passed: boolean; error: string | null } | null;
+  forbidden: string[] | null; // what the code for the modules uses although it may not
+  instructions: { worst: number | null; mean: number | null; limit: number; fits: boolean; error: string | null } | null;
+  stack: { bytes: number | null; function: string | null; limit: number; fits: boolean } | null;
+  flash_bytes: number | null;
+}
+
 export interface AlgorithmCheck extends AlgorithmWork {
-  lines: string[];
+  done: number; // the step that goes on, from 1
+  of: number; // 0: not known yet
+  step: string | null;
+  proof: Proof | null; // when it has ended
 }
 
 // The value of `algorithm.read`.

@@ -157,6 +157,28 @@ describe("an algorithm of one's own", () => {
     assert.equal(await state(), 'saved');
   });
 
+  it('is proven, with what it costs on the chip beside the builds', async () => {
+    const check = part().getByRole('button', { name: 'Check', exact: true });
+    const text = async () => (await part().getByTestId('algorithm-check').textContent()) ?? '';
+    await check.click();
+    assert.ok(await waitUntil(async () => /^Proving, step \d+ of \d+: /.test(await text())));
+    await part().getByRole('progressbar', { name: 'Steps of the proof' }).waitFor();
+    assert.equal(await check.isDisabled(), true);
+    await part().getByRole('button', { name: 'Cancel my_wave' }).click();
+    assert.ok(await waitUntil(async () => (await text()) === 'The proof was cancelled.'));
+    await check.click();
+    assert.ok(await waitUntil(async () => /^Proving/.test(await text())));
+    assert.ok(await waitUntil(async () => /^(Not v|V)erified/.test(await text())));
+    assert.equal(await text(), 'Verified: the same bits everywhere.');
+    const cost = part().getByTestId('proof-cost');
+    assert.match((await cost.getByRole('row', { name: /^Cost/ }).textContent()) ?? '', /\d+ instructions a tick at worst.*2500 instructionsgood$/);
+    assert.match((await cost.getByRole('row', { name: /^Stack/ }).textContent()) ?? '', /\d+ bytes at most.*512 bytesgood$/);
+    const builds = part().getByTestId('proof-builds').locator('tbody tr');
+    assert.equal(await builds.count(), 11);
+    assert.match((await builds.filter({ hasText: 'Cortex-M4' }).textContent()) ?? '', /^Cortex-M4equal5 modules50000[0-9a-f]{24}$/);
+    await page().screenshot({ path: 'build/page_test/algorithm_proof.png', fullPage: true });
+  });
+
   it('only shows to those who do not drive', async () => {
     const other = await ui.look();
     await other.page.keyboard.press('3');

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "shared/computer/output/output.hpp"
 #include "shared/gait/registry.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -24,6 +25,7 @@ class AlgorithmSessionTest : public ::testing::Test {
     session_.reset();
     requests_.emplace();
     AlgorithmSessionOptions options{project(), refusal, [this] { ++loads_; }};
+    options.verifier = folder_ / "verifier";
     session_.emplace(options, *requests_, viewers_);
   }
   [[nodiscard]] fs::path project() const {
@@ -51,6 +53,17 @@ class AlgorithmSessionTest : public ::testing::Test {
     must("algorithm.build", {{"folder", "test_wave"}});
     return viewers_.document_when(
         "algorithm_build", [](const json& document) { return document.is_object() && document["state"] != "running"; });
+  }
+  /// A program in the place of `proleg verify`.
+  void write_verifier(const std::string& commands) {
+    const fs::path file = folder_ / "verifier";
+    write_file(file, "#!/bin/sh\n" + commands);
+    fs::permissions(file, fs::perms::owner_all);
+  }
+  json finished_check() {
+    must("algorithm.check", {{"folder", "test_wave"}});
+    return viewers_.document_when(
+        "algorithm_check", [](const json& document) { return document.is_object() && document["state"] != "running"; });
   }
   void replace(const std::string& part, const std::string& by) {
     const json source = must("algorithm.read", {{"folder", "test_wave"}});
@@ -177,6 +190,58 @@ TEST_F(AlgorithmSessionTest, WithoutPermissionEverythingIsRefused) {
     EXPECT_FALSE(answer.is_done);
     EXPECT_EQ(answer.text, "no code here") << operation;
   }
+}
+
+TEST_F(AlgorithmSessionTest, AProofIsShownStepByStepAndThenWhole) {
+  must("algorithm.create", form("test_wave", 126));
+  write_verifier(
+      "echo \"proleg verify: 3 of 17: building with g++\" >&2\n"
+      "until [ -e go ]; do sleep 0.01; done\n"
+      "echo \"{\\\"verified\\\": true, \\\"arguments\\\": \\\"$*\\\"}\"\n");
+  must("algorithm.check", {{"folder", "test_wave"}});
+  const json running = viewers_.document_when(
+      "algorithm_check", [](const json& document) { return document.is_object() && document["done"] == 3; });
+  EXPECT_EQ(running["state"], "running");
+  EXPECT_EQ(running["of"], 17);
+  EXPECT_EQ(running["step"], "building with g++");
+  EXPECT_TRUE(running["proof"].is_null());
+  EXPECT_EQ(ask("algorithm.check", {{"folder", "test_wave"}}).text, "test_wave is being verified; wait, or cancel it");
+  write_file(project() / "test_wave/go", "");
+  const json check =
+      viewers_.document_when("algorithm_check", [](const json& document) { return document["state"] != "running"; });
+  EXPECT_EQ(check["state"], "passed") << check;
+  EXPECT_EQ(check["version"], must("algorithm.read", {{"folder", "test_wave"}})["version"]);
+  EXPECT_EQ(check["proof"]["arguments"], "--json " + (project() / "test_wave").string());
+}
+
+TEST_F(AlgorithmSessionTest, AProofThatFailsKeepsItsTableAndAnErrorIsOneLine) {
+  must("algorithm.create", form("test_wave", 126));
+  write_verifier("echo '{\"verified\": false}'; exit 1\n");
+  json check = finished_check();
+  EXPECT_EQ(check["state"], "failed");
+  EXPECT_EQ(check["proof"]["verified"], false);
+  write_verifier("echo 'proleg verify: 1 of 17: building' >&2; echo 'proleg verify: a.cpp:3: error: b' >&2; exit 2\n");
+  check = finished_check();
+  EXPECT_EQ(check["state"], "failed");
+  EXPECT_TRUE(check["proof"].is_null());
+  EXPECT_EQ(check["error"], "a.cpp:3: error: b");
+}
+
+TEST_F(AlgorithmSessionTest, AProofThatIsCancelledLeavesNoProcess) {
+  must("algorithm.create", form("test_wave", 126));
+  write_verifier("sleep 1000 & echo \"proleg verify: 1 of 2: $!\" >&2\nwait\n");
+  must("algorithm.check", {{"folder", "test_wave"}});
+  const json running = viewers_.document_when(
+      "algorithm_check", [](const json& document) { return document.is_object() && document["done"] == 1; });
+  const int process = std::stoi(running["step"].get<std::string>());
+  must("algorithm.cancel");
+  const json check =
+      viewers_.document_when("algorithm_check", [](const json& document) { return document["state"] != "running"; });
+  EXPECT_EQ(check["state"], "cancelled");
+  // It is gone, or waits for the process that has taken it over.
+  const std::string stat = file_contents("/proc/" + std::to_string(process) + "/stat");
+  EXPECT_TRUE(stat.empty() || stat.find(") Z ") != std::string::npos || stat.find("(sleep)") == std::string::npos)
+      << stat;
 }
 
 // One test, because the core is compiled for it.

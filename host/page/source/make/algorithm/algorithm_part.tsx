@@ -1,8 +1,9 @@
 // The part Algorithm of the page Make: algorithms of the user's own, written, built and run without a command line.
 import { useEffect } from 'preact/hooks';
-import type { AlgorithmBuild, AlgorithmCheck, BuildMessage } from '../../wire/messages.js';
+import type { AlgorithmBuild, BuildMessage } from '../../wire/messages.js';
 import { AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
 import { AlgorithmFormView } from './algorithm_form.js';
+import { ProofView } from './proof_view.js';
 import { SourceEditor } from './source_editor.js';
 
 let stores: AlgorithmApp | null = null; // what was typed stays when another part is shown
@@ -18,19 +19,6 @@ function buildText(build: AlgorithmBuild, isChanged: boolean): string {
       return 'The build was cancelled.';
     case 'failed':
       return errors === 0 ? `The build failed: ${build.error}` : `The build failed: ${errors === 1 ? '1 error' : `${errors} errors`}.`;
-  }
-}
-
-function checkText(check: AlgorithmCheck): string {
-  switch (check.state) {
-    case 'running':
-      return 'Proving; the first time takes minutes …';
-    case 'passed':
-      return 'Proven: the same bits everywhere.';
-    case 'cancelled':
-      return 'The proof was cancelled.';
-    case 'failed':
-      return `Not proven: ${check.error}`;
   }
 }
 
@@ -84,16 +72,7 @@ function Work({ app }: { app: AlgorithmApp }) {
           <code>--algorithms {library.library}</code>.
         </p>
       )}
-      {check !== null && (
-        <section aria-label="Proof">
-          <p role="status" data-testid="algorithm-check">
-            {checkText(check)}
-          </p>
-          <pre class="check-lines" tabIndex={0} aria-label="Table of the proof">
-            {check.lines.join('\n')}
-          </pre>
-        </section>
-      )}
+      {check !== null && <ProofView check={check} isOld={check.version !== source.version || app.isChanged.value} />}
     </>
   );
 }

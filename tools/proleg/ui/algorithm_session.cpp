@@ -260,7 +260,10 @@ void AlgorithmSession::publish_folders() {
     folders.push_back({{"folder", algorithm.folder},
                        {"name", algorithm.name},
                        {"library", algorithm.library().string()},
-                       {"loaded", std::ranges::find(loaded, algorithm.library().string()) != loaded.end()}});
+                       {"loaded", std::ranges::any_of(loaded, [&algorithm](const std::string& library) {
+                          std::error_code error;
+                          return std::filesystem::weakly_canonical(library, error) == algorithm.library();
+                        })}});
   }
   publish("algorithm_folders", {{"refusal", text_or_null(options_.refusal)},
                                 {"folders", options_.refusal.empty() ? std::move(folders) : json::array()},

@@ -12,6 +12,7 @@ import type {
   ForesightDocument,
   AlgorithmDocument,
   LibraryItem,
+  MissingAlgorithms,
   PartsDocument,
   Mesh,
   ControlDocument,
@@ -72,6 +73,7 @@ export class PageState {
   readonly algorithmFolders = signal<AlgorithmFolders | null>(null);
   readonly algorithmBuild = signal<AlgorithmBuild | null>(null);
   readonly algorithmCheck = signal<AlgorithmCheck | null>(null);
+  readonly missingAlgorithms = signal<MissingAlgorithms | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -187,6 +189,9 @@ export class PageState {
           break;
         case 'algorithm_check':
           this.algorithmCheck.value = message.value;
+          break;
+        case 'missing_algorithms':
+          this.missingAlgorithms.value = message.value;
           break;
       }
     }

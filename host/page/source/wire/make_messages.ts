@@ -208,7 +208,16 @@ export interface GalleryEntry {
   distance: number | null; // metres in 10 s
   is_shipped: boolean;
   failure: string | null; // why it cannot be opened
+  missing: string[]; // algorithms that the program lacks
   picture: GalleryPicture | null;
+}
+
+// A scenario that could not be read, because the program lacks algorithms.
+export interface MissingAlgorithms {
+  file: string;
+  action: 'start' | 'open' | 'restore'; // what was to be done
+  error: string;
+  algorithms: { name: string; folder: string | null; library: string | null }[]; // folder: in the project, with its source
 }
 
 export type UnitName = 'degree' | 'phase_degree' | 'hertz' | 'per_second' | 'ratio' | 'count';

@@ -9,6 +9,7 @@ import type {
   ForesightDocument,
   GalleryEntry,
   LibraryItem,
+  MissingAlgorithms,
   NewScenario,
   PartOperation,
   PartsDocument,
@@ -273,6 +274,7 @@ export interface Documents {
   algorithm_folders: AlgorithmFolders;
   algorithm_build: AlgorithmBuild;
   algorithm_check: AlgorithmCheck;
+  missing_algorithms: MissingAlgorithms | null;
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];

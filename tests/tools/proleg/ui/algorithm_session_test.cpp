@@ -180,6 +180,21 @@ TEST_F(AlgorithmSessionTest, NothingOutsideOfTheProjectIsReached) {
   }
 }
 
+TEST_F(AlgorithmSessionTest, TheProjectCanBeTheFolderOfAnAlgorithm) {
+  must("algorithm.create", form("my_wave", 100));
+  const fs::path inside = project() / "my_wave";
+  session_.reset();
+  requests_.emplace();
+  session_.emplace(AlgorithmSessionOptions{inside, "", [] {}}, *requests_, viewers_);
+  const json folders = viewers_.document("algorithm_folders")["folders"];
+  ASSERT_EQ(folders.size(), 1U);
+  EXPECT_EQ(folders[0]["folder"], ".");
+  EXPECT_EQ(folders[0]["library"], (fs::canonical(inside) / "build/my_wave.so").string());
+  EXPECT_EQ(must("algorithm.read", {{"folder", "."}})["name"], "my_wave");
+  EXPECT_EQ(AlgorithmFolders(inside).with_name("my_wave")->folder, ".");
+  EXPECT_FALSE(AlgorithmFolders(inside).with_name("other").has_value());
+}
+
 TEST_F(AlgorithmSessionTest, WithoutPermissionEverythingIsRefused) {
   must("algorithm.create", form("my_wave", 100));
   open("no code here");

@@ -15,6 +15,14 @@ export interface OpenSource extends AlgorithmSource {
   typed: string;
 }
 
+let stores: AlgorithmApp | null = null; // what was typed stays when another part is shown
+
+// The only one of the page.
+export function algorithmApp(make: AlgorithmHost): AlgorithmApp {
+  stores ??= new AlgorithmApp(make);
+  return stores;
+}
+
 export class AlgorithmApp {
   readonly sources = signal<ReadonlyMap<string, OpenSource>>(new Map());
   readonly chosen = signal<string | null>(null); // folder

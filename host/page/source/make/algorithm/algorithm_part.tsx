@@ -1,12 +1,10 @@
 // The part Algorithm of the page Make: algorithms of the user's own, written, built and run without a command line.
 import { useEffect } from 'preact/hooks';
 import type { AlgorithmBuild, BuildMessage } from '../../wire/messages.js';
-import { AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
+import { algorithmApp, type AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
 import { AlgorithmFormView } from './algorithm_form.js';
 import { ProofView } from './proof_view.js';
 import { SourceEditor } from './source_editor.js';
-
-let stores: AlgorithmApp | null = null; // what was typed stays when another part is shown
 
 function buildText(build: AlgorithmBuild, isChanged: boolean): string {
   const errors = build.messages.filter(({ severity }) => severity === 'error').length;
@@ -137,8 +135,7 @@ function SourceView({ app }: { app: AlgorithmApp }) {
 }
 
 export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
-  stores ??= new AlgorithmApp(make);
-  const app = stores;
+  const app = algorithmApp(make);
   const { state, operations } = make.page;
   const document = state.algorithmFolders.value;
   // Another program may have written algorithms meanwhile.
@@ -161,7 +158,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
                 aria-pressed={!app.isMaking.value && app.chosen.value === folder}
                 onClick={() => void app.open(folder)}
               >
-                {folder === name ? name : `${name} (${folder})`}
+                {folder === name ? name : `${name} (${folder === '.' ? 'this folder' : folder})`}
               </button>
             ))}
             <button type="button" aria-pressed={app.isMaking.value} onClick={() => (app.isMaking.value = !app.isMaking.value)}>

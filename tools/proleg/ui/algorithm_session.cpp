@@ -39,16 +39,14 @@ std::string last_line(std::string_view output) {
   return last;
 }
 
-/// "being built", "being verified"
-std::string what_goes_on(const std::string& name, bool is_build) {
-  return name + (is_build ? " is being built" : " is being verified");
-}
-
 }  // namespace
 
 AlgorithmSession::AlgorithmSession(AlgorithmSessionOptions options, SessionRequests& requests,
                                    host::SessionOutput& output)
-    : SessionThread(requests, output), options_(std::move(options)), folders_(options_.folder) {
+    : SessionThread(requests, output),
+      options_(std::move(options)),
+      folders_(options_.folder),
+      image_build_(std::filesystem::canonical(options_.folder)) {
   publish("algorithms", algorithms_json());
   publish_folders();
   begin_thread();
@@ -79,7 +77,7 @@ json AlgorithmSession::carry_out(const host::OperationRequest& operation) {
       {"algorithm.refresh", &AlgorithmSession::refresh}, {"algorithm.read", &AlgorithmSession::read},
       {"algorithm.create", &AlgorithmSession::create},   {"algorithm.save", &AlgorithmSession::save},
       {"algorithm.build", &AlgorithmSession::build},     {"algorithm.check", &AlgorithmSession::check},
-      {"algorithm.cancel", &AlgorithmSession::cancel}};
+      {"algorithm.image", &AlgorithmSession::image},     {"algorithm.cancel", &AlgorithmSession::cancel}};
   const Handler handler = handler_of(handlers, operation.name);
   if (!options_.refusal.empty()) {
     throw std::runtime_error(options_.refusal);
@@ -150,7 +148,7 @@ json AlgorithmSession::build(const host::OperationRequest& request) {
   const std::string folder = algorithm.path.string();
   const std::string build = algorithm.build().string();
   // The same as docs/user-algorithms.md has for the command line; `proleg verify` runs the test.
-  begin(Work::build, algorithm,
+  begin(Work::build, {algorithm},
         {{"cmake", "-S", folder, "-B", build, "-G", "Ninja", "-DPROLEG_SOURCE=" + source_tree("").string()},
          {"cmake", "--build", build, "--target", algorithm.name}});
   return {{"version", job_->version}};
@@ -160,7 +158,26 @@ json AlgorithmSession::check(const host::OperationRequest& request) {
   const AlgorithmFolder algorithm = folder_of(request.arguments);
   const std::filesystem::path verifier =
       options_.verifier.empty() ? program_beside_this("proleg-verify") : options_.verifier;
-  begin(Work::proof, algorithm, {{verifier.string(), "--json", algorithm.path.string()}});
+  begin(Work::proof, {algorithm}, {{verifier.string(), "--json", algorithm.path.string()}});
+  return json::object();
+}
+
+json AlgorithmSession::image(const host::OperationRequest& request) {
+  const auto names = argument<std::vector<std::string>>(request.arguments, "folders", "names of folders");
+  std::vector<AlgorithmFolder> algorithms;
+  for (const std::string& name : names.value_or(std::vector<std::string>{})) {
+    const AlgorithmFolder algorithm = folders_.find(name);
+    if (std::ranges::find(algorithms, algorithm.name, &AlgorithmFolder::name) != algorithms.end()) {
+      throw InputError("folders", 0, "two algorithms " + in_quotes(algorithm.name), "different names");
+    }
+    algorithms.push_back(algorithm);
+  }
+  if (algorithms.empty()) {
+    throw InputError("folders", 0, "none", "at least one algorithm");
+  }
+  require_no_job();
+  const std::vector<std::vector<std::string>> commands = image_build_.commands(algorithms);
+  begin(Work::image, std::move(algorithms), commands);
   return json::object();
 }
 
@@ -172,17 +189,27 @@ json AlgorithmSession::cancel(const host::OperationRequest& /*request*/) {
   return json::object();
 }
 
-void AlgorithmSession::begin(Work work, const AlgorithmFolder& algorithm,
-                             const std::vector<std::vector<std::string>>& commands) {
-  if (job_) {
-    throw std::runtime_error(what_goes_on(job_->algorithm.name, job_->work == Work::build) + "; wait, or cancel it");
+void AlgorithmSession::require_no_job() const {
+  if (!job_) {
+    return;
   }
-  const bool is_build = work == Work::build;
-  std::string version = AlgorithmFolders::read(algorithm).version;
+  const std::string& name = job_->algorithms.front().name;
+  const std::string what = job_->work == Work::image   ? "the image is being built"
+                           : job_->work == Work::build ? name + " is being built"
+                                                       : name + " is being verified";
+  throw std::runtime_error(what + "; wait, or cancel it");
+}
+
+void AlgorithmSession::begin(Work work, std::vector<AlgorithmFolder> algorithms,
+                             const std::vector<std::vector<std::string>>& commands) {
+  require_no_job();
+  const AlgorithmFolder& first = algorithms.front();
+  std::string version = AlgorithmFolders::read(first).version;
   auto programs = std::make_unique<CommandSequence>(
-      commands, algorithm.path.string(), is_build ? options_.longest_build : options_.longest_check,
-      is_build ? ChildProgram::Errors::in_output : ChildProgram::Errors::apart);
-  job_ = Job{work, algorithm, std::move(version), std::move(programs)};
+      commands, work == Work::image ? source_tree("").string() : first.path.string(),
+      work == Work::build ? options_.longest_build : options_.longest_check,
+      work == Work::proof ? ChildProgram::Errors::apart : ChildProgram::Errors::in_output);
+  job_ = Job{work, std::move(algorithms), std::move(version), std::move(programs)};
   publish_job("running", "");
 }
 
@@ -198,11 +225,13 @@ void AlgorithmSession::look_at_job() {
   } else if (job.work == Work::proof) {
     const std::string error = proof_error(proof_object(job.programs->output()), job.programs->errors(), end->status);
     finish(error.empty() ? "passed" : "failed", error);
+  } else if (job.work == Work::image) {
+    finish_image(end->status);
   } else if (end->status != 0) {
     const std::string line = last_line(job.programs->output());
     finish("failed", line.empty() ? "exit status " + std::to_string(end->status) : line);
   } else {
-    const std::string error = load(job.algorithm);
+    const std::string error = load(job.algorithms.front());
     finish(error.empty() ? "passed" : "failed", error);
   }
 }
@@ -218,13 +247,32 @@ std::string AlgorithmSession::load(const AlgorithmFolder& algorithm) {
   return "";
 }
 
+void AlgorithmSession::finish_image(int status) {
+  if (status != 0) {
+    const std::string& output = job_->programs->output();
+    const std::string problem = image_build_.problem(output);
+    finish("failed", problem.empty() ? last_line(output) : problem);
+    return;
+  }
+  try {
+    built_image_ = image_build_.described(job_->algorithms);
+    finish("passed", "");
+  } catch (const std::exception& error) {
+    finish("failed", one_line(error.what()));
+  }
+}
+
 void AlgorithmSession::finish(const std::string& state, const std::string& error) {
+  if (job_->work == Work::image && state != "passed") {
+    image_build_.discard();
+  }
   publish_job(state, error);
-  const std::string& name = job_->algorithm.name;
+  const std::string& name = job_->algorithms.front().name;
   if (state == "passed") {
     output_.notice(host::NoticeLevel::info, job_->work == Work::build
                                                 ? name + ": the build passed; Simulate and Restart use it from now on"
-                                                : name + ": the proof passed");
+                                            : job_->work == Work::proof ? name + ": the proof passed"
+                                                                        : "the image for the modules is built");
   }
   job_.reset();
   publish_folders();
@@ -232,8 +280,13 @@ void AlgorithmSession::finish(const std::string& state, const std::string& error
 
 void AlgorithmSession::publish_job(const std::string& state, const std::string& error) {
   const Job& job = *job_;
-  json document{{"folder", job.algorithm.folder},
-                {"name", job.algorithm.name},
+  if (job.work == Work::image) {
+    publish_image(state, error);
+    return;
+  }
+  const AlgorithmFolder& algorithm = job.algorithms.front();
+  json document{{"folder", algorithm.folder},
+                {"name", algorithm.name},
                 {"version", job.version},
                 {"state", state},
                 {"error", text_or_null(error)}};
@@ -241,7 +294,7 @@ void AlgorithmSession::publish_job(const std::string& state, const std::string& 
     const BuildProgress progress = build_progress(job.programs->output());
     document["done"] = progress.done;
     document["of"] = progress.of;
-    document["messages"] = messages_json(compiler_messages(job.programs->output()), job.algorithm);
+    document["messages"] = messages_json(compiler_messages(job.programs->output()), job.algorithms);
     publish("algorithm_build", std::move(document));
   } else {
     const ProofStep step = proof_step(job.programs->errors());
@@ -251,6 +304,22 @@ void AlgorithmSession::publish_job(const std::string& state, const std::string& 
     document["proof"] = state == "running" ? json() : proof_object(job.programs->output());
     publish("algorithm_check", std::move(document));
   }
+}
+
+void AlgorithmSession::publish_image(const std::string& state, const std::string& error) {
+  const Job& job = *job_;
+  json algorithms = json::array();
+  for (const AlgorithmFolder& algorithm : job.algorithms) {
+    algorithms.push_back({{"folder", algorithm.folder}, {"name", algorithm.name}});
+  }
+  const BuildProgress progress = build_progress(job.programs->output());
+  publish("algorithm_image", {{"algorithms", std::move(algorithms)},
+                              {"state", state},
+                              {"error", text_or_null(error)},
+                              {"done", progress.done},
+                              {"of", progress.of},
+                              {"messages", messages_json(compiler_messages(job.programs->output()), job.algorithms)},
+                              {"image", state == "passed" ? built_image_ : json()}});
 }
 
 void AlgorithmSession::publish_folders() {

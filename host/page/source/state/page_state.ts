@@ -6,6 +6,7 @@ import type {
   AlgorithmBuild,
   AlgorithmCheck,
   AlgorithmFolders,
+  AlgorithmImage,
   BusDocument,
   Documents,
   DraftDocument,
@@ -73,6 +74,7 @@ export class PageState {
   readonly algorithmFolders = signal<AlgorithmFolders | null>(null);
   readonly algorithmBuild = signal<AlgorithmBuild | null>(null);
   readonly algorithmCheck = signal<AlgorithmCheck | null>(null);
+  readonly algorithmImage = signal<AlgorithmImage | null>(null);
   readonly missingAlgorithms = signal<MissingAlgorithms | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
@@ -189,6 +191,9 @@ export class PageState {
           break;
         case 'algorithm_check':
           this.algorithmCheck.value = message.value;
+          break;
+        case 'algorithm_image':
+          this.algorithmImage.value = message.value;
           break;
         case 'missing_algorithms':
           this.missingAlgorithms.value = message.value;

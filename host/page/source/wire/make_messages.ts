@@ -310,6 +310,30 @@ export interface AlgorithmCheck extends AlgorithmWork {
   proof: Proof | null; // when it has ended
 }
 
+// An image for the modules, with algorithms of users.
+export interface BuiltImage {
+  file: string;
+  version: string;
+  commit: string | null;
+  changed_sources: boolean; // it has more than the commit
+  core_fingerprint: string;
+  sha256: string;
+  flash: number | null; // bytes
+  flash_limit: number | null;
+  ram: number | null;
+  ram_limit: number | null;
+  stack: number | null; // at worst
+  stack_limit: number | null;
+  algorithms: { name: string; sources: string | null }[];
+  command: string; // that flashes it
+}
+
+// The present or last build of an image.
+export interface AlgorithmImage extends Pick<AlgorithmBuild, 'state' | 'error' | 'done' | 'of' | 'messages'> {
+  algorithms: { folder: string; name: string }[];
+  image: BuiltImage | null; // null: none, or it was not built
+}
+
 // The value of `algorithm.read`.
 export interface AlgorithmSource {
   name: string;

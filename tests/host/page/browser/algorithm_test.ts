@@ -1,5 +1,6 @@
 // The part Algorithm of the page Make: from a form to a robot that moves by an algorithm of one's own, without a command line.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -7,7 +8,7 @@ import { after, describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
 import { assertNothingIsCut } from './support/layout.js';
 import { useUi } from './support/ui_fixture.js';
-import { UiProgram } from './support/ui_program.js';
+import { program, UiProgram } from './support/ui_program.js';
 import { waitUntil } from './support/waiting.js';
 
 describe("an algorithm of one's own", () => {
@@ -29,7 +30,7 @@ describe("an algorithm of one's own", () => {
   const isInEditor = () => page().evaluate(() => document.activeElement?.closest('.code') !== null);
   const messages = () => part().getByRole('list', { name: 'Messages of the build' });
   const build = async (expected: RegExp) => {
-    await part().getByRole('button', { name: 'Build' }).click();
+    await part().getByRole('button', { name: 'Build', exact: true }).click();
     await part().getByText(/^The build begins|^Building/).waitFor(); // what the one before has said is gone
     assert.ok(await waitUntil(async () => /failed|loaded|cancelled/.test(await buildText())), await buildText());
     assert.match(`${await buildText()} ${(await messages().allTextContents()).join('; ')}`, expected);
@@ -177,6 +178,34 @@ describe("an algorithm of one's own", () => {
     assert.equal(await builds.count(), 11);
     assert.match((await builds.filter({ hasText: 'Cortex-M4' }).textContent()) ?? '', /^Cortex-M4equal5 modules50000[0-9a-f]{24}$/);
     await page().screenshot({ path: 'build/page_test/algorithm_proof.png', fullPage: true });
+  });
+
+  it('comes into the image for the modules, with the command that flashes it', async () => {
+    const image = part().getByRole('region', { name: 'Into the image' });
+    const text = async () => (await image.getByTestId('image-state').textContent()) ?? '';
+    const begin = image.getByRole('button', { name: 'Build the image' });
+    assert.equal(await image.getByRole('checkbox', { name: 'my_wave' }).isChecked(), true);
+    await image.getByRole('checkbox', { name: 'my_wave' }).uncheck();
+    assert.equal(await begin.isDisabled(), true);
+    await image.getByRole('checkbox', { name: 'my_wave' }).check();
+    await begin.click();
+    assert.ok(await waitUntil(async () => /^Building the image: \d+ of \d+ …$/.test(await text())));
+    await image.getByRole('button', { name: 'Cancel the image' }).click();
+    assert.ok(await waitUntil(async () => (await text()) === 'The build of the image was cancelled.'));
+    await begin.click();
+    assert.ok(await waitUntil(async () => /^(The build of the image begins|Building)/.test(await text())));
+    assert.ok(await waitUntil(async () => /^The image (is|was)/.test(await text())));
+    assert.equal(await text(), 'The image is built.');
+    const file = join(folder, 'build/image/bin/proleg_stm32f405.pimg');
+    assert.equal(await image.getByTestId('flash-command').textContent(), `proleg flash --bus can0 ${file}`);
+    const { images } = JSON.parse(execFileSync(program, ['image', 'info', '--json', file], { encoding: 'utf8' })) as { images: { intact: boolean; sha256: string }[] };
+    assert.equal(images[0]?.intact, true);
+    const facts = image.getByTestId('image-facts');
+    await facts.getByRole('row', { name: `SHA-256 ${images[0]?.sha256}` }).waitFor();
+    assert.match((await facts.getByRole('row', { name: /^Flash/ }).textContent()) ?? '', /^Flash\d+ of 90112 bytes, \d+ are left$/);
+    const sources = (await part().getByTestId('proof-builds').locator('caption').textContent())?.match(/0x[0-9A-F]{8}/)?.[0];
+    assert.match((await facts.getByRole('row', { name: /^Contents/ }).textContent()) ?? '', new RegExp(`my_wave \\(sources ${sources}\\)$`));
+    await page().screenshot({ path: 'build/page_test/algorithm_image.png', fullPage: true });
   });
 
   it('only shows to those who do not drive', async () => {

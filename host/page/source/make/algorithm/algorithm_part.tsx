@@ -3,6 +3,7 @@ import { useEffect } from 'preact/hooks';
 import type { AlgorithmBuild, BuildMessage } from '../../wire/messages.js';
 import { algorithmApp, type AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
 import { AlgorithmFormView } from './algorithm_form.js';
+import { ImageView } from './image_view.js';
 import { ProofView } from './proof_view.js';
 import { SourceEditor } from './source_editor.js';
 
@@ -113,7 +114,7 @@ function SourceView({ app }: { app: AlgorithmApp }) {
         >
           Check
         </button>
-        {work !== null && (
+        {work !== null && !work.isImage && (
           <button type="button" disabled={obstacle !== null} onClick={() => app.cancel()}>
             Cancel {work.name}
           </button>
@@ -171,6 +172,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
               {app.problem.value}
             </p>
           )}
+          {!app.isMaking.value && document.folders.length > 0 && <ImageView app={app} folders={document.folders} />}
         </>
       )}
     </section>

@@ -14,7 +14,7 @@ namespace {
 
 // What undo keeps at most; older entries are forgotten.
 constexpr std::size_t max_history_entries = 10'000;
-constexpr std::size_t max_history_bytes = std::size_t{32} << 20U;
+constexpr std::size_t max_history_bytes = std::size_t{64} << 20U;
 
 std::size_t bytes_of(const TextPatch& patch) { return patch.removed.size() + patch.inserted.size(); }
 
@@ -78,10 +78,15 @@ void DraftChange::add_file(const std::string& name, std::string text) {
   apply_step(steps_.back(), texts_);
 }
 
+void DraftChange::remove_file(const std::string& name) {
+  steps_.push_back({name, {0, texts_.at(name), {}}, false, true});
+  apply_step(steps_.back(), texts_);
+}
+
 bool DraftChange::Step::absorbs(const Step& next) {
   const std::size_t begin = patch.position;
   const std::size_t at = next.patch.position;
-  if (file != next.file || next.is_new_file || at < begin ||
+  if (file != next.file || next.is_new_file || next.is_removed_file || is_removed_file || at < begin ||
       at + next.patch.removed.size() > begin + patch.inserted.size()) {
     return false;
   }
@@ -90,6 +95,10 @@ bool DraftChange::Step::absorbs(const Step& next) {
 }
 
 void DraftChange::apply_step(const Step& step, DraftTexts& texts) {
+  if (step.is_removed_file) {
+    texts.erase(step.file);
+    return;
+  }
   const std::string* const before = texts.find(step.file);
   std::string text = before == nullptr ? std::string() : *before;
   sim::apply(step.patch, text);
@@ -99,6 +108,10 @@ void DraftChange::apply_step(const Step& step, DraftTexts& texts) {
 void DraftChange::take_back(const Step& step, DraftTexts& texts) {
   if (step.is_new_file) {
     texts.erase(step.file);
+    return;
+  }
+  if (step.is_removed_file) {
+    texts.set(step.file, step.patch.removed);
     return;
   }
   std::string text = *texts.find(step.file);
@@ -117,6 +130,7 @@ Draft::Draft(Scenario scenario, FileSource& disk, std::uint64_t revision)
 Scenario Draft::read() {
   Scenario scenario = read_scenario(scenario_.path, texts_, scenario_.overrides);
   scenario.moves = scenario_.moves;  // of the command line, as the overrides
+  texts_.known_meshes()->forget_unused();
   // What the change names for the first time, such as a mesh, belongs to the draft from now on: it must not change
   // behind it.
   for (const SourceFile& source : scenario.sources) {
@@ -141,8 +155,26 @@ void Draft::change(const std::string& label, std::optional<std::uint64_t> gestur
     take_back(collected.steps_);
     throw;
   }
+  remove_unused_files(collected);
   keep(label, gesture, std::move(collected.steps_));
   ++revision_;
+}
+
+// They would be written by Save, and large meshes would fill the memory.
+void Draft::remove_unused_files(DraftChange& change) {
+  std::set<std::string> used;
+  for (const SourceFile& source : scenario_.sources) {
+    used.insert(source.path);
+  }
+  std::vector<std::string> unused;
+  for (const auto& [name, text] : texts_.all()) {
+    if (!saved_.contains(name) && !used.contains(name)) {
+      unused.push_back(name);
+    }
+  }
+  for (const std::string& name : unused) {
+    change.remove_file(name);
+  }
 }
 
 void Draft::keep(const std::string& label, std::optional<std::uint64_t> gesture, std::vector<DraftChange::Step> steps) {
@@ -286,7 +318,19 @@ void Draft::read_again() {
   ++revision_;
 }
 
-void Draft::mark_saved() { saved_ = texts_.all(); }
+void Draft::adopt(const std::string& name) {
+  if (std::optional<std::string> text = disk_->read(name)) {
+    saved_.insert_or_assign(name, *text);
+    texts_.set(name, std::move(*text));
+  }
+}
+
+void Draft::mark_saved() {
+  // A file that a change has added, and that undo has taken out of the draft, stays on the disk as it was saved.
+  for (const auto& [name, text] : texts_.all()) {
+    saved_[name] = text;
+  }
+}
 
 void Draft::rename_files(const std::map<std::string, std::string>& renamed, const std::filesystem::path& path,
                          FileSource& disk) {

@@ -29,6 +29,7 @@ class DraftTexts final : public FileSource {
 
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
   [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
+  [[nodiscard]] KnownMeshes* known_meshes() override { return &meshes_; }
 
   /// The text of a file of the draft; null if it has no such file.
   [[nodiscard]] const std::string* find(const std::string& name) const;
@@ -42,6 +43,7 @@ class DraftTexts final : public FileSource {
  private:
   FileSource* disk_;
   std::map<std::string, std::string> texts_;
+  KnownMeshes meshes_;
 };
 
 class Draft;
@@ -71,12 +73,16 @@ class DraftChange {
   struct Step {
     std::string file;
     TextPatch patch;
-    bool is_new_file = false;  ///< the patch has its text
+    bool is_new_file = false;      ///< the patch has its text
+    bool is_removed_file = false;  ///< the same
 
     /// Adds a later step to this one if that changes only what this one has inserted, as the steps of a drag do.
     /// Returns false if it does not.
     bool absorbs(const Step& next);
   };
+
+  /// Removes a file that only the draft has.
+  void remove_file(const std::string& name);
 
   static void apply_step(const Step& step, DraftTexts& texts);
   static void take_back(const Step& step, DraftTexts& texts);
@@ -131,6 +137,9 @@ class Draft {
   /// Reads the present texts again, for example because an algorithm has other parameters now. Throws InputError, and
   /// then does nothing, if the reader refuses them.
   void read_again();
+  /// A file that only the disk has, such as one that was saved and then taken back, becomes a file of the draft, as it
+  /// is there. Does nothing if the disk does not have it.
+  void adopt(const std::string& name);
   /// The present texts are on disk.
   void mark_saved();
   /// The files have been saved under other names, in `renamed` by their names until now, and the draft goes on there.
@@ -147,6 +156,8 @@ class Draft {
     std::vector<DraftChange::Step> steps;
   };
 
+  /// Removes the files that earlier calls of a change have added and that the scenario does not name.
+  void remove_unused_files(DraftChange& change);
   void take_back(const std::vector<DraftChange::Step>& steps);
   void do_again(const std::vector<DraftChange::Step>& steps);
   [[nodiscard]] Scenario read();

@@ -7,6 +7,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/chain_text.hpp"
+#include "sim/authoring/module_kind.hpp"
 #include "sim/authoring/scenario_text.hpp"
 
 namespace proleg::sim {
@@ -67,6 +68,9 @@ RobotContents read_robot_contents(const Draft& draft) {
                                                                         : scenario.robot.links[sensor.part].name,
                                *element});
     }
+  }
+  for (const ModuleKind& kind : own_kinds(scenario)) {
+    robot.kinds.push_back({kind.name, kind.length});
   }
   try {
     static_cast<void>(read_chain_text(scenario, xml, text_of));

@@ -39,11 +39,17 @@ struct SensorContents {
   ElementNumber element = 0;
 };
 
+struct OwnKindContents {
+  std::string name;
+  double length = 0.0;  ///< m, between two joints
+};
+
 struct RobotContents {
   std::string file;
   std::vector<JointContents> joints;    ///< kernel order: from the head
   std::vector<LinkContents> links;      ///< from the head
   std::vector<SensorContents> sensors;  ///< in the order of the file; those that are switched off are not here
+  std::vector<OwnKindContents> kinds;   ///< of modules that a person has made of meshes
   /// Why links cannot be added, removed or exchanged; nothing: they can.
   std::optional<std::string> obstacle;
 };

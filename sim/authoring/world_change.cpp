@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <set>
 #include <span>
@@ -12,13 +13,37 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/scenario_text.hpp"
 #include "sim/robot/bounds.hpp"
+#include "sim/scenario/mesh_reader.hpp"
 #include "sim/scenario/values.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::sim {
 namespace {
 
-/// The lowest point of an object's boxes, spheres and cylinders, in m; nothing if it has other shapes.
+void require_place(const Eigen::Vector3d& position, double turn_degrees) {
+  if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= coordinates.max) ||
+      !(std::abs(turn_degrees) <= turns.max)) {
+    throw InputError("position", 0, "a place that is out of range", "coordinates up to 10000 m, degrees up to 360");
+  }
+}
+
+/// By how much the sides of a mesh grow. A sheet that lies flat has a side of no length, which stays.
+Eigen::Vector3d growth_of_mesh(const WorldShape& shape, const std::vector<double>& size) {
+  const Eigen::Vector3d before = shape.mesh_box->second - shape.mesh_box->first;
+  Eigen::Vector3d growth = Eigen::Vector3d::Ones();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    growth[axis] = before[axis] > 0.0 ? size[static_cast<std::size_t>(axis)] / before[axis] : 1.0;
+  }
+  return growth;
+}
+
+/// The middle of the box around a mesh of this size, in its frame: a scale is about the origin of the mesh.
+Eigen::Vector3d middle_of_mesh(const WorldShape& shape, const std::vector<double>& size) {
+  return growth_of_mesh(shape, size).cwiseProduct((shape.mesh_box->first + shape.mesh_box->second) / 2.0);
+}
+
+/// The lowest point of an object's boxes, spheres, cylinders and boxes around meshes, in m; nothing if it has other
+/// shapes.
 std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShape>& shapes) {
   std::optional<double> lowest;
   for (const WorldShape& shape : shapes) {
@@ -33,6 +58,9 @@ std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShap
     } else if (shape.type == "cylinder" && size.size() == 2) {
       solid.shape = Shape::cylinder;
       solid.extents = {size[0], size[1] / 2.0, 0.0};
+    } else if (shape.mesh_box && size.size() == 3) {
+      solid.extents = Eigen::Vector3d(size[0], size[1], size[2]) / 2.0;
+      solid.pose = shape.pose * Pose{middle_of_mesh(shape, size), Eigen::Quaterniond::Identity()};
     } else {
       return std::nullopt;
     }
@@ -80,13 +108,20 @@ void WorldChange::set_size(std::size_t number, std::size_t shape_number, const s
     throw InputError("size", 0, std::to_string(size.size()) + " numbers for " + in_quotes(shape.type),
                      shape.size.empty() ? "a shape that has a size" : std::to_string(shape.size.size()) + " numbers");
   }
-  for (const double length : size) {
-    if (!(length >= 2.0 * lengths.min && length <= lengths.max)) {
-      throw InputError("size", 0, number_text(length), "lengths up to " + number_text(lengths.max) + " m, above 0");
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    const bool is_flat = shape.mesh_box && shape.size[i] == 0.0 && size[i] == 0.0;
+    if (!is_flat && !(size[i] >= 2.0 * lengths.min && size[i] <= lengths.max)) {
+      throw InputError("size", 0, number_text(size[i]), "lengths up to " + number_text(lengths.max) + " m, above 0");
     }
   }
   std::vector<WorldShape> resized = found.shapes;
-  resized[shape_number].size = size;
+  WorldShape& changed = resized[shape_number];
+  changed.size = size;
+  if (shape.mesh_box) {
+    // The middle stays where it is.
+    changed.pose.position += shape.pose.orientation * (middle_of_mesh(shape, shape.size) - middle_of_mesh(shape, size));
+    set_pose(change_, world_.file, shape.element, changed.pose);
+  }
   const std::optional<double> bottom = lowest_point(found.pose, found.shapes);
   const std::optional<double> new_bottom = lowest_point(found.pose, resized);
   write_size(shape, size);
@@ -97,7 +132,38 @@ void WorldChange::set_size(std::size_t number, std::size_t shape_number, const s
   }
 }
 
+void WorldChange::write_scale(const WorldShape& shape, const std::vector<double>& size) {
+  const std::optional<ElementNumber> data = xml().child(shape.element, "data");
+  const ElementNumber element = data ? *data : xml().child(shape.element, "collision").value();
+  const std::string text = content_of(xml(), element);
+  const std::filesystem::path folder = std::filesystem::path(world_.file).parent_path();
+  const auto is_file = [&](const std::string& path) { return change_.read(name_of(folder / path)).has_value(); };
+  const FileText split = split_file_text(text, is_file);
+  std::vector<double> scale;
+  for (const std::string_view word : words(split.rest)) {
+    scale.push_back(parse_number(word).value_or(1.0));
+  }
+  scale.resize(3, scale.size() == 1 ? scale.front() : 1.0);
+  const Eigen::Vector3d growth = growth_of_mesh(shape, size);
+  std::string numbers;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Coordinates of meshes have the seven digits of single precision.
+    std::array<char, 40> number{};
+    std::snprintf(number.data(), number.size(), " %.7g", scale[axis] * growth[static_cast<Eigen::Index>(axis)]);
+    numbers += number.data();
+  }
+  const std::vector<std::string_view> parts = words(numbers);
+  if (parts[0] == parts[1] && parts[1] == parts[2]) {
+    numbers = " " + std::string(parts[0]);
+  }
+  apply(xml().set_content(element, escaped(std::string(split.path) + numbers)));
+}
+
 void WorldChange::write_size(const WorldShape& shape, const std::vector<double>& size) {
+  if (shape.mesh_box) {
+    write_scale(shape, size);
+    return;
+  }
   if (shape.type == "box" || shape.type == "heightfield") {
     std::string halves;
     for (const double side : size) {
@@ -222,11 +288,48 @@ void WorldChange::add(LibraryItem item, const std::map<std::string, double>& val
     }
     checked[name] = value;
   }
-  if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= coordinates.max) ||
-      !(std::abs(turn_degrees) <= turns.max)) {
-    throw InputError("position", 0, "a place that is out of range", "coordinates up to 10000 m, degrees up to 360");
-  }
+  require_place(position, turn_degrees);
   add_kinbody(item_text(item, checked, free_name(std::string(declaration.name)), position, turn_degrees));
+}
+
+void WorldChange::add_mesh(const OwnMesh& mesh, const MeshFit& fit, bool is_sheet, const Eigen::Vector3d& position,
+                           double turn_degrees) {
+  require_fit(fit);
+  require_place(position, turn_degrees);
+  const std::string& name = mesh.files.front().name;
+  if (mesh.facts.flaw) {
+    throw InputError(name, 0, *mesh.facts.flaw, "triangles whose corners are not on one line");
+  }
+  if (mesh.facts.gap && !is_sheet) {
+    throw InputError(name, 0, *mesh.facts.gap, "a closed surface, or to be a sheet, which touches from one side");
+  }
+  if (is_sheet && !((fit.rotation() * mesh.facts.facing).z() > 0.0)) {
+    throw InputError(name, 0, "a sheet whose triangles face down, so that a robot would fall through it",
+                     "one that faces up: two turns of 90 degrees about x turn it over");
+  }
+  const FittedBox box = fitted_box(mesh.facts, fit);
+  const Eigen::Vector3d middle = (box.lowest + box.highest) / 2.0;
+  const std::filesystem::path parent = std::filesystem::path(world_.file).parent_path();
+  const std::string folder = add_in_free_folder(change_, parent, "meshes", source_files(mesh));
+  const std::string lines = mesh_lines(folder + "/" + name, fit, {-middle.x(), -middle.y(), -box.lowest.z()}) +
+                            element_text("friction", "0.5");
+  std::string geom = is_sheet ? "<Geom type=\"trimesh\" open=\"1\">" : "<Geom type=\"trimesh\">";
+  std::string_view rest = lines;
+  while (!rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    geom += "\n      " + std::string(line);
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+  }
+  const double turn = turn_degrees * std::numbers::pi / 180.0;
+  const double half_depth = (box.highest - box.lowest).y() / 2.0;
+  const Eigen::Vector3d place = position + half_depth * Eigen::Vector3d(-std::sin(turn), std::cos(turn), 0.0);
+  std::string text = "<KinBody name=\"" + escaped(free_name(shortened(name.substr(0, name.rfind('.'))))) + "\">\n";
+  text += "  " + element_text("Translation", vector_text(place)) + "\n";
+  if (turn_degrees != 0.0) {
+    text += "  " + element_text("RotationAxis", "0 0 1 " + number_text_of(turn_degrees)) + "\n";
+  }
+  text += "  <Body type=\"static\">\n    " + geom + "\n    </Geom>\n  </Body>\n</KinBody>";
+  add_kinbody(text);
 }
 
 void WorldChange::add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

@@ -13,6 +13,7 @@
 
 #include "sim/authoring/draft.hpp"
 #include "sim/authoring/library_items.hpp"
+#include "sim/authoring/own_mesh.hpp"
 #include "sim/authoring/scenario_text.hpp"
 #include "sim/authoring/world_contents.hpp"
 #include "sim/robot/pose.hpp"
@@ -43,6 +44,11 @@ class WorldChange {
   /// Adds an item of the library. values: by the names of its parameters; the usual values for those that are missing.
   void add(LibraryItem item, const std::map<std::string, double>& values, const Eigen::Vector3d& position,
            double turn_degrees);
+  /// Adds a static object with the shape of a mesh, whose files come into a folder beside the environment file. It
+  /// stands on the ground, turned about the vertical; position: m, of the middle of its front edge. is_sheet: its
+  /// surface is not closed, and touches from the side that it faces.
+  void add_mesh(const OwnMesh& mesh, const MeshFit& fit, bool is_sheet, const Eigen::Vector3d& position,
+                double turn_degrees);
   void add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   void set_ruler(std::size_t ruler, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   void remove_ruler(std::size_t ruler);
@@ -53,6 +59,8 @@ class WorldChange {
   [[nodiscard]] ElementNumber element_of_ruler(std::size_t ruler) const;
   [[nodiscard]] const XmlText& xml() { return change_.xml(world_.file); }
   void apply(const TextPatch& patch) { change_.apply(world_.file, patch); }
+  /// Gives a mesh another scale.
+  void write_scale(const WorldShape& shape, const std::vector<double>& size);
   void write_size(const WorldShape& shape, const std::vector<double>& size);
   void set_tag_of(ElementNumber parent, std::string_view tag, const std::string& content) {
     set_tag(change_, world_.file, parent, tag, content);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/robot/bounds.hpp"
 #include "sim/scenario/values.hpp"
 #include "sim/scenario/xml_document.hpp"
 
@@ -33,7 +34,7 @@ std::optional<std::vector<double>> numbers_in(const XmlElement& element, std::st
 WorldShape read_shape(const XmlText& xml, ElementNumber geom) {
   const XmlDocument document = parsed(xml, geom);
   const XmlElement element = document.root(xml.at(geom).tag.name);
-  WorldShape shape{geom, lower_case(element.required_attribute("type")), {}, {}, {}, read_pose(element)};
+  WorldShape shape{geom, lower_case(element.required_attribute("type")), {}, {}, {}, read_pose(element), {}};
   if (const auto sides = numbers_in(element, "extents")) {
     for (const double half : *sides) {
       shape.size.push_back(2.0 * half);
@@ -51,6 +52,31 @@ WorldShape read_shape(const XmlText& xml, ElementNumber geom) {
     shape.colour = Eigen::Vector3d((*colour)[0], (*colour)[1], (*colour)[2]);
   }
   return shape;
+}
+
+const std::vector<Geometry>& geometries_of(const EnvironmentModel& environment, const WorldObject& object) {
+  return object.moves ? environment.moving_objects[object.index].geometries
+                      : environment.objects[object.index].geometries;
+}
+
+/// The sizes of meshes, which only the scenario has. The reader has a geometry for each <Geom> that touches.
+void add_mesh_sizes(const XmlText& xml, const EnvironmentModel& environment, WorldObject& object) {
+  std::size_t number = 0;
+  const std::vector<Geometry>& geometries = geometries_of(environment, object);
+  for (WorldShape& shape : object.shapes) {
+    const bool is_mesh = shape.type == "trimesh";
+    const bool is_of_file = xml.child(shape.element, "data") || xml.child(shape.element, "collision");
+    if (is_mesh && !is_of_file && !xml.child(shape.element, "vertices")) {
+      continue;
+    }
+    if (is_mesh && is_of_file && number < geometries.size() && geometries[number].mesh) {
+      const Bounds bounds = bounds_of(*geometries[number].mesh, {});
+      shape.mesh_box = std::pair(bounds.lowest, bounds.highest);
+      const Eigen::Vector3d sides = bounds.highest - bounds.lowest;
+      shape.size = {sides.x(), sides.y(), sides.z()};
+    }
+    ++number;
+  }
 }
 
 /// An object of the scenario; the reader keeps those that move apart.
@@ -136,6 +162,7 @@ WorldContents read_world_contents(const Draft& draft) {
     for (const ElementNumber geom : xml.children(i, "Geom")) {
       object.shapes.push_back(read_shape(xml, geom));
     }
+    add_mesh_sizes(xml, scenario.environment, object);
     world.objects.push_back(std::move(object));
   }
   for (ReadObject& read : all) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,11 +19,14 @@ namespace proleg::sim {
 struct WorldShape {
   ElementNumber element = 0;
   std::string type;  ///< "box", "sphere", "cylinder", "trimesh" or "heightfield"
-  /// m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y; mesh: nothing
+  /// m; box: sides x, y, z; sphere: radius; cylinder: radius, height; height field: sides x, y; mesh of a file: sides
+  /// x, y, z of the box around it; other mesh: nothing
   std::vector<double> size;
   std::optional<double> friction;
   std::optional<Eigen::Vector3d> colour;  ///< red, green, blue, 0 to 1
   Pose pose;                              ///< in the object
+  /// The lowest and the highest corner of the box around a mesh of a file, in the frame of the mesh.
+  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> mesh_box = {};
 };
 
 /// An object: a <Body>.

@@ -112,6 +112,36 @@ struct NumberText {
   }
 };
 
+/// The mesh of a file that `mention` names as `reference`, imported now or by an earlier read of the same bytes.
+KnownMeshes::Import& imported(const XmlElement& mention, const std::string& reference, const SourceSet::Bytes& file,
+                              SourceSet& sources) {
+  std::map<std::string, KnownMeshes::Import>& imports = sources.meshes().imports();
+  const std::string name = name_of(file.path);
+  // Reading a companion makes it a file of the scenario, and moves the texts.
+  const auto is_as_it_was = [&](const KnownMeshes::Import& import) {
+    return import.source == *file.source &&
+           std::ranges::all_of(import.companions, [&](const KnownMeshes::Companion& companion) {
+             return sources.companion(mention, companion.path) == companion.text;
+           });
+  };
+  if (const auto known = imports.find(name); known != imports.end() && is_as_it_was(known->second)) {
+    known->second.is_used = true;
+    return known->second;
+  }
+  KnownMeshes::Import import;
+  import.source = *file.source;
+  import.mesh = std::make_shared<const TriangleMesh>(with_place(mention, "", [&] {
+    return read_mesh_file(reference, bytes_of_source(import.source), [&](const std::string& beside) {
+      std::filesystem::path path = file.path.parent_path() / std::filesystem::path(beside).filename();
+  std::optional<std::string> text = sources.companion(mention, path);
+  import.companions.push_back({std::move(path), text});
+  return text;
+});
+}  // namespace
+));
+return imports.insert_or_assign(name, std::move(import)).first->second;
+}  // namespace proleg::sim
+
 NumberText numbers_of(const XmlElement& element) { return {element.text(), element.label()}; }
 
 NumberText numbers_of_file(const XmlElement& data, SourceSet& sources) {
@@ -175,24 +205,30 @@ std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element,
   const FileMention mention = read_mention(element, sources);
   const SourceSet::Bytes file = sources.find_bytes(element, mention.file);
   const std::string name = name_of(file.path);
-  const std::string key = name + '\n' + exact_text(mention.scale.x()) + ' ' + exact_text(mention.scale.y()) + ' ' +
+  KnownMeshes::Import& import = imported(element, mention.file, file, sources);
+  const std::string key = exact_text(mention.scale.x()) + ' ' + exact_text(mention.scale.y()) + ' ' +
                           exact_text(mention.scale.z()) + '\n' + std::to_string(static_cast<int>(use)) +
                           (is_open ? " open" : "");
-  std::shared_ptr<const TriangleMesh>& known = sources.meshes()[key];
-  if (!known) {
-    TriangleMesh mesh = with_place(element, "", [&] {
-      return read_mesh_file(mention.file, bytes_of_source(*file.source), [&](const std::string& beside) {
-        return sources.companion(element, file.path.parent_path() / std::filesystem::path(beside).filename());
-      });
-    });
+  auto known = import.made.find(key);
+  if (known == import.made.end()) {
+    TriangleMesh mesh = *import.mesh;
     for (Eigen::Vector3d& vertex : mesh.vertices) {
       vertex = vertex.cwiseProduct(mention.scale);
     }
-    known = with_place(element, in_quotes(mention.file), [&] {
-      return std::make_shared<const TriangleMesh>(made_for(std::move(mesh), use, is_open, name, remarks));
+    KnownMeshes::Made made;
+    made.mesh = with_place(element, in_quotes(mention.file), [&] {
+      return std::make_shared<const TriangleMesh>(made_for(std::move(mesh), use, is_open, name, made.remarks));
     });
+    known = import.made.emplace(key, std::move(made)).first;
   }
-  return known;
+  known->second.is_used = true;
+  // Links that share a mesh share its remark.
+  for (const std::string& remark : known->second.remarks) {
+    if (std::ranges::find(remarks, remark) == remarks.end()) {
+      remarks.push_back(remark);
+    }
+  }
+  return known->second.mesh;
 }
 
 std::shared_ptr<const TriangleMesh> read_mesh_of_text(const XmlElement& element, MeshUse use, bool is_open,

@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view head = "data:application/octet-stream;base64,";
 constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr unsigned digit_bits = 6;
+constexpr std::uint8_t no_digit = 0xFF;
 constexpr std::size_t group_digits = 4;
 constexpr std::size_t group_bytes = 3;
 
@@ -30,12 +31,25 @@ constexpr const char* readable_file = "a readable file of at most 16 MiB";
 
 }  // namespace
 
+void KnownMeshes::forget_unused() {
+  const auto forget = [](auto& known) {
+    std::erase_if(known, [](const auto& entry) { return !entry.second.is_used; });
+    for (auto& [key, entry] : known) {
+      entry.is_used = false;
+    }
+  };
+  forget(imports_);
+  for (auto& [name, import] : imports_) {
+    forget(import.made);
+  }
+}
+
 std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     return std::nullopt;
   }
-  if (const auto size = std::filesystem::file_size(path, error); error || size > max_file_bytes) {
+  if (const auto size = std::filesystem::file_size(path, error); error || size > most_bytes_) {
     return std::nullopt;
   }
   std::ifstream stream(path, std::ios::binary);
@@ -59,12 +73,13 @@ std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path&
   }
   constexpr std::uintmax_t mebibyte = 1U << 20U;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  return !error && size > max_file_bytes ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
-                                         : "a file that cannot be read";
+  return !error && size > most_bytes_ ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
+                                      : "a file that cannot be read";
 }
 
 std::string data_url(std::string_view bytes) {
   std::string text(head);
+  text.reserve(head.size() + (bytes.size() / group_bytes + 1) * group_digits);
   for (std::size_t at = 0; at < bytes.size(); at += group_bytes) {
     const std::string_view group = bytes.substr(at, group_bytes);
     std::uint32_t bits = 0;
@@ -79,19 +94,33 @@ std::string data_url(std::string_view bytes) {
   return text;
 }
 
-std::string bytes_of_source(const std::string& text) {
-  if (!text.starts_with(head)) {
-    return text;
+std::string source_text(std::string bytes) {
+  return find_invalid_utf8(bytes) || bytes.find('\0') != std::string::npos ? data_url(bytes) : std::move(bytes);
+}
+
+std::optional<std::string> decode_base64(std::string_view text) {
+  static const std::array<std::uint8_t, 256> values = [] {
+    std::array<std::uint8_t, 256> table{};
+    table.fill(no_digit);
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+      table.at(static_cast<std::uint8_t>(digits[i])) = static_cast<std::uint8_t>(i);
+    }
+    return table;
+  }();
+  if (text.size() % group_digits != 0) {
+    return std::nullopt;
   }
+  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
   std::string bytes;
+  bytes.reserve(text.size() / group_digits * group_bytes);
   std::uint32_t bits = 0;
   unsigned count = 0;
-  for (const char character : std::string_view(text).substr(head.size())) {
-    const std::size_t digit = digits.find(character);
-    if (digit == std::string_view::npos) {
-      break;  // "=" at the end
+  for (const char character : text.substr(0, text.size() - padding)) {
+    const std::uint8_t digit = values.at(static_cast<std::uint8_t>(character));
+    if (digit == no_digit) {
+      return std::nullopt;
     }
-    bits = bits << digit_bits | static_cast<std::uint32_t>(digit);
+    bits = bits << digit_bits | digit;
     count += digit_bits;
     if (count >= 8) {
       count -= 8;
@@ -99,6 +128,10 @@ std::string bytes_of_source(const std::string& text) {
     }
   }
   return bytes;
+}
+
+std::string bytes_of_source(const std::string& text) {
+  return text.starts_with(head) ? decode_base64(std::string_view(text).substr(head.size())).value_or("") : text;
 }
 
 std::size_t size_of_source(std::string_view text) {
@@ -119,9 +152,8 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path, Content
     return nullptr;
   }
   recorded_.emplace(name, record_->size());
-  // Recordings and documents keep sources as text.
-  if (contents == Contents::any && (find_invalid_utf8(*text) || text->find('\0') != std::string::npos)) {
-    text = data_url(*text);
+  if (contents == Contents::any) {
+    text = source_text(std::move(*text));
   }
   record_->push_back({name, std::move(*text)});
   return &record_->back().text;

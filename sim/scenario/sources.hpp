@@ -22,6 +22,38 @@
 
 namespace proleg::sim {
 
+/// Meshes of earlier reads of a scenario, for one that is read again and again while a person changes it: an import
+/// takes up to a second.
+class KnownMeshes {
+ public:
+  /// A file that an import has asked for, beside the mesh.
+  struct Companion {
+    std::filesystem::path path;
+    std::optional<std::string> text;  ///< nothing: it was not there
+  };
+  /// What was made of a file for a use and a scale.
+  struct Made {
+    std::shared_ptr<const TriangleMesh> mesh;
+    std::vector<std::string> remarks;
+    bool is_used = true;  ///< since forget_unused()
+  };
+  struct Import {
+    std::string source;  ///< text of the file
+    std::vector<Companion> companions;
+    std::shared_ptr<const TriangleMesh> mesh;  ///< in the unit of the file
+    std::map<std::string, Made> made;          ///< by use and scale
+    bool is_used = true;
+  };
+
+  /// By the name of the file.
+  [[nodiscard]] std::map<std::string, Import>& imports() { return imports_; }
+  /// Forgets what was not used since the last call.
+  void forget_unused();
+
+ private:
+  std::map<std::string, Import> imports_;
+};
+
 /// Where readers get their files from.
 class FileSource {
  public:
@@ -30,15 +62,22 @@ class FileSource {
   [[nodiscard]] virtual std::optional<std::string> read(const std::filesystem::path& path) = 0;
   /// What is at a path that cannot be read, for "found ...": "a folder". Nothing if nothing is there.
   [[nodiscard]] virtual std::optional<std::string> found_instead(const std::filesystem::path& /*path*/) { return {}; }
+  /// Where the reader keeps meshes for the next read; null: nowhere.
+  [[nodiscard]] virtual KnownMeshes* known_meshes() { return nullptr; }
 };
 
 inline constexpr std::size_t max_file_bytes = std::size_t{16} << 20U;
 
-/// Files on disk, at most max_file_bytes each. Reads regular files only: a device or a pipe might never end.
+/// Files on disk, at most `most_bytes` each. Reads regular files only: a device or a pipe might never end.
 class DiskFiles final : public FileSource {
  public:
+  explicit DiskFiles(std::size_t most_bytes = max_file_bytes) : most_bytes_(most_bytes) {}
+
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
   [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
+
+ private:
+  std::size_t most_bytes_;
 };
 
 /// Files as they were read before: the sources of a scenario or of a recording.
@@ -60,6 +99,12 @@ class SourceTexts final : public FileSource {
 /// (RFC 2397).
 [[nodiscard]] std::string data_url(std::string_view bytes);
 
+/// A file of any bytes as recordings and documents keep it: its text; for what is no text, that of data_url().
+[[nodiscard]] std::string source_text(std::string bytes);
+
+/// The bytes of a text in base64 (RFC 4648) with "=" at its end; nothing for another text.
+[[nodiscard]] std::optional<std::string> decode_base64(std::string_view text);
+
 /// The bytes of a source: those of a text that data_url() made, otherwise the text itself.
 [[nodiscard]] std::string bytes_of_source(const std::string& text);
 /// Number of the bytes that bytes_of_source() would give.
@@ -70,7 +115,12 @@ class SourceSet {
  public:
   /// Adds every file to `record` once, in the order of reading.
   SourceSet(FileSource& files, std::filesystem::path top, std::vector<SourceFile>& record)
-      : files_(&files), top_(std::move(top)), record_(&record) {}
+      : files_(&files),
+        top_(std::move(top)),
+        record_(&record),
+        meshes_(files.known_meshes() != nullptr ? files.known_meshes() : &own_meshes_) {}
+  SourceSet(const SourceSet&) = delete;
+  SourceSet& operator=(const SourceSet&) = delete;
 
   [[nodiscard]] std::unique_ptr<XmlDocument> open_top();
 
@@ -93,7 +143,7 @@ class SourceSet {
   [[nodiscard]] std::optional<std::string> companion(const XmlElement& mention, const std::filesystem::path& path);
 
   /// Meshes that were read, by file, scale and use: links that name the same file share one.
-  [[nodiscard]] std::map<std::string, std::shared_ptr<const TriangleMesh>>& meshes() { return meshes_; }
+  [[nodiscard]] KnownMeshes& meshes() { return *meshes_; }
 
   /// Meshes in one colour, by the mesh and its red, green and blue: links share them, too.
   using PaintedMeshes = std::map<std::pair<std::shared_ptr<const TriangleMesh>, std::array<float, 3>>,
@@ -122,7 +172,8 @@ class SourceSet {
   std::vector<SourceFile>* record_;
   std::map<std::string, std::size_t> recorded_;  ///< name of a file: its position in the record
   std::set<std::string> counted_;                ///< names of files that count once
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
+  KnownMeshes own_meshes_;
+  KnownMeshes* meshes_;
   PaintedMeshes painted_meshes_;
   std::size_t includes_ = 0;
   std::size_t parsed_bytes_ = 0;

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Prints how fast a draft answers while an object is dragged, a slider is moved, or a joint comes and goes: from the
 operation to the answer, to the new robot and world (the document `draft`), and to the path of the next half minute (the
-document `foresight`); in milliseconds.
+document `foresight`): its first seconds, and the whole; in milliseconds. And how many paths come in a second of a drag
+with 60 changes a second.
 
 usage: tests/bench/draft_latency.py BUILD_FOLDER [STEPS], e.g. tests/bench/draft_latency.py build/host
 """
@@ -36,7 +37,7 @@ class Draft:
         return self.viewer.start(name, self.epoch, layout=layout, **arguments)
 
     def measure(self, name, arguments):
-        """Milliseconds from an operation to its answer, to the new draft and to the new path."""
+        """Milliseconds from an operation to its answer, to the new draft, to the start of the new path and to the whole."""
         revision = self.revision("draft") + 1
         begin = time.monotonic()
         number = self.start(name, arguments)
@@ -47,13 +48,34 @@ class Draft:
             if number in self.viewer.results:
                 assert self.viewer.results[number]["ok"], self.viewer.results[number]
                 came.setdefault("answer", now)
-            for document in ("draft", "foresight"):
-                if self.revision(document) >= revision:
-                    came.setdefault(document, now)
-            return len(came) == 3
+            if self.revision("draft") >= revision:
+                came.setdefault("draft", now)
+            if self.revision("foresight") >= revision:
+                came.setdefault("start", now)
+                if self.viewer.documents["foresight"]["value"]["is_complete"]:
+                    came.setdefault("whole", now)
+            return len(came) == 4
 
         self.viewer.until(all_came)
-        return came["answer"], came["draft"], came["foresight"]
+        return [came[what] for what in ("answer", "draft", "start", "whole")]
+
+    def paths_while_dragging(self, of_step, seconds):
+        """How many paths came, and how many of them were whole, in a second."""
+        changes_a_second = 60
+        came = set()
+        begin = time.monotonic()
+
+        def note_path():
+            path = self.viewer.documents["foresight"]["value"]
+            came.add((path["revision"], path["is_complete"]))
+            return time.monotonic() - begin >= next_change
+
+        for step in range(seconds * changes_a_second):
+            next_change = (step + 1) / changes_a_second
+            name, arguments = of_step(step)
+            self.viewer.start(name, self.epoch, layout=self.viewer.documents['draft']['value']['layout'], **arguments)
+            self.viewer.until(note_path)
+        return len(came) / seconds, sum(is_whole for _, is_whole in came) / seconds
 
 
 def drag_of_box(step):
@@ -85,14 +107,16 @@ def main():
                     draft = Draft(viewer)
                     draft.measure("world.add", {"item": "box", "values": {"height": 0.02}, "position": [0.9, 0.7, 0], "turn": 0})
                     times = {what: [draft.measure(*of_step(i)) for i in range(steps)] for what, of_step in SERIES.items()}
+                    paths, whole = draft.paths_while_dragging(drag_of_box, 5)
             finally:
                 program.terminate()
     print("five joints, a floor and a box, beside a simulation in real time; ms")
     for what, rows in times.items():
         print(f"{steps} steps: {what}")
-        for i, name in enumerate(("answer", "draft", "foresight")):
+        for i, name in enumerate(("answer", "draft", "first 10 s", "whole path")):
             values = sorted(row[i] for row in rows)
             print(f"  {name:<10} median {statistics.median(values):7.1f}   99 % {values[int(0.99 * len(values))]:7.1f}   most {values[-1]:7.1f}")
+    print(f"a drag of a box, 60 changes a second: {paths:.0f} paths a second, {whole:.0f} of them whole")
 
 
 if __name__ == "__main__":

@@ -218,7 +218,7 @@ class Viewer:
         except Closed as closed:
             return closed
 
-    def start(self, name, epoch=0, **arguments):
+    def start(self, name, epoch=0, /, **arguments):
         self.last_id += 1
         self.send({"type": "operation", "id": self.last_id, "epoch": epoch, "name": name, "arguments": arguments})
         return self.last_id
@@ -227,7 +227,7 @@ class Viewer:
         self.until(lambda: number in self.results)
         return self.results[number]
 
-    def do(self, name, epoch=0, **arguments):
+    def do(self, name, epoch=0, /, **arguments):
         return self.result(self.start(name, epoch, **arguments))
 
     def control(self):

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <set>
 
@@ -303,7 +304,7 @@ TEST(ModuleChange, AllLinksOfAKindAreTheRobotOfThatKind) {
   for (const RobotKind& kind : robot_kinds()) {
     SCOPED_TRACE(std::string(kind.name));
     NewDraft draft("pypy");
-    draft.draft().change("test", {}, [&](DraftChange& edit) { set_kind_of_links(edit, kind, std::nullopt); });
+    draft.draft().change("test", {}, [&](DraftChange& edit) { set_kind_of_links(edit, module_kind(kind), {}); });
     MemoryFiles expected = new_files(kind, "pypy");
     expect_same_robot(draft.draft().scenario().robot, read_new(expected).robot);
     ASSERT_TRUE(draft.draft().undo());
@@ -313,18 +314,18 @@ TEST(ModuleChange, AllLinksOfAKindAreTheRobotOfThatKind) {
 
 TEST(ModuleChange, OneLinkMovesThoseInFrontOfIt) {
   NewDraft draft("pppp");
-  const RobotKind& cubes = *find_robot_kind("cube-chain");
-  draft.draft().change("test", {}, [&](DraftChange& edit) { set_kind_of_links(edit, cubes, 2); });
+  const ModuleKind cubes = module_kind(*find_robot_kind("cube-chain"));
+  const auto change = [&](std::size_t link) {
+    draft.draft().change("test", {}, [&](DraftChange& edit) { set_kind_of_links(edit, cubes, std::array{link}); });
+  };
+  change(2);
   const RobotModel& robot = draft.draft().scenario().robot;  // from the head: links 4, 3, 2, 1, 0
   EXPECT_NEAR(robot.links[2].pose.position.y(), 0.072, 1e-9);
   EXPECT_NEAR(robot.links[1].pose.position.y(), 0.072 + 0.060, 1e-9);
   EXPECT_NEAR(robot.links[0].pose.position.y(), 2 * 0.072 + 0.060, 1e-9);
-  draft.draft().change("test", {}, [&](DraftChange& edit) { set_kind_of_links(edit, cubes, 0); });
+  change(0);
   EXPECT_EQ(draft.draft().scenario().robot.links[4].name, "Tail");
-  EXPECT_NE(message_of<InputError>([&] {
-              draft.draft().change("test", {}, [&](DraftChange& edit) { set_kind_of_links(edit, cubes, 9); });
-            }).find("below 5"),
-            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { change(9); }).find("below 5"), std::string::npos);
 }
 
 TEST(CountedNames, CountInEitherDirection) {

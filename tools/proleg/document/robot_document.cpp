@@ -1,5 +1,6 @@
 #include "tools/proleg/document/robot_document.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -30,46 +31,55 @@ class Meshes {
   /// The shape of a mesh. As for other shapes, its origin is the middle of the box around the mesh, and its size half
   /// of that box. pose: pose of the mesh.
   json shape(const std::shared_ptr<const sim::TriangleMesh>& mesh, const sim::Pose& pose) {
-    const auto [known, is_new] = numbers_.try_emplace(mesh.get(), documents_.size());
+    const std::size_t number = add(mesh);
     const sim::Bounds bounds = sim::bounds_of(*mesh, {});
     const Eigen::Vector3d middle = (bounds.lowest + bounds.highest) / 2.0;
-    if (is_new) {
-      documents_.push_back(mesh_json(*mesh, middle));
-    }
     return {{"kind", "mesh"},
             {"pose", pose_json(pose * sim::Pose{middle, Eigen::Quaterniond::Identity()})},
             {"size", vector_json((bounds.highest - bounds.lowest) / 2.0)},
-            {"mesh", known->second}};
+            {"mesh", number}};
   }
 
-  json take() { return std::move(documents_); }
+  /// Returns its number.
+  std::size_t add(const std::shared_ptr<const sim::TriangleMesh>& mesh) {
+    const auto [known, is_new] = numbers_.try_emplace(mesh.get(), meshes_.size());
+    if (is_new) {
+      meshes_.push_back(mesh);
+    }
+    return known->second;
+  }
+
+  [[nodiscard]] const RobotMeshes& all() const { return meshes_; }
 
  private:
-  static json mesh_json(const sim::TriangleMesh& mesh, const Eigen::Vector3d& middle) {
-    json vertices = json::array();
-    for (const Eigen::Vector3d& vertex : mesh.vertices) {
-      for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
-        vertices.push_back(to_micrometres(coordinate));
-      }
-    }
-    json triangles = json::array();
-    for (const auto& triangle : mesh.triangles) {
-      for (const std::uint32_t corner : triangle) {
-        triangles.push_back(corner);
-      }
-    }
-    json colours = json::array();
-    for (const Eigen::Vector3f& colour : mesh.colours) {
-      for (const float part : colour) {
-        colours.push_back(std::lround(part * 255.0F));
-      }
-    }
-    return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
-  }
-
-  json documents_ = json::array();
+  RobotMeshes meshes_;
   std::map<const sim::TriangleMesh*, std::size_t> numbers_;
 };
+
+/// Vertices are about the middle of the box around the mesh.
+json mesh_json(const sim::TriangleMesh& mesh) {
+  const sim::Bounds bounds = sim::bounds_of(mesh, {});
+  const Eigen::Vector3d middle = (bounds.lowest + bounds.highest) / 2.0;
+  json vertices = json::array();
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
+      vertices.push_back(to_micrometres(coordinate));
+    }
+  }
+  json triangles = json::array();
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      triangles.push_back(corner);
+    }
+  }
+  json colours = json::array();
+  for (const Eigen::Vector3f& colour : mesh.colours) {
+    for (const float part : colour) {
+      colours.push_back(std::lround(part * 255.0F));
+    }
+  }
+  return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
+}
 
 json shapes_json(std::span<const sim::Geometry> geometries, std::span<const sim::Look> looks, Meshes& meshes) {
   json shapes = json::array();
@@ -254,7 +264,42 @@ json pose_json(const sim::Pose& pose) {
   return {pose.position.x(), pose.position.y(), pose.position.z(), turn.w(), turn.x(), turn.y(), turn.z()};
 }
 
-json robot_document(const sim::Scenario& scenario, std::string_view kind) {
+RobotMeshes robot_meshes(const sim::Scenario& scenario) {
+  Meshes meshes;
+  const auto add = [&meshes](const auto& bodies) {
+    for (const auto& body : bodies) {
+      for (const sim::Geometry& geometry : body.geometries) {
+        if (geometry.is_shown && geometry.mesh) {
+          meshes.add(geometry.mesh);
+        }
+      }
+      for (const sim::Look& look : body.looks) {
+        meshes.add(look.mesh);
+      }
+    }
+  };
+  add(scenario.robot.links);
+  add(scenario.environment.objects);
+  add(scenario.environment.moving_objects);
+  return meshes.all();
+}
+
+bool are_same(const RobotMeshes& meshes, const RobotMeshes& others) {
+  return std::ranges::equal(meshes, others, [](const auto& one, const auto& other) {
+    return one == other ||
+           (one->triangles == other->triangles && one->vertices == other->vertices && one->colours == other->colours);
+  });
+}
+
+json meshes_json(const RobotMeshes& meshes) {
+  json documents = json::array();
+  for (const auto& mesh : meshes) {
+    documents.push_back(mesh_json(*mesh));
+  }
+  return documents;
+}
+
+json robot_document(const sim::Scenario& scenario, std::string_view kind, MeshesInDocument with_meshes) {
   Meshes meshes;
   json links = bodies_json(scenario.robot.links, meshes);
   json terrain = bodies_json(scenario.environment.objects, meshes);
@@ -274,7 +319,7 @@ json robot_document(const sim::Scenario& scenario, std::string_view kind) {
           {"terrain", std::move(terrain)},
           {"objects", std::move(objects)},
           {"rulers", rulers_json(scenario.environment.rulers)},
-          {"meshes", meshes.take()},
+          {"meshes", with_meshes == MeshesInDocument::yes ? meshes_json(meshes.all()) : json::array()},
           {"slots", std::move(slots)}};
 }
 

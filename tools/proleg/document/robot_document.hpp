@@ -4,6 +4,7 @@
 // parameters.
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>
 #include <vector>
@@ -71,8 +72,17 @@ class ParameterTable {
 /// A pose as [x, y, z, qw, qx, qy, qz].
 [[nodiscard]] nlohmann::json pose_json(const sim::Pose& pose);
 
-/// The document `robot`. kind: "simulation", "bus" or "recording".
-[[nodiscard]] nlohmann::json robot_document(const sim::Scenario& scenario, std::string_view kind);
+/// The meshes of the document `robot`, in its order.
+using RobotMeshes = std::vector<std::shared_ptr<const sim::TriangleMesh>>;
+[[nodiscard]] RobotMeshes robot_meshes(const sim::Scenario& scenario);
+/// Whether the documents of both are the same.
+[[nodiscard]] bool are_same(const RobotMeshes& meshes, const RobotMeshes& others);
+[[nodiscard]] nlohmann::json meshes_json(const RobotMeshes& meshes);
+
+/// The document `robot`. kind: "simulation", "bus" or "recording". Without its meshes, its `meshes` are empty.
+enum class MeshesInDocument : std::uint8_t { yes, no };
+[[nodiscard]] nlohmann::json robot_document(const sim::Scenario& scenario, std::string_view kind,
+                                            MeshesInDocument meshes = MeshesInDocument::yes);
 
 /// A parameter as its declaration has it: name, unit, range, default, help. Raw values.
 [[nodiscard]] nlohmann::json parameter_declaration_json(const Parameter& parameter);

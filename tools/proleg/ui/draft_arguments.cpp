@@ -1,5 +1,6 @@
 #include "tools/proleg/ui/draft_arguments.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -61,6 +62,19 @@ bool is_set(const json& arguments, const char* name) {
 std::vector<std::size_t> positions(const json& arguments, const char* name) {
   const auto all = argument<std::vector<std::uint32_t>>(arguments, name, "positions in the list");
   return all ? std::vector<std::size_t>(all->begin(), all->end()) : std::vector<std::size_t>{};
+}
+
+std::vector<std::size_t> links_from_tail(std::vector<std::size_t> links, const sim::Draft& draft) {
+  const std::size_t count = draft.scenario().robot.links.size();
+  for (std::size_t& link : links) {
+    if (link >= count) {
+      throw InputError("link", 0, std::to_string(link), "a number below " + std::to_string(count));
+    }
+    link = count - 1 - link;
+  }
+  std::ranges::sort(links);
+  links.erase(std::unique(links.begin(), links.end()), links.end());
+  return links;
 }
 
 JointMask joints(const json& arguments) {

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "shared/gait/joint_mask.hpp"
+#include "sim/authoring/draft.hpp"
 #include "sim/robot/pose.hpp"
 
 namespace proleg::tools {
@@ -27,6 +28,8 @@ namespace proleg::tools {
 [[nodiscard]] std::vector<std::size_t> positions(const nlohmann::json& arguments, const char* name);
 /// The joints in the argument `joints`: numbers in kernel order.
 [[nodiscard]] JointMask joints(const nlohmann::json& arguments);
+/// Links in kernel order, counted from the tail, ascending and each once.
+[[nodiscard]] std::vector<std::size_t> links_from_tail(std::vector<std::size_t> links, const sim::Draft& draft);
 /// False if the argument is missing.
 [[nodiscard]] bool is_set(const nlohmann::json& arguments, const char* name);
 /// Empty if the argument is missing.

@@ -101,12 +101,17 @@ json robot_json(const sim::RobotContents& robot, const sim::Scenario& scenario) 
   for (const sim::SensorContents& sensor : robot.sensors) {
     sensors.push_back(sensor_json(sensor));
   }
+  json kinds = json::array();
+  for (const sim::OwnKindContents& kind : robot.kinds) {
+    kinds.push_back({{"name", kind.name}, {"length", kind.length}});
+  }
   const sim::ServoModel& servo = scenario.robot.servo;
   return {{"file", robot.file},
           {"name", scenario.robot.name},
           {"joints", std::move(joints)},
           {"links", std::move(links)},
           {"sensors", std::move(sensors)},
+          {"kinds", std::move(kinds)},
           {"servo",
            {{"gain", servo.gain},
             {"period", servo.period_us / 1e3},

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -23,7 +24,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr int journal_format = 1;
-constexpr std::size_t most_bytes = std::size_t{16} << 20U;  // what DiskFiles reads
+constexpr std::size_t most_bytes = std::size_t{96} << 20U;  // meshes of 64 MiB in base64, and their files
 
 std::int64_t now_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -43,21 +44,29 @@ bool is_another_program(const std::string& identity) {
   return process && *process != getpid() && process_identity(*process) == identity;
 }
 
+/// Whether a file is in a folder that has a file of the draft, or below one.
+bool is_beside(const fs::path& name, const sim::Draft& draft) {
+  const fs::path path = name.lexically_normal();
+  return std::ranges::any_of(draft.scenario().sources, [&path](const sim::SourceFile& source) {
+    const fs::path folder = fs::path(source.path).lexically_normal().parent_path();
+    const auto [differs, rest] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+    return differs == folder.end() && rest != path.end() && *rest != ".." && path.is_absolute() == folder.is_absolute();
+  });
+}
+
 /// Throws nlohmann::json::exception for another text.
 KeptChanges changes_of(const json& document, const sim::Draft& draft) {
   KeptChanges changes;
   changes.time_ms = document.at("time_ms").get<std::int64_t>();
-  std::map<std::string, std::string> saved;
-  for (const sim::SourceFile& source : draft.scenario().sources) {
-    saved.emplace(source.path, source.text);
-  }
+  sim::DiskFiles disk;
   for (const auto& [name, file] : document.at("files").items()) {
-    const auto found = saved.find(name);
+    if (!is_beside(name, draft)) {
+      throw InputError(name, 0, "a file that is not beside the scenario", "a file to which its changes belong");
+    }
+    // The draft may not name it now: a change that was undone has added it.
+    const std::optional<std::string> saved = draft.has(name) ? draft.text(name) : disk.read(name);
     const json& base = file.at("base");
-    const bool is_as_it_was = base.is_null()
-                                  ? found == saved.end()
-                                  : found != saved.end() && base.get<std::string>() == sha256_hex(found->second);
-    if (!is_as_it_was) {
+    if (base.is_null() ? saved.has_value() : !saved || base.get<std::string>() != sha256_hex(*saved)) {
       throw InputError(name, 0, "a file that has changed since", "the file to which the unsaved changes belong");
     }
     changes.texts.emplace(name, file.at("text").get<std::string>());
@@ -79,7 +88,7 @@ std::string process_identity(pid_t process) {
 }
 
 std::optional<KeptChanges> DraftJournal::read(const sim::Draft& draft) {
-  sim::DiskFiles disk;
+  sim::DiskFiles disk(2 * most_bytes);  // with the names, and texts as JSON has them
   const std::optional<std::string> text = disk.read(path_);
   if (!text) {
     return std::nullopt;

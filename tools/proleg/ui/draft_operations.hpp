@@ -36,6 +36,13 @@ struct DraftOperation {
 [[nodiscard]] DraftOperation run_operation(const std::string& name, const nlohmann::json& arguments,
                                            const sim::Draft& draft);
 
+class SentMeshes;
+/// Those that use a mesh that was sent: "robot.own_module", "world.add_mesh".
+[[nodiscard]] DraftOperation mesh_operation(const std::string& name, const nlohmann::json& arguments,
+                                            const sim::Draft& draft, const SentMeshes& meshes);
+/// Whether mesh_operation() reads it.
+[[nodiscard]] bool names_sent_mesh(std::string_view operation);
+
 using DraftOperationReader = DraftOperation (*)(const std::string& name, const nlohmann::json& arguments,
                                                 const sim::Draft& draft);
 /// Which of them reads an operation; null: none.

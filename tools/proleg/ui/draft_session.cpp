@@ -1,16 +1,19 @@
 #include "tools/proleg/ui/draft_session.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/part_change.hpp"
+#include "sim/mesh/mesh_file.hpp"
 #include "sim/scenario/actuation_reader.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
@@ -28,6 +31,7 @@ namespace proleg::tools {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 json lines_json(const std::vector<std::string>& texts) {
   json lines = json::array();
@@ -36,6 +40,45 @@ json lines_json(const std::vector<std::string>& texts) {
   }
   return lines;
 }
+
+/// Whether a file is kept in another form than its bytes.
+bool is_binary(const sim::Draft::ChangedFile& file) {
+  return sim::size_of_source(file.text) != file.text.size() ||
+         (file.saved && sim::size_of_source(*file.saved) != file.saved->size());
+}
+
+/// Folders for new files, such as meshes. They are removed again if nothing is written.
+class NewFolders {
+ public:
+  NewFolders() = default;
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  ~NewFolders() {
+    std::error_code ignored;
+    for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
+      fs::remove(*folder, ignored);
+    }
+  }
+
+  void create_for(const fs::path& file) {
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (fs::path folder = file.parent_path(); !folder.empty() && !fs::exists(folder, error);
+         folder = folder.parent_path()) {
+      missing.push_back(folder);
+    }
+    for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) {
+      if (!fs::create_directory(*folder, error)) {
+        throw FileError(*folder, "cannot be created: " + error.message());
+      }
+      created_.push_back(*folder);
+    }
+  }
+  void keep() { created_.clear(); }
+
+ private:
+  std::vector<fs::path> created_;
+};
 
 json unsaved_json(const KeptChanges& kept) {
   json files = json::array();
@@ -187,14 +230,14 @@ void DraftSession::publish() {
     journal_->note_change(Clock::now());
   }
   if (is_changed) {
-    json robot = robot_document(scenario, "draft");
     // Meshes are large: they are sent only if they differ.
-    json meshes = std::exchange(robot["meshes"], json::array());
-    if (std::string text = meshes.dump(); text != published_meshes_) {
-      published_meshes_ = std::move(text);
-      output_.publish("draft_meshes", meshes);
+    RobotMeshes meshes = robot_meshes(scenario);
+    if (!has_published_meshes_ || !are_same(meshes, published_meshes_)) {
+      output_.publish("draft_meshes", meshes_json(meshes));
+      published_meshes_ = std::move(meshes);
+      has_published_meshes_ = true;
     }
-    output_.publish("draft_robot", robot);
+    output_.publish("draft_robot", robot_document(scenario, "draft", MeshesInDocument::no));
   }
   const auto shared = std::make_shared<const sim::Scenario>(scenario);
   if (is_changed) {
@@ -247,20 +290,27 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
       {"draft.discard", &DraftSession::discard}, {"draft.refresh", &DraftSession::refresh},
       {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
       {"draft.save_as", &DraftSession::save_as}};
-  const DraftOperationReader reader = reader_of(operation.name);
-  json value = reader != nullptr ? change_draft(operation, reader)
-                                 : (this->*handler_of(handlers, operation.name))(operation.arguments);
+  const std::string& name = operation.name;
+  const json& arguments = operation.arguments;
+  const DraftOperationReader reader = reader_of(name);
+  json value;
+  if (options_.meshes != nullptr && names_sent_mesh(name)) {
+    value = change_draft(arguments, [&] { return mesh_operation(name, arguments, draft(), *options_.meshes); });
+  } else if (reader != nullptr) {
+    value = change_draft(arguments, [&] { return reader(name, arguments, draft()); });
+  } else {
+    value = (this->*handler_of(handlers, name))(arguments);
+  }
   // The answer comes behind what it is about, and the next operation that waits is compared with this layout.
   publish();
   return value;
 }
 
-json DraftSession::change_draft(const host::OperationRequest& operation, DraftOperationReader reader) {
-  const json& arguments = operation.arguments;
+json DraftSession::change_draft(const json& arguments, const std::function<DraftOperation()>& read) {
   if (draft().refresh()) {
     publish();
   }
-  const DraftOperation change = reader(operation.name, arguments, draft());
+  const DraftOperation change = read();
   const auto layout = argument<std::uint64_t>(arguments, "layout", "the layout of the draft");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
   // Positions in lists that another change has altered would name other parts.
@@ -364,6 +414,11 @@ json DraftSession::restore(const json& /*arguments*/) {
   if (!kept_) {
     throw std::runtime_error("there are no unsaved changes of an earlier program");
   }
+  for (const auto& [name, text] : kept_->texts) {
+    if (!draft().has(name)) {
+      draft().adopt(name);
+    }
+  }
   const auto restore_texts = [this](sim::DraftChange& change) {
     for (const auto& [name, text] : kept_->texts) {
       if (draft_->has(name)) {
@@ -401,11 +456,13 @@ json DraftSession::diff(const json& /*arguments*/) {
   constexpr std::size_t most_text = 256 * 1024;  // a person reads no more, and an answer has a limit
   json files = json::array();
   for (const sim::Draft::ChangedFile& file : draft().changed_files()) {
-    const bool is_long = file.text.size() + file.saved.value_or("").size() > most_text;
+    const bool is_shown = !is_binary(file) && !sim::is_mesh_file_name(file.name) &&
+                          file.text.size() + file.saved.value_or("").size() <= most_text;
     files.push_back({{"name", one_line(file.name)},
                      {"is_shipped", is_shipped(file.name)},
-                     {"old", is_long || !file.saved ? json() : json(*file.saved)},
-                     {"new", is_long ? json() : json(file.text)}});
+                     {"bytes", sim::size_of_source(file.text)},
+                     {"old", is_shown && file.saved ? json(*file.saved) : json()},
+                     {"new", is_shown ? json(file.text) : json()}});
   }
   return {{"files", std::move(files)}};
 }
@@ -415,7 +472,10 @@ void DraftSession::require_unchanged_on_disk(const sim::Draft::ChangedFile& file
     throw InputError(file.name, 0, "a file that ships with Proleg, which stays as it is",
                      "a copy of your own: Save as");
   }
-  const std::optional<std::string> on_disk = disk_.read(file.name);
+  std::optional<std::string> on_disk = disk_.read(file.name);
+  if (on_disk && is_binary(file)) {
+    on_disk = sim::source_text(std::move(*on_disk));
+  }
   // A Save that failed in the middle may have written it.
   if (on_disk != file.saved && on_disk != file.text) {
     throw InputError(file.name, 0,
@@ -434,8 +494,13 @@ json DraftSession::save(const json& /*arguments*/) {
     require_unchanged_on_disk(file);
     outputs.push_back({"draft.save", file.name, "file", [](const std::filesystem::path&) { return true; }, true});
   }
+  NewFolders folders;
+  for (const sim::Draft::ChangedFile& file : changed) {
+    folders.create_for(file.name);
+  }
   // None is written if one of them may not be written; a disk can be full in the middle.
   check_outputs(outputs);
+  folders.keep();
   for (const sim::Draft::ChangedFile& file : changed) {
     write_file(file.name, sim::bytes_of_source(file.text));
   }

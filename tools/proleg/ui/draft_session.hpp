@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 #include "tools/proleg/ui/draft_journal.hpp"
 #include "tools/proleg/ui/draft_operations.hpp"
 #include "tools/proleg/ui/foresight.hpp"
+#include "tools/proleg/ui/mesh_session.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
@@ -38,6 +40,8 @@ struct DraftSessionOptions {
   std::function<bool(const std::string& file)> may_open = {};
   /// A scenario was opened, or saved under this name. May be empty.
   std::function<void(const std::string& file)> note_opened = {};
+  /// Meshes that viewers have sent; null: none. Must outlive the session.
+  const SentMeshes* meshes = nullptr;
   /// The scenario that was to be shown at the start.
   std::optional<MissingAlgorithms> missing = {};
 };
@@ -69,7 +73,7 @@ class DraftSession final : private SessionThread {
   void publish();
   void note_layout(const sim::WorldContents& world, const sim::RobotContents& robot);
   [[nodiscard]] sim::Draft& draft();
-  nlohmann::json change_draft(const host::OperationRequest& operation, DraftOperationReader reader);
+  nlohmann::json change_draft(const nlohmann::json& arguments, const std::function<DraftOperation()>& read);
   void note_robot(const std::string& before);
   void note_opened(const std::string& file) const;
   void require_kept_changes(const nlohmann::json& arguments) const;
@@ -104,7 +108,8 @@ class DraftSession final : private SessionThread {
   std::optional<DraftJournal> journal_;
   std::optional<KeptChanges> kept_;         ///< of an earlier program, until somebody decides about them
   std::optional<std::uint64_t> published_;  ///< revision of the draft
-  std::string published_meshes_;
+  std::vector<std::shared_ptr<const sim::TriangleMesh>> published_meshes_;
+  bool has_published_meshes_ = false;
   std::vector<std::size_t> layout_;  ///< of the lists of the draft: what their positions depend on
   bool is_layout_new_ = false;       ///< a change has moved positions
   std::uint64_t layout_since_ = 0;   ///< revision since which it is the same

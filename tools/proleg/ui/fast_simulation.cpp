@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 
@@ -23,6 +24,15 @@ std::unique_ptr<sim::Simulation> make_fast_simulation(sim::Scenario& scenario) {
   }
   simulation->leave_out_hashes();
   return simulation;
+}
+
+std::optional<std::string> refusal_of_engine(const sim::Scenario& scenario) {
+  try {
+    const sim::Simulation simulation(scenario);
+    return std::nullopt;
+  } catch (const InputError& error) {
+    return one_line(error.what());
+  }
 }
 
 }  // namespace proleg::tools

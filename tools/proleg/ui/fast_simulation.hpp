@@ -3,6 +3,8 @@
 // Simulations beside everything else: what a page shows before anybody asks for it.
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "sim/loop/simulation.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -15,5 +17,8 @@ void lower_thread_priority();
 /// A simulation without hashes with the fastest engine that has such a scenario: the reduced one, else ODE. Sets the
 /// engine of the scenario, which must outlive the simulation. Throws as Simulation.
 [[nodiscard]] std::unique_ptr<sim::Simulation> make_fast_simulation(sim::Scenario& scenario);
+
+/// Why the engine that a scenario names does not have such a scenario; nothing if it has.
+[[nodiscard]] std::optional<std::string> refusal_of_engine(const sim::Scenario& scenario);
 
 }  // namespace proleg::tools

@@ -1,5 +1,7 @@
 #include "tools/proleg/ui/foresight.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -19,6 +21,12 @@ using nlohmann::json;
 
 constexpr double seconds_ahead = 30.0;
 constexpr double seconds_between_points = 0.1;
+constexpr double seconds_of_first_part = 10.0;
+constexpr auto time_for_old = std::chrono::milliseconds(80);  // so that a slow engine shows ten parts a second, too
+
+std::uint32_t ticks_in(double seconds, const sim::Scenario& scenario) {
+  return static_cast<std::uint32_t>(std::lround(seconds * 1e6 / scenario.kernel.tick_period_us));
+}
 
 json point_json(const sim::Pose& pose) {
   const auto rounded = [](double metres) { return std::round(metres * 1e4) / 1e4; };  // to 0.1 mm
@@ -65,31 +73,47 @@ void Foresight::run() {
 
 void Foresight::compute(const Task& task) {
   sim::Scenario scenario = *task.scenario;
-  json document{{"revision", task.revision}, {"seconds", 0.0},    {"path", json::array()},  {"distance", json()},
-                {"heading", json()},         {"failure", json()}, {"servo_problem", json()}};
+  json document{{"revision", task.revision}, {"is_complete", false},    {"seconds", 0.0},
+                {"path", json::array()},     {"distance", json()},      {"heading", json()},
+                {"failure", json()},         {"servo_problem", json()}, {"refusal", json()}};
   std::unique_ptr<sim::Simulation> simulation;
+  const auto publish = [&] {
+    document["engine"] = sim::name_of(scenario.environment.engine);
+    document["seconds"] = simulation != nullptr ? simulation->time_s() : 0.0;
+    output_.publish("foresight", document);
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const auto is_late = [&begin] { return std::chrono::steady_clock::now() - begin > time_for_old; };
   try {
     simulation = make_fast_simulation(scenario);
-    const double tick_s = scenario.kernel.tick_period_us * 1e-6;
-    const auto ticks = static_cast<std::uint32_t>(std::lround(seconds_ahead / tick_s));
-    const auto ticks_of_point = std::max(1L, std::lround(seconds_between_points / tick_s));
+    if (scenario.environment.engine != task.scenario->environment.engine &&
+        task.scenario->environment.engine == sim::PhysicsEngine::reduced) {
+      document["refusal"] = refusal_of_engine(*task.scenario).value_or("");
+    }
+    const std::uint32_t ticks = ticks_in(seconds_ahead, scenario);
+    const std::uint32_t ticks_of_point = std::max(1U, ticks_in(seconds_between_points, scenario));
+    const std::uint32_t ticks_of_first_part = ticks_in(seconds_of_first_part, scenario);
+    bool has_first_part = false;
     json& path = document["path"];
     path.push_back(point_json(simulation->plant().link_poses().front()));
-    while (simulation->tick() < ticks && !is_outdated(task)) {
+    while (simulation->tick() < ticks) {
+      if (ends_ || (is_outdated(task) && has_first_part && is_late())) {
+        return;
+      }
       simulation->advance();
-      if (simulation->tick() % static_cast<std::uint32_t>(ticks_of_point) == 0) {
-        path.push_back(point_json(simulation->plant().link_poses().front()));
+      if (simulation->tick() % ticks_of_point != 0) {
+        continue;
+      }
+      path.push_back(point_json(simulation->plant().link_poses().front()));
+      if (!has_first_part && (simulation->tick() >= ticks_of_first_part || is_late())) {
+        has_first_part = true;
+        publish();
       }
     }
   } catch (const std::exception& error) {
     document["failure"] = one_line(error.what());
   }
-  if (is_outdated(task)) {
-    return;
-  }
-  document["engine"] = sim::name_of(scenario.environment.engine);
   if (simulation != nullptr && simulation->tick() > 0) {
-    document["seconds"] = simulation->time_s();
     const sim::MeasureValues values = simulation->measures();
     const auto value = [&](sim::Measure measure) {
       return std::isfinite(values[measure]) ? json(values[measure]) : json();
@@ -98,7 +122,8 @@ void Foresight::compute(const Task& task) {
     document["heading"] = value(sim::Measure::heading);
     document["servo_problem"] = text_or_null(servo_problem(simulation->plant().meter().tracking(), scenario.robot));
   }
-  output_.publish("foresight", document);
+  document["is_complete"] = true;
+  publish();
 }
 
 }  // namespace proleg::tools

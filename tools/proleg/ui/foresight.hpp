@@ -15,8 +15,10 @@
 namespace proleg::tools {
 
 /// Simulates the newest scenario that it was given, in a thread of its own with a low priority, and publishes the path
-/// as the document `foresight` (docs/page-interface.md). A newer scenario ends the present computation. The reduced
-/// engine computes it, with the same bits as a simulation with it later; ODE, where that refuses the scenario.
+/// as the document `foresight` (docs/page-interface.md): the first seconds as soon as they are known, then the whole. A
+/// newer scenario waits until the present computation ends, or has taken a tenth of a second: so a viewer who drags
+/// something sees paths all the time. The reduced engine computes it, with the same bits as a simulation with it later;
+/// ODE, where that refuses the scenario.
 class Foresight {
  public:
   /// output: must outlive this.
@@ -36,7 +38,7 @@ class Foresight {
 
   void run();
   void compute(const Task& task);
-  [[nodiscard]] bool is_outdated(const Task& task) const { return ends_ || newest_ != task.revision; }
+  [[nodiscard]] bool is_outdated(const Task& task) const { return newest_ != task.revision; }
 
   host::SessionOutput& output_;
   std::mutex mutex_;

@@ -11,6 +11,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/chain_change.hpp"
 #include "sim/authoring/module_change.hpp"
+#include "sim/authoring/module_kind.hpp"
 #include "sim/authoring/robot_change.hpp"
 #include "sim/authoring/sensor_change.hpp"
 #include "tools/proleg/ui/draft_arguments.hpp"
@@ -157,21 +158,25 @@ DraftOperation order(const json& words, const sim::Draft& draft) {
   return chain("order of joints", [counted](ChainChange& changed) { changed.order(counted); });
 }
 
+sim::ModuleKind kind_named(const std::string& name, const sim::Draft& draft) {
+  if (const sim::RobotKind* const known = sim::find_robot_kind(name)) {
+    return module_kind(*known);
+  }
+  for (sim::ModuleKind& own : sim::own_kinds(draft.scenario())) {
+    if (own.name == name) {
+      return std::move(own);
+    }
+  }
+  throw InputError("kind", 0, in_quotes(name), "a kind of the document `parts`, or one of the draft");
+}
+
 DraftOperation kind(const json& words, const sim::Draft& draft) {
   const std::string name = text(words, "kind");
-  const sim::RobotKind* const found = sim::find_robot_kind(name);
-  if (found == nullptr) {
-    throw InputError("kind", 0, in_quotes(name), "a kind of the document `parts`");
-  }
+  auto found = std::make_shared<const sim::ModuleKind>(kind_named(name, draft));
   const auto link = argument<std::uint32_t>(words, "link", "a position in the list, or null for all links");
-  const std::size_t links = joint_count(draft) + 1;
-  if (link && *link >= links) {
-    throw InputError("link", 0, std::to_string(*link), "a number below " + std::to_string(links));
-  }
   return {"modules " + name,
-          [found, link = link ? std::optional(links - 1 - *link) : std::nullopt](DraftChange& edit) {
-            sim::set_kind_of_links(edit, *found, link);
-          },
+          [found, links = links_from_tail(link ? std::vector<std::size_t>{*link} : std::vector<std::size_t>{}, draft)](
+              DraftChange& edit) { sim::set_kind_of_links(edit, *found, links); },
           true};
 }
 

@@ -21,6 +21,8 @@ void SessionRouter::operate(const host::OperationRequest& request) {
     recordings_.operate(request);
   } else if (is_for_draft) {
     draft_.operate(request);
+  } else if (request.name.starts_with(mesh_operations)) {
+    meshes_.operate(request);
   } else if (request.name.starts_with(gallery_operations)) {
     gallery_.operate(request);
   } else if (request.name.starts_with(algorithm_operations)) {

@@ -108,17 +108,20 @@ inline constexpr std::string_view world_operations = "world.";
 inline constexpr std::string_view draft_robot_operations = "robot.";
 inline constexpr std::string_view behaviour_operations = "behaviour.";
 inline constexpr std::string_view gallery_operations = "gallery.";
+inline constexpr std::string_view mesh_operations = "mesh.";
 
-/// The sessions behind one page: a robot, its remote control, recordings, a draft, the list of what can be opened, and
-/// algorithms. The name of an operation says which of them it is for; STOP and the holder of control go to the robot,
-/// then to the remote control.
+/// The sessions behind one page: a robot, its remote control, recordings, a draft, meshes for it, the list of what can
+/// be opened, and algorithms. The name of an operation says which of them it is for; STOP and the holder of control go
+/// to the robot, then to the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.
-  SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& gallery,
-                host::RobotSession& algorithms, host::RobotSession& remote, host::RobotSession& robot)
+  SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& meshes,
+                host::RobotSession& gallery, host::RobotSession& algorithms, host::RobotSession& remote,
+                host::RobotSession& robot)
       : recordings_(recordings),
         draft_(draft),
+        meshes_(meshes),
         gallery_(gallery),
         algorithms_(algorithms),
         remote_(remote),
@@ -131,6 +134,7 @@ class SessionRouter final : public host::RobotSession {
  private:
   host::RobotSession& recordings_;
   host::RobotSession& draft_;
+  host::RobotSession& meshes_;
   host::RobotSession& gallery_;
   host::RobotSession& algorithms_;
   host::RobotSession& remote_;

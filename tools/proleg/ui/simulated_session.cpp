@@ -160,7 +160,8 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
 
 void SimulatedSession::require_possible(const std::string& operation) const {
   if (live_ == nullptr && operation != "continue" && operation != "load_draft" && operation != "ping") {
-    throw std::runtime_error("there is no simulation; continue one from a recording");
+    throw std::runtime_error(
+        "there is no simulation; simulate what the page Make has, or continue one from a recording");
   }
   if (is_repeating_ && operation != "pause" && operation != "ping") {
     throw std::runtime_error("the run of " + repeated_->name() + " is computed again; wait, or pause it");

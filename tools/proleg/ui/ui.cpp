@@ -34,7 +34,9 @@
 #include "tools/proleg/ui/algorithm_session.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
+#include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gallery.hpp"
+#include "tools/proleg/ui/mesh_session.hpp"
 #include "tools/proleg/ui/page_access.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/recent_files.hpp"
@@ -296,23 +298,27 @@ int serve(UiOptions& options) {
   boost::asio::io_context context{1};
   SessionRequests recording_requests;
   SessionRequests draft_requests;
+  SessionRequests mesh_requests;
   SessionRequests gallery_requests;
   SessionRequests algorithm_requests;
   SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
-  SessionRouter router(recording_requests, draft_requests, gallery_requests, algorithm_requests, remote, requests);
+  SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests, remote,
+                       requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RecentFiles recent(recent_list_path());
   const ProjectFiles project_files(recordings.folder, shipped_folder(), recent);
   const Gallery gallery(project_files, gallery_requests, page);
+  SentMeshes sent_meshes;
+  const MeshSession meshes(sent_meshes, mesh_requests, page);
   PresentDraft present_draft;
   const DraftSession draft(
       run ? std::optional(run->scenario) : std::nullopt,
       {recordings.folder, has_file,
        [&](const std::string& file) { return (missing && file == missing->file) || project_files.has(file); },
-       [&recent](const std::string& file) { note_as_recent(recent, file); }, missing},
+       [&recent](const std::string& file) { note_as_recent(recent, file); }, &sent_meshes, missing},
       draft_requests, present_draft, page);
   const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
   const RemoteThread remote_thread(remote, page);
@@ -323,7 +329,15 @@ int serve(UiOptions& options) {
                    requests, remote);
   } else {
     std::unique_ptr<LiveSimulation> live;
-    if (run) {
+    std::optional<std::string> refusal;
+    if (run && has_file && !options.scenario.overrides.engine) {
+      refusal = refusal_of_engine(run->scenario);
+    }
+    if (refusal) {  // Make can change what the engine refuses
+      const std::string text = "there is no simulation: " + *refusal;
+      print_warning("proleg ui", text);
+      page.notice(host::NoticeLevel::error, text);
+    } else if (run) {
       live = std::make_unique<LiveSimulation>(run->scenario, options.scenario.settings, &run->losses);
     }
     simulated.emplace(

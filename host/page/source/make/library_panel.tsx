@@ -2,6 +2,7 @@
 import { useSignal } from '@preact/signals';
 import type { LibraryItem } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
+import { WorldMeshForm } from './mesh/mesh_form.js';
 import { NumberField } from './number_field.js';
 
 function ItemForm({ app, item, done }: { app: MakeApp; item: LibraryItem; done(): void }) {
@@ -56,6 +57,7 @@ export function LibraryPanel({ app }: { app: MakeApp }) {
   const chosen = useSignal<string | null>(null);
   const library = app.page.state.library.value;
   const item = library.find(({ name }) => name === chosen.value);
+  const isMesh = app.mesh.isOpen.value && app.mesh.purpose.value === 'world';
   return (
     <section class="panel make-panel" aria-label="Library">
       <div class="panel-head">
@@ -65,14 +67,26 @@ export function LibraryPanel({ app }: { app: MakeApp }) {
             key={name}
             type="button"
             title={help}
-            aria-pressed={chosen.value === name}
-            onClick={() => (chosen.value = chosen.value === name ? null : name)}
+            aria-pressed={!isMesh && chosen.value === name}
+            onClick={() => {
+              chosen.value = !isMesh && chosen.value === name ? null : name;
+              app.mesh.close();
+            }}
           >
             {name}
           </button>
         ))}
+        <button
+          type="button"
+          title="A shape of your own, from a file"
+          aria-pressed={isMesh}
+          onClick={() => (isMesh ? app.mesh.close() : app.mesh.open('world'))}
+        >
+          Mesh …
+        </button>
       </div>
-      {item !== undefined && <ItemForm key={item.name} app={app} item={item} done={() => (chosen.value = null)} />}
+      {isMesh && <WorldMeshForm app={app} />}
+      {!isMesh && item !== undefined && <ItemForm key={item.name} app={app} item={item} done={() => (chosen.value = null)} />}
     </section>
   );
 }

@@ -1,14 +1,17 @@
 // The stores of the page Make: the draft of the scenario, the chosen object, and the changes that are on their way.
 import { computed, effect, signal } from '@preact/signals-core';
-import { arrayOf, headingOf } from '../geometry/outline.js';
+import { arrayOf, headingOf, outline, type Point } from '../geometry/outline.js';
 import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { ActionList } from '../state/actions.js';
 import { addFront } from '../view/front.js';
 import type { Stores } from '../view/robot_view.js';
-import type { DraftDocument, NewScenario, Operations, PartOperation, WorldObject } from '../wire/messages.js';
+import type { Body, DraftDocument, NewScenario, Operations, PartOperation, RobotDocument, WorldObject } from '../wire/messages.js';
 import { algorithmApp } from './algorithm/algorithm_app.js';
 import { AlgorithmOffer } from './algorithm/algorithm_offer.js';
 import { DraftView } from './draft_view.js';
+import { freeDistance } from './free_place.js';
+import { OwnMesh } from './mesh/own_mesh.js';
+import type { MeshFile } from './mesh/mesh_transfer.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -30,6 +33,11 @@ interface Drag {
 
 export const startOfRobot = -1;
 
+// What an object looks like.
+export function bodyOf(robot: RobotDocument, object: WorldObject): Body | undefined {
+  return (object.moves ? robot.objects : robot.terrain)?.[object.index];
+}
+
 export class MakeApp {
   readonly chosen = signal<number | null>(null);
   readonly drag = signal<Drag | null>(null);
@@ -44,6 +52,7 @@ export class MakeApp {
   readonly offer: AlgorithmOffer;
   readonly actions: ActionList;
   readonly view: DraftView;
+  readonly mesh = new OwnMesh(this); // of one's own, before it is part of the draft
   readonly draft = computed(() => this.page.state.draft.value);
   readonly objects = computed(() => this.draft.value?.world.objects ?? []);
   readonly chosenObject = computed(() => {
@@ -300,17 +309,38 @@ export class MakeApp {
     return this.change('world.duplicate', { object: chosen, group: object.group_size > 1, step, count });
   }
 
+  // The outlines of the shapes in the world from above.
+  private outlines(): Point[][] {
+    const robot = this.page.state.draftRobot.peek();
+    if (robot === null) return [];
+    return this.objects
+      .peek()
+      .flatMap((object) => bodyOf(robot, object)?.shapes.map((shape) => outline('top', poseFromArray(object.pose), shape)) ?? []);
+  }
+
   // Adds an item of the library in front of the robot, and chooses it. Returns the reason if it was refused.
-  async add(item: string, values: Record<string, number>): Promise<string | null> {
+  add(item: string, values: Record<string, number>): Promise<string | null> {
+    return this.addInFront((place) => this.change('world.add', { item, values, ...place }));
+  }
+
+  // What was dropped on the page: a module while the robot is shown, else an object of the world.
+  dropMesh(files: readonly MeshFile[]): void {
+    if (this.draft.peek() === null) return;
+    if (this.part.peek() !== 'robot') this.part.value = 'world';
+    void this.mesh.take(files, this.part.peek() === 'robot' ? 'module' : 'world');
+  }
+
+  // Adds an object in front of the robot, and chooses it. Returns the reason if it was refused.
+  async addInFront(add: (place: { position: [number, number, number]; turn: number }) => Promise<string | null>): Promise<string | null> {
     const draft = this.draft.peek();
     if (draft === null) return null;
     const before = draft.world.objects.filter(({ editable }) => editable).length;
     const [x, y] = draft.head;
     const heading = ((draft.world.start.degrees[2] + 90) * Math.PI) / 180; // a robot lies along y
-    const distance = 0.3;
+    const distance = freeDistance([x, y], heading, this.outlines());
     const round = (value: number) => Math.round(value * 1000) / 1000;
     const position: [number, number, number] = [round(x + distance * Math.cos(heading)), round(y + distance * Math.sin(heading)), 0];
-    const refusal = await this.change('world.add', { item, values, position, turn: draft.world.start.degrees[2] });
+    const refusal = await add({ position, turn: draft.world.start.degrees[2] });
     if (refusal === null) this.chosen.value = before;
     return refusal;
   }

@@ -6,6 +6,7 @@ import { AlgorithmOfferBand } from './algorithm_offer_band.js';
 import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
+import { MeshDrop } from './mesh/mesh_drop.js';
 import { LossQuestion, NewPanel } from './new_panel.js';
 import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';
@@ -131,6 +132,7 @@ function Foresight({ app }: { app: MakeApp }) {
           ({foresight.engine.toUpperCase()})
         </span>
       )}
+      {foresight?.refusal != null && <span class="servo-problem"> The engine that Run has cannot simulate this scenario: {foresight.refusal}</span>}
       {foresight?.servo_problem != null && <span class="servo-problem"> {foresight.servo_problem}</span>}
     </p>
   );
@@ -214,6 +216,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
   }
   return (
     <div class="make">
+      <MeshDrop app={app} />
       <Bar app={app} />
       <AlgorithmOfferBand app={app} />
       {app.panel.value === 'save' && <SavePanel app={app} />}

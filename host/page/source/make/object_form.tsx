@@ -3,6 +3,7 @@ import { useSignal } from '@preact/signals';
 import { arrayOf, headingOf } from '../geometry/outline.js';
 import { poseFromArray, type Vector } from '../geometry/quaternion.js';
 import type { WorldShape } from '../wire/messages.js';
+import { fromHex, toHex } from './colour_text.js';
 import type { MakeApp } from './make_app.js';
 import { NumberField } from './number_field.js';
 import { TextField } from './text_field.js';
@@ -12,19 +13,10 @@ const sizeLabels: Record<WorldShape['type'], readonly string[]> = {
   sphere: ['radius'],
   cylinder: ['radius', 'length'],
   heightfield: ['size x', 'size y'],
-  trimesh: [],
+  trimesh: ['size x', 'size y', 'size z'],
 };
 
 const axes = ['x', 'y', 'z'] as const;
-
-function toHex(colour: readonly number[]): string {
-  return `#${colour.map((part) => Math.round(255 * part).toString(16).padStart(2, '0')).join('')}`;
-}
-
-function fromHex(text: string): [number, number, number] {
-  const part = (start: number) => Math.round((parseInt(text.slice(start, start + 2), 16) / 255) * 1000) / 1000;
-  return [part(1), part(3), part(5)];
-}
 
 const axisTitles = ['to the right', 'the way of the robot', 'up'] as const;
 
@@ -145,7 +137,16 @@ export function ObjectForm({ app }: { app: MakeApp }) {
               }
             />
           ))}
-          {shape.size.length === 0 && <p class="hint">Its shape is a mesh in a file.</p>}
+          {shape.type === 'trimesh' && shape.size.length > 0 && (
+            <NumberField
+              label="scale by"
+              value={1}
+              isDisabled={isDisabled}
+              title="All sides become so many times as long"
+              commit={(by) => app.change('world.resize', { object: number, shape: k, size: shape.size.map((side) => side * by) })}
+            />
+          )}
+          {shape.type === 'trimesh' && shape.size.length === 0 && <p class="hint">Its shape is a mesh in the file of the world.</p>}
         </div>
       ))}
       <div class="fields">

@@ -3,6 +3,8 @@ import type { DraftRobot } from '../wire/messages.js';
 import { axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from './robot_text.js';
 import { JointForm, LinkForm } from './joint_form.js';
 import type { MakeApp } from './make_app.js';
+import { ModuleMeshForm } from './mesh/mesh_form.js';
+import { formatNumber } from '../state/parameter_values.js';
 import { NumberField } from './number_field.js';
 import { SensorPanel } from './sensor_panel.js';
 import { TextField } from './text_field.js';
@@ -130,7 +132,11 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
 }
 
 function KindButtons({ app, link }: { app: MakeApp; link: number | null }) {
-  const kinds = app.page.state.parts.value?.kinds ?? [];
+  const own = app.draft.value?.robot.kinds ?? [];
+  const kinds = [
+    ...(app.page.state.parts.value?.kinds ?? []),
+    ...own.map(({ name, length }) => ({ name, help: `A module of your own, ${formatNumber(length, 5)} m from joint to joint.` })),
+  ];
   const obstacle = app.obstacle();
   return (
     <div class="fields" role="group" aria-label={link === null ? 'Modules of the robot' : 'Module of the link'}>
@@ -148,6 +154,7 @@ export function RobotPart({ app }: { app: MakeApp }) {
   if (robot === undefined) return null;
   const isDisabled = app.obstacle() !== null;
   const joint = app.chosenJoints.value.find((chosen) => chosen < robot.joints.length);
+  const isMesh = app.mesh.isOpen.value && app.mesh.purpose.value === 'module';
   return (
     <>
       <section class="panel make-panel" aria-label="Chain">
@@ -173,6 +180,18 @@ export function RobotPart({ app }: { app: MakeApp }) {
         <h2>Modules</h2>
         <p class="hint">Of which modules the robot is made. Joints keep their axes, servos and gait.</p>
         <KindButtons app={app} link={null} />
+        <div class="fields">
+          <button
+            type="button"
+            aria-pressed={isMesh}
+            disabled={isDisabled}
+            title={app.obstacle() ?? 'A shape of your own, from a file'}
+            onClick={() => (isMesh ? app.mesh.close() : app.mesh.open('module'))}
+          >
+            Module of my own …
+          </button>
+        </div>
+        {isMesh && <ModuleMeshForm app={app} />}
         <h2>Servos</h2>
         <div class="fields">
           {servoFields.map(({ name, unit, title }) => (

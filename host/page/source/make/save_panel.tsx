@@ -13,7 +13,9 @@ function FileChanges({ file }: { file: DraftDiff['files'][number] }) {
     <section aria-label={file.name}>
       <h3>{file.name}</h3>
       {changes === null ? (
-        <p class="hint">The file is too long to be shown.</p>
+        <p class="hint">
+          {file.bytes >= 1024 ? `${Math.round(file.bytes / 1024)} KiB` : `${file.bytes} bytes`} that are not shown as text.
+        </p>
       ) : (
         <div class="diff-lines">
           {changes.slice(0, mostLines).map(({ line, kind, text }, i) =>

@@ -6,8 +6,8 @@ import { ForwardKinematics } from '../geometry/forward_kinematics.js';
 import { flat, headingOf, lifted, outline, type Plane, type Point } from '../geometry/outline.js';
 import { fromAxisAngle, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { decimalsOf, formatNumber, roundStep } from '../state/parameter_values.js';
-import type { Body, RobotDocument, WorldObject } from '../wire/messages.js';
-import { startOfRobot, type MakeApp } from './make_app.js';
+import type { RobotDocument } from '../wire/messages.js';
+import { bodyOf, startOfRobot, type MakeApp } from './make_app.js';
 
 const lineDistance = 70; // pixels between two lines of the grid, at least
 const labelHeight = 14; // pixels
@@ -33,10 +33,6 @@ interface Grip {
   pose: Pose;
   isAlone: boolean;
   hasMoved: boolean;
-}
-
-function bodyOf(robot: RobotDocument, object: WorldObject): Body | undefined {
-  return (object.moves ? robot.objects : robot.terrain)?.[object.index];
 }
 
 function pathOf(points: readonly Point[]): string {
@@ -147,6 +143,17 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     if (refit > 0) view.value = viewOfAll(app, plane, size.peek());
   }, [refit]);
 
+  // What is chosen, and what is new, is in the drawing.
+  const chosen = app.chosen.value;
+  useEffect(() => {
+    const object = app.chosenObject.peek();
+    const now = view.peek();
+    if (object === null || now === null) return;
+    const place = flat(plane, poseFromArray(object.pose).position);
+    const isOutside = (axis: 0 | 1) => Math.abs(place[axis] - now.centre[axis]) * now.scale > size.peek()[axis] / 2;
+    if (isOutside(0) || isOutside(1)) view.value = viewOfAll(app, plane, size.peek());
+  }, [chosen]);
+
   const draft = app.draft.value;
   const robot = app.page.state.draftRobot.value;
   const shown = view.value ?? { centre: [0, 0] as Point, scale: 100 };
@@ -254,9 +261,9 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
   const [width, height] = size.value;
   const transform = `translate(${width / 2} ${height / 2}) scale(${shown.scale} ${-shown.scale}) translate(${-shown.centre[0]} ${-shown.centre[1]})`;
   const head = app.drag.value?.moved.get(startOfRobot) ?? (draft === null ? null : poseFromArray(draft.head));
-  const chosen = app.chosen.value;
   const title = plane === 'top' ? 'The world from above' : 'The world from the side';
-  const path = app.page.state.foresight.value?.path ?? [];
+  const start = app.page.state.foresightStart.value;
+  const rest = app.page.state.foresight.value?.path.slice(start.length) ?? []; // that of the path before, until it comes
   return (
     <div class={`map ${plane}`}>
       <svg
@@ -299,7 +306,10 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
           {draft?.world.rulers.map(({ from, to }, i) => (
             <polyline key={i} class="ruler" points={pathOf([flat(plane, from), flat(plane, to)])} />
           ))}
-          {path.length > 1 && <polyline class="foresight" data-testid={`foresight-${plane}`} points={pathOf(path.map((point) => flat(plane, point)))} />}
+          {start.length > 1 && <polyline class="foresight" data-testid={`foresight-start-${plane}`} points={pathOf(start.map((point) => flat(plane, point)))} />}
+          {rest.length > 1 && (
+            <polyline class={start.length > 1 ? 'foresight old' : 'foresight'} data-testid={`foresight-${plane}`} points={pathOf(rest.map((point) => flat(plane, point)))} />
+          )}
           {robot !== null && head !== null && (
             <g class="robot" onPointerDown={(event) => press(event, 'start', startOfRobot, head)}>
               <title>The robot at its start</title>

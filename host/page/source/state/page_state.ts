@@ -68,6 +68,8 @@ export class PageState {
   readonly parts = signal<PartsDocument | null>(null);
   readonly algorithms = signal<readonly AlgorithmDocument[]>([]);
   readonly foresight = signal<ForesightDocument | null>(null);
+  // The first seconds of a newer path that is not known to its end yet.
+  readonly foresightStart = signal<ForesightDocument['path']>([]);
   // What can be opened; null until somebody has looked.
   readonly gallery = signal<Documents['gallery'] | null>(null);
   // Algorithms that viewers write.
@@ -178,7 +180,8 @@ export class PageState {
           this.gallery.value = { entries: [...reuse(this.gallery.peek()?.entries ?? [], message.value.entries)] };
           break;
         case 'foresight':
-          this.foresight.value = message.value;
+          if (message.value.is_complete) this.foresight.value = message.value;
+          this.foresightStart.value = message.value.is_complete ? [] : message.value.path;
           break;
         case 'algorithms':
           this.algorithms.value = message.value;

@@ -4,7 +4,7 @@ import type { Parameter, PoseArray } from './robot_messages.js';
 // A shape of an object of the draft's world.
 export interface WorldShape {
   type: 'box' | 'sphere' | 'cylinder' | 'trimesh' | 'heightfield';
-  size: number[]; // metres; box: sides; sphere: radius; cylinder: radius, height; height field: sides
+  size: number[]; // metres; box, mesh: sides; sphere: radius; cylinder: radius, height; height field: sides
   friction: number | null; // null: that of what it touches holds
   colour: [number, number, number] | null; // red, green, blue, 0 to 1
 }
@@ -108,6 +108,7 @@ export interface DraftRobot {
   joints: DraftJoint[];
   links: DraftLink[];
   sensors: DraftSensor[];
+  kinds: { name: string; length: number }[]; // of modules of one's own; metres between two joints
   servo: ServoDocument;
   obstacle: string | null; // why links cannot be added or removed
 }
@@ -172,6 +173,7 @@ export interface LibraryItem {
 // Where the robot of the draft will be.
 export interface ForesightDocument {
   revision: number; // of the draft
+  is_complete: boolean; // else it is the first seconds, and the rest follows
   engine: string;
   seconds: number;
   path: [number, number, number][]; // of the head's frame, a point each 0.1 s
@@ -179,6 +181,7 @@ export interface ForesightDocument {
   heading: number | null; // degrees
   failure: string | null;
   servo_problem: string | null;
+  refusal: string | null; // why the engine that the scenario names does not have such a scenario
 }
 
 // A picture of a scenario, 1000 wide and 500 high, y downwards. Lines are x, y, x, y, ...; a side of a solid begins with its
@@ -344,7 +347,30 @@ export interface AlgorithmSource {
 
 // The value of `draft.diff`.
 export interface DraftDiff {
-  files: { name: string; is_shipped: boolean; old: string | null; new: string | null }[];
+  files: { name: string; is_shipped: boolean; bytes: number; old: string | null; new: string | null }[];
+}
+
+// What `mesh.look` says of a mesh that was sent. Lengths are in the unit of its file.
+export interface SentMesh {
+  mesh: number;
+  name: string;
+  files: string[]; // the mesh, then those that it names
+  triangles: number;
+  lowest: [number, number, number]; // corner of the box around it
+  highest: [number, number, number];
+  gap: string | null; // why its surface is not closed
+  flaw: string | null; // why it can be no object of a world
+  hull_volume: number | null; // of its convex hull; null: it is flat
+  facing: [number, number, number]; // sum of normal times area
+  has_colours: boolean;
+}
+
+// How a mesh is used.
+export interface MeshFit {
+  mesh: number;
+  factor: number; // metres of its unit
+  quarters: readonly [number, number, number]; // turns of 90 degrees about x, then y, then z
+  colour: readonly [number, number, number];
 }
 
 // What all operations have that name parts of the draft by their positions.

@@ -10,6 +10,7 @@ import type {
   ForesightDocument,
   GalleryEntry,
   LibraryItem,
+  MeshFit,
   MissingAlgorithms,
   NewScenario,
   PartOperation,
@@ -382,6 +383,13 @@ export interface Operations {
   'world.remove': PartOperation & { object: number; group?: boolean };
   'world.duplicate': PartOperation & { object: number; group?: boolean; step: [number, number, number]; count: number };
   'world.add': PartOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
+  'mesh.begin': { files: { name: string; bytes: number }[] };
+  'mesh.part': { mesh: number; file: number; at: number; data: string }; // base64
+  'mesh.look': { mesh: number };
+  'mesh.shape': { mesh: number };
+  'mesh.drop': { mesh: number };
+  'world.add_mesh': PartOperation & MeshFit & { sheet: boolean; position: [number, number, number]; turn: number };
+  'robot.own_module': PartOperation & MeshFit & { name: string; length: number; mass: number; links: readonly number[] };
   'world.start': PartOperation & { position: [number, number, number]; degrees: [number, number, number] };
   'world.ruler': PartOperation & { ruler?: number; from: [number, number, number]; to: [number, number, number] };
   'world.remove_ruler': PartOperation & { ruler: number };

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "mesh_shapes.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
@@ -39,7 +40,8 @@ class DraftSessionTest : public ::testing::Test {
     requests_.emplace();
     session_.emplace(
         sim::read_scenario(file_, disk_),
-        DraftSessionOptions{folder_ / "", has_file, [this](const std::string& file) { return project_.has(file); }},
+        DraftSessionOptions{
+            folder_ / "", has_file, [this](const std::string& file) { return project_.has(file); }, {}, &meshes_},
         *requests_, present_, viewers_);
   }
 
@@ -63,9 +65,49 @@ class DraftSessionTest : public ::testing::Test {
       return document.contains("revision") && document["revision"] >= revision;
     });
   }
+  /// Where the robot of a revision will be.
+  json path_of_revision(std::uint64_t revision) {
+    return viewers_.document_when("foresight", [&](const json& document) {
+      return document.contains("revision") && document["revision"] == revision && document["is_complete"] == true;
+    });
+  }
   json add_box() {
     const json answer = must("world.add", {{"item", "box"}, {"values", {{"height", 0.05}}}, {"position", {0, 1, 0}}});
     return draft(answer["revision"]);
+  }
+  /// A closed box of 200 x 400 x 600 units.
+  static std::string box_stl() {
+    std::string stl(80, '\0');
+    const sim::TriangleMesh box = sim::box_mesh({100, 200, 300});
+    const auto append = [&stl](const auto& value) { stl.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    append(static_cast<std::uint32_t>(box.triangles.size()));
+    for (const auto& triangle : box.triangles) {
+      stl.append(12, '\0');
+      for (const std::uint32_t corner : triangle) {
+        for (const double coordinate : box.vertices[corner]) {
+          append(static_cast<float>(coordinate));
+        }
+      }
+      stl.append(2, '\0');
+    }
+    return stl;
+  }
+  /// The mesh 1 of viewers.
+  void send_box() {
+    meshes_.set(1, std::make_shared<const sim::OwnMesh>(sim::read_own_mesh({{"box.stl", box_stl()}})));
+  }
+  static json mesh_words() {
+    return {{"mesh", 1},
+            {"factor", 0.001},
+            {"quarters", {1, 0, 0}},
+            {"colour", {1, 0, 0}},
+            {"sheet", false},
+            {"position", {0, 1, 0}},
+            {"turn", 0}};
+  }
+  static json module_words() {
+    return {{"mesh", 1},       {"factor", 0.0001}, {"quarters", {1, 0, 0}}, {"colour", {1, 0, 0}},
+            {"name", "shell"}, {"length", 0.08},   {"mass", 0.15},          {"links", json::array()}};
   }
   [[nodiscard]] std::string world_file() const { return folder_ / "mine/flat.environment.xml"; }
 
@@ -75,6 +117,7 @@ class DraftSessionTest : public ::testing::Test {
   sim::DiskFiles disk_;
   Viewers viewers_;
   PresentDraft present_;
+  SentMeshes meshes_;
   std::optional<SessionRequests> requests_;
   std::optional<DraftSession> session_;
   std::uint64_t request_ = 0;
@@ -162,7 +205,7 @@ TEST_F(MissingAlgorithmTest, AProgramWithoutARobotBeginsWithIt) {
   requests_.emplace();
   session_.emplace(
       std::nullopt,
-      DraftSessionOptions{folder_ / "", true, {}, {}, MissingAlgorithms{file_, "start", "why", {"my_wave"}}},
+      DraftSessionOptions{folder_ / "", true, {}, {}, nullptr, MissingAlgorithms{file_, "start", "why", {"my_wave"}}},
       *requests_, present_, viewers_);
   const json missing = viewers_.document("missing_algorithms");
   EXPECT_EQ(missing["action"], "start");
@@ -311,8 +354,7 @@ TEST_F(DraftSessionTest, BadArgumentsAreRefusedWithTheirReason) {
 // What the path says is what a simulation then does, to the bit of the reduced engine.
 TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
   must("world.friction", {{"object", 0}, {"value", 0.3}});
-  const json foresight = viewers_.document_when(
-      "foresight", [](const json& document) { return document.contains("revision") && document["revision"] == 1; });
+  const json foresight = path_of_revision(1);
   ASSERT_EQ(foresight["failure"], json()) << foresight;
   EXPECT_EQ(foresight["engine"], "reduced");
   must("draft.save");
@@ -335,8 +377,7 @@ TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
 
 TEST_F(DraftSessionTest, AWorldThatTheReducedEngineLacksIsForeseenByOde) {
   must("world.add", {{"item", "sphere"}, {"position", {0, 2, 0}}});
-  const json foresight = viewers_.document_when(
-      "foresight", [](const json& document) { return document.contains("revision") && document["revision"] == 1; });
+  const json foresight = path_of_revision(1);
   EXPECT_EQ(foresight["engine"], "ode");
   EXPECT_EQ(foresight["failure"], json());
 }
@@ -386,6 +427,101 @@ TEST_F(DraftSessionTest, UnsavedChangesOutliveTheProgram) {
   open();
   EXPECT_FALSE(std::filesystem::exists(journal)) << "all is saved";
   EXPECT_EQ(draft(0)["unsaved"], json());
+}
+
+TEST_F(DraftSessionTest, AMeshIsAddedSavedAndCopiedAsItCame) {
+  send_box();
+  must("world.add_mesh", mesh_words());
+  const json document = draft(1);
+  EXPECT_EQ(document["undo"], "add box.stl");
+  const std::string file = folder_ / "mine/meshes/box.stl";
+  EXPECT_EQ(document["changed"], json({world_file(), file}));
+  EXPECT_EQ(document["world"]["objects"][1]["name"], "box");
+  EXPECT_EQ(document["world"]["objects"][1]["shapes"][0]["size"].size(), 3U);
+  EXPECT_EQ(viewers_.document("draft_meshes").size(), 1U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "mine/meshes")) << "nothing on disk changes before Save";
+  const json diff = must("draft.diff")["files"];
+  EXPECT_EQ(diff[1]["bytes"], box_stl().size());
+  EXPECT_EQ(diff[1]["new"], json());
+  EXPECT_EQ(must("draft.save")["written"], 2);
+  EXPECT_EQ(file_contents(file), box_stl());
+  EXPECT_EQ(must("draft.save")["written"], 0);
+  must("draft.save_as", {{"folder", "copy"}});
+  EXPECT_EQ(file_contents(folder_ / "copy/meshes/box.stl"), box_stl());
+  must("draft.undo");
+  EXPECT_EQ(draft(2)["world"]["objects"].size(), 1U) << "undo goes back behind Save";
+}
+
+TEST_F(DraftSessionTest, AMeshThatIsDeletedBeforeSaveIsNotSaved) {
+  send_box();
+  must("world.add_mesh", mesh_words());
+  must("world.remove", {{"object", 1}, {"group", true}});
+  EXPECT_EQ(draft(2)["changed"], json::array());
+  EXPECT_EQ(must("draft.save")["written"], 0);
+  must("draft.undo");
+  must("draft.save");
+  EXPECT_EQ(file_contents(folder_ / "mine/meshes/box.stl"), box_stl());
+}
+
+TEST_F(DraftSessionTest, AMeshThatIsNotSavedOutlivesTheProgram) {
+  send_box();
+  must("world.add_mesh", mesh_words());
+  must("robot.own_module", module_words());
+  const json before = draft(2);
+  open();
+  EXPECT_EQ(draft(0)["unsaved"]["files"].size(), before["changed"].size());
+  must("draft.restore");
+  EXPECT_EQ(draft(1)["world"], before["world"]);
+  EXPECT_EQ(draft(1)["robot"], before["robot"]);
+  must("draft.save");
+  EXPECT_EQ(file_contents(folder_ / "mine/meshes/box.stl"), box_stl());
+  EXPECT_EQ(file_contents(folder_ / "mine/modules_shell/box.stl"), box_stl());
+}
+
+TEST_F(DraftSessionTest, AMeshBecomesAModuleOfSomeLinksOrAll) {
+  send_box();
+  json words = module_words();
+  words["links"] = json({0, 2});
+  must("robot.own_module", words);
+  json robot = draft(1)["robot"];
+  EXPECT_EQ(robot["kinds"], json({{{"name", "shell"}, {"length", 0.08}}}));
+  EXPECT_EQ(robot["links"][0]["mass"], 0.15);
+  EXPECT_NE(robot["links"][1]["mass"], 0.15);
+  EXPECT_EQ(robot["links"][2]["mass"], 0.15);
+  must("robot.kind", {{"kind", "shell"}, {"link", nullptr}});
+  robot = draft(2)["robot"];
+  for (const json& link : robot["links"]) {
+    EXPECT_EQ(link["mass"], 0.15);
+  }
+  must("robot.mass", {{"link", 1}, {"value", 0.3}});
+  EXPECT_EQ(draft(3)["robot"]["links"][1]["mass"], 0.3);
+  EXPECT_FALSE(ask("robot.own_module", module_words()).is_done) << "there is a kind of this name";
+  must("draft.save");
+  open();
+  EXPECT_EQ(draft(0)["robot"]["kinds"][0]["name"], "shell");
+}
+
+TEST_F(DraftSessionTest, OperationsWithAMeshAreRefusedInOneLine) {
+  send_box();
+  const std::vector<json> values{
+      json(), -1, 0, 2, 1e99, "a", json::array(), json({1, 2}), json({9, 0, 0}), json::object(), true, 4294967295U};
+  for (const auto& [name, good] :
+       {std::pair("world.add_mesh", mesh_words()), std::pair("robot.own_module", module_words())}) {
+    for (const auto& [member, value] : good.items()) {
+      for (const json& bad : values) {
+        json words = good;
+        words[member] = bad;
+        const Viewers::Answer answer = ask(name, words);
+        EXPECT_EQ(answer.text.find('\n'), std::string::npos);
+        if (answer.is_done) {
+          must("draft.undo");
+        }
+      }
+    }
+  }
+  EXPECT_EQ(must("draft.refresh")["changed"], false);
+  EXPECT_EQ(viewers_.document_when("draft", [](const json& document) { return document["changed"].empty(); })["undo"],
+            json());
 }
 
 TEST_F(DraftSessionTest, UnsavedChangesCanBeDiscarded) {
@@ -490,6 +626,39 @@ TEST_F(DraftSessionTest, AWorldOfFiveHundredObjectsCanBeChangedAndSimulated) {
     simulation.advance();
   }
   EXPECT_EQ(scenario.environment.objects.size(), 500U);
+}
+
+// A module of another kind was added, saved, and taken back; then it came again.
+TEST_F(DraftSessionTest, FilesThatWereSavedAndTakenBackAreRestored) {
+  must("robot.kind", {{"kind", "snake"}, {"link", json()}});
+  must("draft.save");
+  must("draft.undo");
+  must("draft.save");
+  must("draft.redo");
+  must("robot.rename", {{"name", "viper"}});
+  const json wanted = draft(4)["robot"];
+  open();
+  EXPECT_NE(viewers_.document("draft")["unsaved"], json()) << viewers_.notices();
+  must("draft.restore");
+  EXPECT_EQ(draft(1)["robot"], wanted);
+  must("draft.save");
+}
+
+TEST_F(DraftSessionTest, AJournalRestoresNoFileOutsideOfTheFoldersOfTheScenario) {
+  add_box();
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  session_.reset();
+  const json written = json::parse(file_contents(journal));
+  for (const std::string& outside :
+       {std::string(folder_ / "other.xml"), std::string(folder_ / "mine/../other.xml"), std::string("other.xml")}) {
+    json document = written;
+    document["files"][outside] = {{"base", json()}, {"text", "<a/>"}};
+    std::ofstream(journal) << document;
+    open();
+    EXPECT_EQ(viewers_.document("draft")["unsaved"], json()) << outside;
+    EXPECT_NE(viewers_.notices().find("not beside the scenario"), std::string::npos) << viewers_.notices();
+    session_.reset();
+  }
 }
 
 TEST_F(DraftSessionTest, AJournalThatCannotBeWrittenIsSaidOnce) {

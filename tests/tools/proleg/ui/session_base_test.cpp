@@ -10,11 +10,12 @@ namespace {
 TEST(SessionRouter, EachSessionGetsItsOwn) {
   SessionRequests recordings;
   SessionRequests draft;
+  SessionRequests meshes;
   SessionRequests gallery;
   SessionRequests algorithms;
   SessionRequests remote;
   SessionRequests robot;
-  SessionRouter router(recordings, draft, gallery, algorithms, remote, robot);
+  SessionRouter router(recordings, draft, meshes, gallery, algorithms, remote, robot);
   router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
   router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
   router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
@@ -22,7 +23,9 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   router.operate({5, "world.add", nlohmann::json::object(), 1, "a test"});
   router.operate({6, "gallery.look", nlohmann::json::object(), 1, "a test"});
   router.operate({7, "algorithm.build", nlohmann::json::object(), 1, "a test"});
+  router.operate({8, "mesh.begin", nlohmann::json::object(), 1, "a test"});
   router.holder_changed(true, false);
+  EXPECT_EQ(meshes.take_operation()->request, 8U);
   EXPECT_EQ(algorithms.take_operation()->request, 7U);
   EXPECT_EQ(recordings.take_operation()->request, 1U);
   EXPECT_EQ(robot.take_operation()->request, 2U);

@@ -384,7 +384,8 @@ TEST_F(SimulatedSessionTest, NothingDisturbsTheTicksThatAreComputedAgainButAStop
   record_run("run.proleg", 1000);
   open(nullptr, true);
   EXPECT_EQ(stop().text, "0 of 0");
-  EXPECT_EQ(ask("run").text, "there is no simulation; continue one from a recording");
+  EXPECT_EQ(ask("run").text,
+            "there is no simulation; simulate what the page Make has, or continue one from a recording");
   EXPECT_TRUE(ask("ping").is_done);
   requests_->operate({++request_, "continue", {{"file", "run.proleg"}, {"tick", 999}}, 1, "a test"});
   EXPECT_EQ(ask("set", {{"words", {"amplitude=10"}}}).text,

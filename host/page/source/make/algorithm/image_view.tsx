@@ -7,7 +7,7 @@ function Facts({ image }: { image: BuiltImage }) {
   const facts = [
     ['File', image.file],
     ['Flash', roomText(image.flash, image.flash_limit)],
-    ['Memory', roomText(image.ram, image.ram_limit)],
+    ['Memory', roomText(image.ram === null || image.stack_limit === null ? null : image.ram + image.stack_limit, image.ram_limit)],
     ['Stack', `${roomText(image.stack, image.stack_limit)}, at worst`],
     ['Version', versionText(image)],
     ['SHA-256', image.sha256],

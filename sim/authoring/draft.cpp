@@ -319,9 +319,10 @@ void Draft::read_again() {
 }
 
 void Draft::adopt(const std::string& name) {
-  if (std::optional<std::string> text = disk_->read(name)) {
-    saved_.insert_or_assign(name, *text);
-    texts_.set(name, std::move(*text));
+  if (std::optional<std::string> bytes = disk_->read(name)) {
+    std::string text = source_text(std::move(*bytes));
+    saved_.insert_or_assign(name, text);
+    texts_.set(name, std::move(text));
   }
 }
 

@@ -155,6 +155,7 @@ std::vector<ModuleKind> own_kinds(const Scenario& scenario) {
     kinds.emplace(folder, std::move(kind));
   }
   std::vector<ModuleKind> all;
+  all.reserve(kinds.size());
   for (auto& [folder, kind] : kinds) {
     all.push_back(std::move(kind));
   }

@@ -24,9 +24,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view material_ending = ".mtl";
 
+constexpr std::string_view replacement = "\xEF\xBF\xBD";  // what a browser writes for bytes that are no UTF-8
+
 void require_file_name(const std::string& name) {
   const bool is_name = !name.empty() && name.front() != '.' && name.find_first_of("/\\") == std::string::npos &&
-                       is_visible_line(name) && trimmed(name) == name && shortened(name) == name;
+                       name.find(replacement) == std::string::npos && is_visible_line(name) && trimmed(name) == name &&
+                       shortened(name) == name;
   if (!is_name) {
     throw InputError("file", 0, "the name " + in_quotes(one_line(name)),
                      "1 to 60 characters that a person sees, without a folder, not beginning with '.'");

@@ -82,12 +82,27 @@ struct Bounds {
 [[nodiscard]] inline std::optional<double> highest_over(const TriangleMesh& mesh, const Pose& pose,
                                                         const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
   std::optional<double> top;
+  std::vector<Eigen::Vector3d> vertices;
+  vertices.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    vertices.push_back(pose * vertex);
+  }
   std::vector<Eigen::Vector3d> part;
   std::vector<Eigen::Vector3d> cut;
   for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+    const auto is_beside = [&](Eigen::Index axis) {
+      const auto all = [&](const auto& is_out) {
+        return std::all_of(triangle.begin(), triangle.end(),
+                           [&](std::uint32_t corner) { return is_out(vertices[corner][axis]); });
+      };
+      return all([&](double at) { return at < low[axis]; }) || all([&](double at) { return at > high[axis]; });
+    };
+    if (is_beside(0) || is_beside(1)) {
+      continue;
+    }
     part.clear();
     for (const std::uint32_t corner : triangle) {
-      part.push_back(pose * mesh.vertices[corner]);
+      part.push_back(vertices[corner]);
     }
     // The part of the triangle within the rectangle: one side of the rectangle after the other cuts the rest away.
     for (Eigen::Index side = 0; side < 4 && !part.empty(); ++side) {

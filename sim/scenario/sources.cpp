@@ -95,6 +95,9 @@ std::string data_url(std::string_view bytes) {
 }
 
 std::string source_text(std::string bytes) {
+  if (bytes.starts_with(head)) {
+    return bytes;  // it is one already
+  }
   return find_invalid_utf8(bytes) || bytes.find('\0') != std::string::npos ? data_url(bytes) : std::move(bytes);
 }
 

@@ -64,7 +64,10 @@ KeptChanges changes_of(const json& document, const sim::Draft& draft) {
       throw InputError(name, 0, "a file that is not beside the scenario", "a file to which its changes belong");
     }
     // The draft may not name it now: a change that was undone has added it.
-    const std::optional<std::string> saved = draft.has(name) ? draft.text(name) : disk.read(name);
+    std::optional<std::string> saved = draft.has(name) ? draft.text(name) : disk.read(name);
+    if (saved) {
+      saved = sim::source_text(std::move(*saved));
+    }
     const json& base = file.at("base");
     if (base.is_null() ? saved.has_value() : !saved || base.get<std::string>() != sha256_hex(*saved)) {
       throw InputError(name, 0, "a file that has changed since", "the file to which the unsaved changes belong");

@@ -12,9 +12,9 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/sources.hpp"
-#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/draft_arguments.hpp"
+#include "tools/proleg/ui/fast_simulation.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -2,7 +2,7 @@
 import { useSignal } from '@preact/signals';
 import type { LibraryItem } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
-import { WorldMeshForm } from './mesh/mesh_form.js';
+import { WorldMeshForm } from './mesh_form.js';
 import { NumberField } from './number_field.js';
 
 function ItemForm({ app, item, done }: { app: MakeApp; item: LibraryItem; done(): void }) {

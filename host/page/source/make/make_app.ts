@@ -10,8 +10,8 @@ import { algorithmApp } from './algorithm/algorithm_app.js';
 import { AlgorithmOffer } from './algorithm/algorithm_offer.js';
 import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
-import { OwnMesh } from './mesh/own_mesh.js';
-import type { MeshFile } from './mesh/mesh_transfer.js';
+import { OwnMesh } from './own_mesh.js';
+import type { MeshFile } from './mesh_transfer.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -52,7 +52,7 @@ export class MakeApp {
   readonly offer: AlgorithmOffer;
   readonly actions: ActionList;
   readonly view: DraftView;
-  readonly mesh = new OwnMesh(this); // of one's own, before it is part of the draft
+  readonly mesh: OwnMesh; // before it is part of the draft
   readonly draft = computed(() => this.page.state.draft.value);
   readonly objects = computed(() => this.draft.value?.world.objects ?? []);
   readonly chosenObject = computed(() => {
@@ -73,6 +73,12 @@ export class MakeApp {
     });
     this.actions = new ActionList(page.actions, (action) => action.group === 'Page' || action.group === 'Robot');
     this.view = new DraftView(page.state, this.actions, () => page.startSceneWorker());
+    this.mesh = new OwnMesh({
+      operations: page.operations,
+      obstacle: () => this.obstacle(),
+      addObject: (words) => this.addInFront((place) => this.change('world.add_mesh', { ...words, ...place })),
+      makeModule: (words) => this.change('robot.own_module', words),
+    });
     const canChange = () => this.obstacle() === null && this.draft.value !== null;
     const canChangeChosen = () => canChange() && this.chosenObject.value?.editable === true;
     this.actions.add(

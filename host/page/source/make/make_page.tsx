@@ -6,7 +6,7 @@ import { AlgorithmOfferBand } from './algorithm_offer_band.js';
 import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
-import { MeshDrop } from './mesh/mesh_drop.js';
+import { MeshDrop } from './mesh_drop.js';
 import { LossQuestion, NewPanel } from './new_panel.js';
 import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';

@@ -3,7 +3,7 @@ import type { DraftRobot } from '../wire/messages.js';
 import { axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from './robot_text.js';
 import { JointForm, LinkForm } from './joint_form.js';
 import type { MakeApp } from './make_app.js';
-import { ModuleMeshForm } from './mesh/mesh_form.js';
+import { ModuleMeshForm } from './mesh_form.js';
 import { formatNumber } from '../state/parameter_values.js';
 import { NumberField } from './number_field.js';
 import { SensorPanel } from './sensor_panel.js';

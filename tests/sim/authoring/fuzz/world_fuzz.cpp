@@ -3,6 +3,7 @@
 // have none; and undo must return to every earlier text.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/authoring/draft.hpp"
+#include "sim/authoring/own_mesh.hpp"
 #include "sim/authoring/world_change.hpp"
 #include "tests/support/fuzz_input.hpp"
 
@@ -37,8 +39,16 @@ Eigen::Vector3d vector(test::FuzzInput& input) {
   return {x, y, number(input)};
 }
 
+/// A closed tetrahedron, or a sheet.
+const OwnMesh& own_mesh(bool is_closed) {
+  static const OwnMesh closed =
+      read_own_mesh({{"a.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"}});
+  static const OwnMesh sheet = read_own_mesh({{"b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}});
+  return is_closed ? closed : sheet;
+}
+
 void change(WorldChange& world, test::FuzzInput& input) {
-  const std::uint8_t kind = input.byte() % 13;
+  const std::uint8_t kind = input.byte() % 14;
   const std::size_t at = input.byte() % 8;
   const bool group = input.byte() % 2 == 0;
   switch (kind) {
@@ -80,6 +90,11 @@ void change(WorldChange& world, test::FuzzInput& input) {
       return group ? world.add_ruler(vector(input), vector(input)) : world.set_ruler(at, vector(input), vector(input));
     case 11:
       return world.remove_ruler(at);
+    case 12: {
+      const std::array<unsigned, 3> quarters{input.byte() % 5U, input.byte() % 5U, input.byte() % 5U};
+      const MeshFit fit{number(input), quarters, vector(input) / 8.0};
+      return world.add_mesh(own_mesh(at % 2 == 0), fit, group, vector(input), number(input) * 50.0);
+    }
     default:
       return world.set_start(vector(input), vector(input));
   }

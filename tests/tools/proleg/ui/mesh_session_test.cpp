@@ -4,6 +4,8 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
 
 #include "mesh_shapes.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -116,8 +118,8 @@ TEST_F(MeshSessionTest, WhatCannotBeAMeshIsRefusedBeforeItIsSent) {
       begin("big.stl", 100'000'084),
       "file: found 'big.stl' of 96 MiB, expected at most 16 MiB and 100000 triangles; a modeller can reduce them");
   EXPECT_EQ(begin("empty.stl", 0), "file: found 'empty.stl', which is empty, expected a mesh");
-  for (const char* const name :
-       {"", "../a.stl", "a/b.stl", ".stl", "a\\b.stl", " a.stl", "a\nb.stl", "a.step", "a", "a.mtl"}) {
+  for (const char* const name : {"", "../a.stl", "a/b.stl", ".stl", "a\\b.stl", " a.stl", "a\nb.stl",
+                                 "a\xEF\xBF\xBD.stl", "a.step", "a", "a.mtl"}) {
     EXPECT_NE(begin(name, 100), "") << name;
   }
   for (const json& bytes : std::vector<json>{-1, 1e99, "5", json(), 1.5}) {
@@ -179,6 +181,77 @@ TEST_F(MeshSessionTest, OfManyMeshesTheNewestStay) {
   must("mesh.drop", {{"mesh", sent[3]}});
   EXPECT_NE(refusal("mesh.drop", {{"mesh", sent[3]}}), "");
   EXPECT_EQ(meshes_.at(sent[4])->mesh.triangles.size(), 12U);
+}
+
+// Whatever a message has in its arguments, the answer is one line, and the session goes on.
+TEST_F(MeshSessionTest, ArgumentsOfAnyKindAreTakenOrRefused) {
+  constexpr unsigned seed = 7;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const auto below = [&](std::size_t bound) {
+    return std::uniform_int_distribution<std::size_t>(0, bound - 1)(random);
+  };
+  const json file{{"name", "box.off"}, {"bytes", std::string_view(sim::box_off).size()}};
+  const std::vector<json> values{json(),
+                                 true,
+                                 -1,
+                                 0,
+                                 1,
+                                 2,
+                                 3,
+                                 40,
+                                 1e99,
+                                 9007199254740991U,
+                                 "",
+                                 "AAAA",
+                                 base64(sim::box_off),
+                                 base64(std::string_view(sim::box_off).substr(0, 40)),
+                                 "../../etc/passwd",
+                                 json::array(),
+                                 json::array({file}),
+                                 json::array({file, {{"name", "a.mtl"}, {"bytes", 40}}}),
+                                 json::array({{{"name", "../box.off"}, {"bytes", 1}}}),
+                                 json::array({{{"name", 5}, {"bytes", json::object()}}}),
+                                 json::object()};
+  const std::vector<const char*> names{"mesh.begin", "mesh.part", "mesh.part", "mesh.look",
+                                       "mesh.shape", "mesh.drop", "mesh.walk"};
+  const std::vector<const char*> words{"files", "mesh", "file", "at", "data"};
+  std::size_t taken = 0;
+  for (int i = 0; i < 3000; ++i) {
+    json arguments = json::object();
+    for (const char* const word : words) {
+      if (below(8) != 0) {
+        arguments[word] = values[below(values.size())];
+      }
+    }
+    if (below(2) == 0) {
+      arguments["files"] = json::array({file});
+      arguments["file"] = 0;
+      arguments["at"] = 0;
+    }
+    const Viewers::Answer answer = ask(names[below(names.size())], arguments);
+    EXPECT_EQ(answer.text.find('\n'), std::string::npos) << answer.text;
+    taken += answer.is_done ? 1 : 0;
+  }
+  EXPECT_GT(taken, 100U);
+  must("mesh.look", {{"mesh", send({{"box.off", sim::box_off}})}});
+}
+
+// The files of all meshes together have a bound, whatever is declared.
+TEST_F(MeshSessionTest, ADeclaredSizeIsNoMemoryBeforeItsBytesCome) {
+  std::vector<json> sent;
+  for (int i = 0; i < 20; ++i) {
+    sent.push_back(must("mesh.begin", {{"files", {{{"name", "a.stl"}, {"bytes", 16U << 20U}}}}})["mesh"]);
+  }
+  const json last{{"mesh", sent.back()}, {"file", 0}, {"at", 0}, {"data", "AAAA"}};
+  EXPECT_EQ(must("mesh.part", last)["received"], 3);
+  json first = last;
+  first["mesh"] = sent.front();
+  EXPECT_NE(refusal("mesh.part", first), "");
+  EXPECT_NE(
+      refusal("mesh.begin",
+              {{"files", {{{"name", "a.obj"}, {"bytes", 16U << 20U}}, {{"name", "a.mtl"}, {"bytes", 16U << 20U}}}}}),
+      "");
 }
 
 class ImpatientMeshSession : public MeshSessionTest {

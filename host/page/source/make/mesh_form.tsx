@@ -1,11 +1,11 @@
 // A mesh of one's own: the file, how long its unit is, how it stands.
 import { useRef } from 'preact/hooks';
-import type { SentMesh } from '../../wire/messages.js';
-import { fromHex, toHex } from '../colour_text.js';
-import { formatNumber } from '../../state/parameter_values.js';
-import type { MakeApp } from '../make_app.js';
-import { NumberField } from '../number_field.js';
-import { TextField } from '../text_field.js';
+import type { SentMesh } from '../wire/messages.js';
+import { fromHex, toHex } from './colour_text.js';
+import { formatNumber } from '../state/parameter_values.js';
+import type { MakeApp } from './make_app.js';
+import { NumberField } from './number_field.js';
+import { TextField } from './text_field.js';
 import { MeshPreview } from './mesh_preview.js';
 import { sidesOf, sizeText, suggestedUnit, turnedSides, units, type Purpose } from './mesh_scale.js';
 

@@ -1,5 +1,5 @@
 // How large a mesh is: files have no units, so a person says which, and gets a suggestion.
-import type { SentMesh } from '../../wire/messages.js';
+import type { SentMesh } from '../wire/messages.js';
 
 export const units = [
   { name: 'm', metres: 1 },

@@ -1,8 +1,8 @@
 // A mesh that a person has brought along: on its way to the program, refused, or there, with what it shall become.
 import { computed, signal } from '@preact/signals-core';
-import { bytesResultHeader } from '../../wire/bytes_result.js';
-import type { SentMesh } from '../../wire/messages.js';
-import type { MakeApp } from '../make_app.js';
+import type { OperationQueue } from '../state/operations.js';
+import { bytesResultHeader } from '../wire/bytes_result.js';
+import type { MeshFit, SentMesh } from '../wire/messages.js';
 import { isPlausible, sidesOf, suggestedUnit, turnedSides, type Purpose } from './mesh_scale.js';
 import { readShape, type MeshShape } from './mesh_shape.js';
 import { sendMesh, type MeshFile } from './mesh_transfer.js';
@@ -17,6 +17,14 @@ export type MeshState =
   | { phase: 'sending'; name: string; share: number }
   | { phase: 'refused'; reason: string }
   | { phase: 'there'; mesh: SentMesh };
+
+// What is done with a mesh: each returns the reason of a refusal, or null.
+export interface MeshPorts {
+  operations: Pick<OperationQueue, 'ask'>;
+  obstacle(): string | null; // why nothing can be changed
+  addObject(words: MeshFit & { sheet: boolean }): Promise<string | null>;
+  makeModule(words: MeshFit & { name: string; length: number; mass: number; links: readonly number[] }): Promise<string | null>;
+}
 
 export class OwnMesh {
   readonly state = signal<MeshState>({ phase: 'none' });
@@ -37,7 +45,7 @@ export class OwnMesh {
   readonly mesh = computed(() => (this.state.value.phase === 'there' ? this.state.value.mesh : null));
   private attempt = 0; // counts what was chosen, so that an earlier transfer has no effect
 
-  constructor(private readonly app: MakeApp) {}
+  constructor(private readonly ports: MeshPorts) {}
 
   open(purpose: Purpose): void {
     if (this.purpose.peek() !== purpose) this.close();
@@ -55,7 +63,7 @@ export class OwnMesh {
   private reset(): void {
     this.attempt += 1;
     const mesh = this.mesh.peek();
-    if (mesh !== null) void this.app.page.operations.ask('mesh.drop', { mesh: mesh.mesh }).catch(() => {});
+    if (mesh !== null) void this.ports.operations.ask('mesh.drop', { mesh: mesh.mesh }).catch(() => {});
     this.state.value = { phase: 'none' };
     this.factor.value = null;
     this.quarters.value = [0, 0, 0];
@@ -88,7 +96,7 @@ export class OwnMesh {
     const attempt = this.attempt;
     const isCancelled = () => attempt !== this.attempt;
     const name = files.find((file) => !/\.mtl$/i.test(file.name))?.name ?? '';
-    const obstacle = this.app.obstacle();
+    const obstacle = this.ports.obstacle();
     if (files.length === 0 || obstacle !== null) {
       this.state.value = { phase: 'refused', reason: obstacle ?? 'What was dropped is no file.' };
       return;
@@ -98,7 +106,7 @@ export class OwnMesh {
       const progress = (share: number) => {
         if (!isCancelled()) this.state.value = { phase: 'sending', name, share };
       };
-      const mesh = await sendMesh(this.app.page.operations, files, { isCancelled, progress });
+      const mesh = await sendMesh(this.ports.operations, files, { isCancelled, progress });
       if (mesh === null || isCancelled()) return;
       await this.arrive(mesh);
     } catch (error) {
@@ -110,7 +118,7 @@ export class OwnMesh {
     const purpose = this.purpose.peek();
     const refusal = purpose === 'world' ? mesh.flaw : mesh.hull_volume === null ? 'its points lie in a plane' : null;
     if (refusal !== null) {
-      void this.app.page.operations.ask('mesh.drop', { mesh: mesh.mesh }).catch(() => {});
+      void this.ports.operations.ask('mesh.drop', { mesh: mesh.mesh }).catch(() => {});
       this.state.value = { phase: 'refused', reason: `${mesh.name}: found ${refusal}${purpose === 'world' ? ', expected triangles whose corners are not on one line' : ', expected a solid'}` };
       return;
     }
@@ -122,7 +130,7 @@ export class OwnMesh {
       this.factor.value = suggestedUnit(mesh, purpose)?.metres ?? null;
     }
     try {
-      const buffer = (await this.app.page.operations.ask('mesh.shape', { mesh: mesh.mesh })) as ArrayBuffer;
+      const buffer = (await this.ports.operations.ask('mesh.shape', { mesh: mesh.mesh })) as ArrayBuffer;
       if (this.mesh.peek() === mesh) this.shape.value = readShape(buffer, bytesResultHeader);
     } catch {
       // The numbers are enough.
@@ -136,7 +144,7 @@ export class OwnMesh {
     const module = this.module.peek();
     if (mesh === null || factor === null || module === null) return 'choose how long one unit of the file is';
     const words = { mesh: mesh.mesh, factor, quarters: this.quarters.peek(), colour: this.colour.peek(), ...module, links: this.links.peek() ?? [] };
-    this.problem.value = await this.app.change('robot.own_module', words);
+    this.problem.value = await this.ports.makeModule(words);
     if (this.problem.peek() === null) this.close();
     return this.problem.peek();
   }
@@ -147,7 +155,7 @@ export class OwnMesh {
     const factor = this.factor.peek();
     if (mesh === null || factor === null) return 'choose how long one unit of the file is';
     const words = { mesh: mesh.mesh, factor, quarters: this.quarters.peek(), colour: this.colour.peek(), sheet: this.isSheet.peek() };
-    this.problem.value = await this.app.addInFront((place) => this.app.change('world.add_mesh', { ...words, ...place }));
+    this.problem.value = await this.ports.addObject(words);
     if (this.problem.peek() === null) this.close();
     return this.problem.peek();
   }

@@ -1,7 +1,7 @@
 // A mesh in 3D as it will stand: turned by a drag, or by the arrow keys.
 import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import type { Vector } from '../../geometry/quaternion.js';
+import type { Vector } from '../geometry/quaternion.js';
 import { drawShape, projection, quarterTurns, type Camera, type MeshShape } from './mesh_shape.js';
 
 const size = { width: 320, height: 220 };

@@ -1,5 +1,5 @@
 // A mesh for the eye: its vertices and triangles, and how they are drawn into a picture.
-import { multiply, rotate, type Quaternion, type Vector } from '../../geometry/quaternion.js';
+import { multiply, rotate, type Quaternion, type Vector } from '../geometry/quaternion.js';
 
 export interface MeshShape {
   vertices: Float32Array; // x, y, z of each

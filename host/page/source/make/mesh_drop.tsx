@@ -1,7 +1,7 @@
 // Files that are dragged over the page Make: a hint while they are there, and what is done with them.
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import type { MakeApp } from '../make_app.js';
+import type { MakeApp } from './make_app.js';
 
 function hasFiles(event: DragEvent): boolean {
   return event.dataTransfer?.types.includes('Files') === true;

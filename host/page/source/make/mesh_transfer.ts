@@ -1,6 +1,6 @@
 // Sends mesh files to the program in parts: a message is at most 64 KiB.
-import type { OperationQueue } from '../../state/operations.js';
-import type { SentMesh } from '../../wire/messages.js';
+import type { OperationQueue } from '../state/operations.js';
+import type { SentMesh } from '../wire/messages.js';
 
 const partBytes = 45_000; // 60,000 characters in base64
 const partsOnTheWay = 8;
@@ -34,11 +34,7 @@ export async function sendMesh(operations: Pick<OperationQueue, 'ask'>, files: r
     for (let at = 0; at < file.size; at += partBytes) {
       if (waiting.length >= partsOnTheWay) await waiting.shift();
       const bytes = new Uint8Array(await file.slice(at, Math.min(file.size, at + partBytes)).arrayBuffer());
-      if (transfer.isCancelled()) {
-        await Promise.allSettled(waiting);
-        await operations.ask('mesh.drop', { mesh }).catch(() => {});
-        return null;
-      }
+      if (transfer.isCancelled()) break;
       const sent = operations.ask('mesh.part', { mesh, file: number, at, data: base64(bytes) }).then(() => {
         received += bytes.length;
         transfer.progress(received / total);
@@ -48,5 +44,8 @@ export async function sendMesh(operations: Pick<OperationQueue, 'ask'>, files: r
     }
   }
   await Promise.all(waiting);
-  return (await operations.ask('mesh.look', { mesh })) as SentMesh;
+  const read = transfer.isCancelled() ? null : ((await operations.ask('mesh.look', { mesh })) as SentMesh);
+  if (read !== null && !transfer.isCancelled()) return read;
+  await operations.ask('mesh.drop', { mesh }).catch(() => {});
+  return null;
 }

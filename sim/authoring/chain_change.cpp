@@ -68,6 +68,14 @@ std::vector<std::size_t> present_order(std::size_t count) {
   return order;
 }
 
+/// What each position gets when the part at one position goes to another one.
+std::vector<std::size_t> moved_order(std::size_t count, std::size_t from, std::size_t to) {
+  std::vector<std::size_t> order = present_order(count);
+  order.erase(order.begin() + static_cast<std::ptrdiff_t>(from));
+  order.insert(order.begin() + static_cast<std::ptrdiff_t>(to), from);
+  return order;
+}
+
 }  // namespace
 
 struct ChainChange::State {
@@ -165,6 +173,78 @@ void ChainChange::order(const std::vector<std::size_t>& order) {
                      "the numbers from 0 to " + std::to_string(state.joint_count() - 1) + ", each once");
   }
   assign(state, order);
+}
+
+void ChainChange::move(std::size_t from, std::size_t to) {
+  const State state = read();
+  const std::size_t count = state.joint_count();
+  if (from >= count || to >= count) {
+    throw InputError("joint", 0, std::to_string(std::max(from, to)), "a number below " + std::to_string(count));
+  }
+  assign(state, moved_order(count, from, to));
+  if (count > 2) {
+    move_link(std::min(from, count - 2) + 1, std::min(to, count - 2) + 1);
+  }
+}
+
+void ChainChange::move_link(std::size_t from, std::size_t to) {
+  State state = read();
+  const std::size_t first = std::min(from, to);
+  const std::size_t last = std::max(from, to);
+  struct Module {
+    std::string file;
+    std::string body;
+    double length;  // m
+  };
+  std::vector<Module> modules;
+  for (std::size_t i = 0; i < state.chain.links.size(); ++i) {
+    const bool is_moved = i >= first && i <= last;
+    const ChainText::Link& link = state.chain.links[i];
+    const auto file = change_.xml(state.file()).attribute(link.place, "file");
+    if (is_moved && (!file || state.chain.joints[i - 1].is_framed_by_rear || state.chain.joints[i].is_framed_by_rear)) {
+      return;
+    }
+    modules.push_back(
+        {file.value_or(""), link.elements.body_name, is_moved ? length_of_link(state.scenario, i).norm() : 0.0});
+  }
+  const std::vector<std::size_t> source = moved_order(modules.size(), from, to);
+  for (std::size_t i = first; i <= last; ++i) {
+    const Module& module = modules[source[i]];
+    if (module.file == modules[i].file && module.body == modules[i].body) {
+      continue;
+    }
+    state = read();
+    const ChainText::Link& old = state.chain.links[i];
+    const Eigen::Vector3d length = length_of_link(state.scenario, i);
+    shift_links_in_front(change_, state.scenario, state.chain, i, length.normalized() * module.length - length);
+    const ElementNumber place = find_robot_elements(change_, state.scenario).links.at(old.name).place.value();
+    change_.apply(state.file(), change_.xml(state.file()).set_attribute(place, "file", module.file));
+    const std::string prefix = change_.xml(state.file()).attribute(place, "prefix").value_or("");
+    if (const std::string name = prefix + module.body; name != old.name) {
+      replace_link_names(change_, state.file(), {{old.name, name}});
+    }
+  }
+  state = read();
+  NewNames places;
+  for (std::size_t i = first; i <= last; ++i) {
+    places[state.chain.links[source[i]].name] = state.chain.links[i].name;
+  }
+  move_sensors(state, places);
+}
+
+void ChainChange::move_sensors(const State& state, const NewNames& links) {
+  const XmlText& xml = change_.xml(state.file());
+  std::vector<TextPatch> patches;
+  for (ElementNumber i = 0; i < xml.size(); ++i) {
+    const std::optional<ElementNumber> parent = xml.at(i).parent;
+    if (!xml.is(i, "link") || !parent || !xml.is(*parent, "AttachedSensor")) {
+      continue;
+    }
+    if (const auto place = links.find(content_of(xml, i)); place != links.end() && place->second != place->first) {
+      patches.push_back(xml.set_content(i, place->second));
+    }
+  }
+  change_.apply_all(state.file(), std::move(patches));
 }
 
 void ChainChange::assign(const State& state, const std::vector<std::size_t>& source) {

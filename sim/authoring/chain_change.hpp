@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ class ChainChange {
   /// Joint i becomes what joint order[i] was: axis, limits, servo, and what drives it. Each joint is there once. Links
   /// stay where they are.
   void order(const std::vector<std::size_t>& order);
+  /// Moves a joint to the place of another one; those between them close up. Its link goes along, with the sensors on
+  /// it: the one in front of the joint, of the last joint the one behind it. Links whose <Body> stands in the robot's
+  /// file, or whose joints are in the frame of the link behind, stay where they are.
+  void move(std::size_t from, std::size_t to);
 
  private:
   struct State;
@@ -40,6 +45,8 @@ class ChainChange {
   [[nodiscard]] State read();
   void duplicate_link(const State& state, std::size_t link);
   void remove_link(State state, std::size_t link);
+  void move_link(std::size_t from, std::size_t to);
+  void move_sensors(const State& state, const std::map<std::string, std::string>& links);
   void assign(const State& state, const std::vector<std::size_t>& source);
   void assign_properties(const State& state, const std::vector<std::size_t>& source);
   void assign_values(const State& state, const std::vector<std::size_t>& source);

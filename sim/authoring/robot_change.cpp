@@ -102,16 +102,29 @@ void RobotChange::set_max_speed(JointMask joints, double radians_per_second) {
 }
 
 void RobotChange::rename_joint(unsigned joint, const std::string& name) {
-  check_name(name);
-  const std::vector<ElementNumber> element = joints_from_the_end(JointMask::of(joint));
-  const std::string& old_name = scenario_.robot.joints[joint].name;
-  const std::string prefix = find_robot_elements(change_, scenario_).joints.at(old_name).prefix;
-  if (!name.starts_with(prefix) || name.size() == prefix.size()) {
-    throw InputError("name", 0, in_quotes(name),
-                     "a name that begins with " + in_quotes(prefix) + ", as its file has it");
+  static_cast<void>(joints_from_the_end(JointMask::of(joint)));
+  rename_joints({{scenario_.robot.joints[joint].name, name}});
+}
+
+void RobotChange::rename_joints(const std::map<std::string, std::string>& names) {
+  const RobotElements all = find_robot_elements(change_, scenario_);
+  std::vector<TextPatch> patches;
+  for (const auto& [old_name, name] : names) {
+    check_name(name);
+    const auto found = all.joints.find(old_name);
+    if (found == all.joints.end()) {
+      throw InputError("joint", 0, in_quotes(old_name) + " in a file of its own",
+                       "a joint of " + scenario_.robot_file + "; other robots may use that file, too");
+    }
+    const auto& [joint, prefix] = found->second;
+    if (!name.starts_with(prefix) || name.size() == prefix.size()) {
+      throw InputError("name", 0, in_quotes(name),
+                       "a name that begins with " + in_quotes(prefix) + ", as its file has it");
+    }
+    patches.push_back(xml().set_attribute(joint, "name", name.substr(prefix.size())));
   }
-  change_.apply(scenario_.robot_file, xml().set_attribute(element.front(), "name", name.substr(prefix.size())));
-  replace_joint_names(change_, scenario_, {{old_name, name}}, false);
+  change_.apply_all(scenario_.robot_file, std::move(patches));
+  replace_joint_names(change_, scenario_, names, false);
 }
 
 void RobotChange::rename(const std::string& name) {

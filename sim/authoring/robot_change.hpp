@@ -31,6 +31,8 @@ class RobotChange {
   void set_max_speed(JointMask joints, double radians_per_second);
   /// The joint has its new name in the actuation file and in sensors, too.
   void rename_joint(unsigned joint, const std::string& name);
+  /// New names by the present ones, all at once: joints can exchange their names.
+  void rename_joints(const std::map<std::string, std::string>& names);
   /// The robot's own name.
   void rename(const std::string& name);
   /// Sets a value of <servo>: "gain" (1/s), "period" (ms), "commandspeed" (degrees/s), "latency" (ms).

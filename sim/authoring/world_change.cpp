@@ -70,23 +70,47 @@ std::optional<double> lowest_point(const Pose& pose, const std::vector<WorldShap
   return lowest;
 }
 
-}  // namespace
-
-const WorldObject& WorldChange::editable(std::size_t number) const {
-  if (number >= world_.objects.size()) {
+const WorldObject& editable_object(const WorldContents& world, std::size_t number) {
+  if (number >= world.objects.size()) {
     throw InputError("object", 0, std::to_string(number),
-                     "a number below " + std::to_string(world_.objects.size()) + ", of an object of the world");
+                     "a number below " + std::to_string(world.objects.size()) + ", of an object of the world");
   }
-  const WorldObject& found = world_.objects[number];
+  const WorldObject& found = world.objects[number];
   if (!found.body) {
     throw InputError("object", 0, in_quotes(found.name) + " is in " + found.file,
-                     "an object of " + world_.file + "; other worlds may use that file, too");
+                     "an object of " + world.file + "; other worlds may use that file, too");
   }
   return found;
 }
 
+}  // namespace
+
+std::vector<ElementNumber> elements_of(const WorldContents& world, const std::vector<std::size_t>& objects,
+                                       bool with_group) {
+  std::set<ElementNumber> elements;
+  for (const std::size_t number : objects) {
+    const WorldObject& found = editable_object(world, number);
+    const bool whole = found.group && (with_group || found.group_size == 1);
+    elements.insert(whole ? *found.group : *found.body);
+  }
+  if (elements.empty()) {
+    throw InputError("objects", 0, "none", "at least one object of the world");
+  }
+  return {elements.begin(), elements.end()};
+}
+
+ElementNumber add_object(DraftChange& change, const std::string& file, const std::string& lines) {
+  const std::vector<ElementNumber> all = change.xml(file).children(0, "KinBody");
+  if (all.empty()) {
+    change.apply(file, change.xml(file).add_last(0, lines));
+    return change.xml(file).children(0).back();
+  }
+  change.apply(file, change.xml(file).add_behind(all.back(), lines));
+  return next_sibling(change.xml(file), all.back());
+}
+
 void WorldChange::place(std::size_t number, const Pose& pose, bool with_group) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   if (with_group && found.group) {
     // The whole group turns and moves as its body does.
     const Pose of_group = pose_of(xml(), *found.group);
@@ -99,7 +123,7 @@ void WorldChange::place(std::size_t number, const Pose& pose, bool with_group) {
 }
 
 void WorldChange::set_size(std::size_t number, std::size_t shape_number, const std::vector<double>& size) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   if (shape_number >= found.shapes.size()) {
     throw InputError("shape", 0, std::to_string(shape_number), "a number below " + std::to_string(found.shapes.size()));
   }
@@ -179,7 +203,7 @@ void WorldChange::write_size(const WorldShape& shape, const std::vector<double>&
 }
 
 void WorldChange::set_friction(std::size_t number, std::optional<double> friction) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   // From the last on, because tags that are added or removed change the numbers of those behind them.
   for (std::size_t i = found.shapes.size(); i-- > 0;) {
     set_friction_of(change_, world_.file, found.shapes[i].element, friction);
@@ -187,14 +211,14 @@ void WorldChange::set_friction(std::size_t number, std::optional<double> frictio
 }
 
 void WorldChange::set_colour(std::size_t number, const Eigen::Vector3d& colour) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   for (std::size_t i = found.shapes.size(); i-- > 0;) {
     set_tag_of(found.shapes[i].element, "diffuseColor", vector_text(colour));
   }
 }
 
 void WorldChange::set_moves(std::size_t number, bool moves) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   if (moves && !xml().child(*found.body, "Mass")) {
     constexpr std::string_view usual_mass = "<Mass type=\"mimicgeom\">\n  <density>500</density>\n</Mass>";
     apply(xml().add_last(*found.body, usual_mass));
@@ -203,7 +227,7 @@ void WorldChange::set_moves(std::size_t number, bool moves) {
 }
 
 void WorldChange::set_mass(std::size_t number, double mass) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   const std::optional<ElementNumber> element = xml().child(*found.body, "Mass");
   if (!found.moves || !element) {
     throw InputError("mass", 0,
@@ -214,7 +238,7 @@ void WorldChange::set_mass(std::size_t number, double mass) {
 }
 
 void WorldChange::rename(std::size_t number, const std::string& name) {
-  const WorldObject& found = editable(number);
+  const WorldObject& found = editable_object(world_, number);
   if (name.empty() || !is_visible_line(name) || shortened(name) != name) {
     throw InputError("name", 0, in_quotes(name), "1 to 60 characters that a person sees");
   }
@@ -223,10 +247,12 @@ void WorldChange::rename(std::size_t number, const std::string& name) {
   apply(xml().set_attribute(is_group_name ? *found.group : *found.body, "name", name));
 }
 
-void WorldChange::remove(std::size_t number, bool with_group) {
-  const WorldObject& found = editable(number);
-  const bool whole = found.group && (with_group || found.group_size == 1);
-  apply(xml().remove(whole ? *found.group : *found.body));
+void WorldChange::remove(const std::vector<std::size_t>& objects, bool with_group) {
+  // An edit does not move the elements before it.
+  const std::vector<ElementNumber> elements = elements_of(world_, objects, with_group);
+  for (std::size_t i = elements.size(); i-- > 0;) {
+    apply(xml().remove(elements[i]));
+  }
 }
 
 std::string WorldChange::free_name(const std::string& wanted) const {
@@ -241,30 +267,27 @@ std::string WorldChange::free_name(const std::string& wanted) const {
   return name;
 }
 
-/// Behind the last one that is there, or as the last child.
-void WorldChange::add_kinbody(const std::string& lines) {
-  const std::vector<ElementNumber> all = xml().children(0, "KinBody");
-  apply(all.empty() ? xml().add_last(0, lines) : xml().add_behind(all.back(), lines));
-}
-
-void WorldChange::duplicate(std::size_t number, bool with_group, const Eigen::Vector3d& step, unsigned count) {
+void WorldChange::duplicate(const std::vector<std::size_t>& objects, bool with_group, const Eigen::Vector3d& step,
+                            unsigned count) {
   constexpr unsigned most_copies = 200;
   if (count < 1 || count > most_copies) {
     throw InputError("count", 0, std::to_string(count), "1 to " + std::to_string(most_copies));
   }
-  const WorldObject& found = editable(number);
-  const bool whole = found.group && (with_group || found.group_size == 1);
-  const ElementNumber original = whole ? *found.group : *found.body;
-  const Pose local = pose_of(xml(), original);
-  const Pose frame = whole ? Pose{} : found.pose * local.inverse();
-  // From the last copy on, each directly behind the original.
-  for (unsigned i = count; i > 0; --i) {
-    const std::string lines = unindented(xml(), original);
-    apply(xml().add_behind(original, lines));
-    const ElementNumber copy = next_sibling(xml(), original);
-    Pose moved = local;
-    moved.position += frame.inverse().orientation * (static_cast<double>(i) * step);
-    set_pose(change_, world_.file, copy, moved);
+  // An edit does not move the elements before it.
+  const std::vector<ElementNumber> originals = elements_of(world_, objects, with_group);
+  for (std::size_t at = originals.size(); at-- > 0;) {
+    const ElementNumber original = originals[at];
+    const auto body = std::ranges::find(world_.objects, original, &WorldObject::body);
+    const Pose local = pose_of(xml(), original);
+    const Pose frame = body == world_.objects.end() ? Pose{} : body->pose * local.inverse();
+    // From the last copy on, each directly behind the original.
+    for (unsigned i = count; i > 0; --i) {
+      const std::string lines = unindented(xml(), original);
+      apply(xml().add_behind(original, lines));
+      Pose moved = local;
+      moved.position += frame.inverse().orientation * (static_cast<double>(i) * step);
+      set_pose(change_, world_.file, next_sibling(xml(), original), moved);
+    }
   }
 }
 
@@ -289,7 +312,8 @@ void WorldChange::add(LibraryItem item, const std::map<std::string, double>& val
     checked[name] = value;
   }
   require_place(position, turn_degrees);
-  add_kinbody(item_text(item, checked, free_name(std::string(declaration.name)), position, turn_degrees));
+  add_object(change_, world_.file,
+             item_text(item, checked, free_name(std::string(declaration.name)), position, turn_degrees));
 }
 
 void WorldChange::add_mesh(const OwnMesh& mesh, const MeshFit& fit, bool is_sheet, const Eigen::Vector3d& position,
@@ -329,7 +353,7 @@ void WorldChange::add_mesh(const OwnMesh& mesh, const MeshFit& fit, bool is_shee
     text += "  " + element_text("RotationAxis", "0 0 1 " + number_text_of(turn_degrees)) + "\n";
   }
   text += "  <Body type=\"static\">\n    " + geom + "\n    </Geom>\n  </Body>\n</KinBody>";
-  add_kinbody(text);
+  add_object(change_, world_.file, text);
 }
 
 void WorldChange::add_ruler(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

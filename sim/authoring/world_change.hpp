@@ -20,6 +20,14 @@
 
 namespace proleg::sim {
 
+/// The elements of objects in the environment file, the first one first, each once; with_group: of the whole groups
+/// that they belong to. A group of one object goes with it. Throws InputError as WorldChange does.
+[[nodiscard]] std::vector<ElementNumber> elements_of(const WorldContents& world,
+                                                     const std::vector<std::size_t>& objects, bool with_group);
+
+/// Adds the lines of a <KinBody> behind the last <KinBody> of a world. Returns the new element.
+ElementNumber add_object(DraftChange& change, const std::string& file, const std::string& lines);
+
 /// Changes of a world. All of them refer to the world as read_world_contents() gives it for the draft before the
 /// change; a number of an object or a shape that does not exist, an object that cannot be edited, and a value out of
 /// range are an InputError. Lengths are metres, angles degrees.
@@ -38,9 +46,9 @@ class WorldChange {
   void set_moves(std::size_t object, bool moves);
   void set_mass(std::size_t object, double mass);
   void rename(std::size_t object, const std::string& name);
-  void remove(std::size_t object, bool with_group);
-  /// Adds `count` copies, each moved by `step` from the one before.
-  void duplicate(std::size_t object, bool with_group, const Eigen::Vector3d& step, unsigned count);
+  void remove(const std::vector<std::size_t>& objects, bool with_group);
+  /// Adds `count` copies of each, moved by `step` from the one before.
+  void duplicate(const std::vector<std::size_t>& objects, bool with_group, const Eigen::Vector3d& step, unsigned count);
   /// Adds an item of the library. values: by the names of its parameters; the usual values for those that are missing.
   void add(LibraryItem item, const std::map<std::string, double>& values, const Eigen::Vector3d& position,
            double turn_degrees);
@@ -55,7 +63,6 @@ class WorldChange {
   void set_start(const Eigen::Vector3d& position, const Eigen::Vector3d& degrees);
 
  private:
-  [[nodiscard]] const WorldObject& editable(std::size_t number) const;
   [[nodiscard]] ElementNumber element_of_ruler(std::size_t ruler) const;
   [[nodiscard]] const XmlText& xml() { return change_.xml(world_.file); }
   void apply(const TextPatch& patch) { change_.apply(world_.file, patch); }
@@ -65,7 +72,6 @@ class WorldChange {
   void set_tag_of(ElementNumber parent, std::string_view tag, const std::string& content) {
     set_tag(change_, world_.file, parent, tag, content);
   }
-  void add_kinbody(const std::string& lines);
   [[nodiscard]] std::string free_name(const std::string& wanted) const;
 
   const WorldContents& world_;

@@ -14,6 +14,7 @@
 #include "sim/authoring/new_scenario.hpp"
 #include "sim/authoring/robot_change.hpp"
 #include "sim/authoring/robot_contents.hpp"
+#include "sim/authoring/sensor_change.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
@@ -326,6 +327,84 @@ TEST(ModuleChange, OneLinkMovesThoseInFrontOfIt) {
   change(0);
   EXPECT_EQ(draft.draft().scenario().robot.links[4].name, "Tail");
   EXPECT_NE(message_of<InputError>([&] { change(9); }).find("below 5"), std::string::npos);
+}
+
+/// The files of the links from the tail, without their folders' common beginning.
+std::string kinds_from_tail(NewDraft& draft) {
+  std::string kinds;
+  const RobotContents contents = read_robot_contents(draft.draft());
+  for (auto link = contents.links.rbegin(); link != contents.links.rend(); ++link) {
+    kinds += link->file.find("cube-chain") != std::string::npos ? 'C' : '-';
+  }
+  return kinds;
+}
+
+class MovedJoint : public testing::Test {
+ protected:
+  // Link 2, in front of joint 1, is a cube with a sensor.
+  void SetUp() override {
+    draft_.draft().change("test", {}, [&](DraftChange& edit) {
+      set_kind_of_links(edit, module_kind(*find_robot_kind("cube-chain")), std::array<std::size_t, 1>{2});
+    });
+    const Scenario before = draft_.draft().scenario();
+    const RobotContents contents = read_robot_contents(draft_.draft());
+    draft_.draft().change("test", {}, [&](DraftChange& edit) {
+      SensorChange(before, contents, edit).add(SensorKind::inclinometer, 2, SensorPlace::front);
+    });
+    ASSERT_EQ(kinds_from_tail(draft_), "--C--");
+    ASSERT_EQ(sensor_link(), 2U);
+  }
+  [[nodiscard]] std::size_t sensor_link() {
+    const RobotContents contents = read_robot_contents(draft_.draft());
+    const auto link = std::ranges::find(contents.links, contents.sensors.at(0).part, &LinkContents::name);
+    return static_cast<std::size_t>(link - contents.links.begin());
+  }
+  [[nodiscard]] double head() { return draft_.draft().scenario().robot.links[0].pose.position.y(); }
+
+  NewDraft draft_{"pypp"};
+};
+
+TEST_F(MovedJoint, TakesItsLinkAndTheSensorsOnItAlong) {
+  const std::string before = draft_.text();
+  const double length = head();
+  draft_.change([](ChainChange& chain) { chain.move(1, 0); });
+  EXPECT_EQ(draft_.axes(), "yppp");
+  EXPECT_EQ(kinds_from_tail(draft_), "-C---");
+  EXPECT_EQ(sensor_link(), 3U) << "from the head";
+  EXPECT_NEAR(head(), length, 1e-9);
+  EXPECT_NEAR(draft_.draft().scenario().robot.links[2].pose.position.y() -
+                  draft_.draft().scenario().robot.links[3].pose.position.y(),
+              0.060, 1e-9)
+      << "the short link is behind the second one";
+  ASSERT_TRUE(draft_.draft().undo());
+  EXPECT_EQ(draft_.text(), before);
+  draft_.change([](ChainChange& chain) { chain.move(0, 2); });
+  EXPECT_EQ(draft_.axes(), "yppp");
+  EXPECT_EQ(kinds_from_tail(draft_), "-C---") << "those between close up";
+}
+
+TEST_F(MovedJoint, AtTheHeadHasTheLinkBehindIt) {
+  draft_.change([](ChainChange& chain) { chain.move(1, 3); });
+  EXPECT_EQ(draft_.axes(), "pppy");
+  EXPECT_EQ(kinds_from_tail(draft_), "---C-") << "the head stays";
+  EXPECT_EQ(sensor_link(), 1U);
+  draft_.change([](ChainChange& chain) { chain.move(3, 1); });
+  EXPECT_EQ(draft_.axes(), "pypp");
+  EXPECT_EQ(kinds_from_tail(draft_), "--C--");
+  EXPECT_EQ(sensor_link(), 2U);
+}
+
+TEST_F(MovedJoint, IsAJointThatExists) {
+  EXPECT_NE(draft_.refusal([](ChainChange& chain) { chain.move(0, 4); }).find("below 4"), std::string::npos);
+  EXPECT_NE(draft_.refusal([](ChainChange& chain) { chain.move(9, 0); }).find("below 4"), std::string::npos);
+}
+
+TEST(MovedJointOfASmallRobot, LeavesALinkInTheRobotsFileWhereItIs) {
+  MemoryFiles files = small_scenario();
+  Draft draft(files.scenario(), files);
+  draft.change("test", {}, [](DraftChange& edit) { ChainChange(edit).move(0, 1); });
+  EXPECT_EQ(read_robot_contents(draft).links[1].name, "Middle");
+  EXPECT_EQ(read_robot_contents(draft).joints[1].axis, Eigen::Vector3d(0, 0, 1));
 }
 
 TEST(CountedNames, CountInEitherDirection) {

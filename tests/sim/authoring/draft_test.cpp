@@ -194,10 +194,10 @@ TEST_F(DraftTest, UndoAndRedoReturnToEveryEarlierState) {
               change.set_moves(object, below(2) == 0);
               break;
             case 7:
-              change.remove(object, below(2) == 0);
+              change.remove({object}, below(2) == 0);
               break;
             case 8:
-              change.duplicate(object, below(2) == 0, place, static_cast<unsigned>(1 + below(3)));
+              change.duplicate({object}, below(2) == 0, place, static_cast<unsigned>(1 + below(3)));
               break;
             case 9:
               change.add(static_cast<LibraryItem>(below(library().size())), {}, place, 10.0 * number());

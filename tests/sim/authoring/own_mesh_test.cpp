@@ -144,7 +144,7 @@ TEST_F(OwnMeshInWorld, IsChangedAsOtherObjectsAre) {
   change_world(draft_, [](WorldChange& world) { world.set_colour(4, {0, 1, 0}); });
   EXPECT_EQ(added().geometries.at(0).mesh->colours.at(0), Eigen::Vector3f(0, 1, 0));
   change_world(draft_, [](WorldChange& world) { world.set_friction(4, 0.9); });
-  change_world(draft_, [](WorldChange& world) { world.duplicate(4, true, {0.5, 0, 0}, 2); });
+  change_world(draft_, [](WorldChange& world) { world.duplicate({4}, true, {0.5, 0, 0}, 2); });
   EXPECT_EQ(read_world_contents(draft_).objects.size(), 8U);
   change_world(draft_, [](WorldChange& world) { world.set_moves(4, true); });
   EXPECT_EQ(draft_.scenario().environment.moving_objects.size(), 2U);
@@ -186,7 +186,7 @@ TEST_F(OwnMeshInWorld, UndoTakesItsFilesWithIt) {
   EXPECT_FALSE(draft_.has("meshes/box.off"));
   EXPECT_TRUE(draft_.redo());
   EXPECT_EQ(draft_.text("meshes/box.off"), box_off);
-  change_world(draft_, [](WorldChange& world) { world.remove(4, true); });
+  change_world(draft_, [](WorldChange& world) { world.remove({4}, true); });
   EXPECT_FALSE(draft_.has("meshes/box.off")) << "Save writes no file that nothing names";
   EXPECT_TRUE(draft_.undo());
   EXPECT_EQ(draft_.text("meshes/box.off"), box_off);

@@ -147,9 +147,9 @@ TEST_F(WorldTest, AnObjectThatMovesHasAMass) {
 TEST_F(WorldTest, ObjectsAreRenamedRemovedAndRepeated) {
   change_world(draft_, [&](WorldChange& change) { change.rename(find("ball"), "red \"ball\""); });
   EXPECT_EQ(text(), replaced(world_text, "name=\"ball\"", "name=\"red &quot;ball&quot;\""));
-  change_world(draft_, [&](WorldChange& change) { change.remove(find("low"), false); });
+  change_world(draft_, [&](WorldChange& change) { change.remove({find("low")}, false); });
   EXPECT_EQ(object("high").group_size, 1U);
-  change_world(draft_, [&](WorldChange& change) { change.duplicate(find("high"), false, {0, 0.5, 0}, 3); });
+  change_world(draft_, [&](WorldChange& change) { change.duplicate({find("high")}, false, {0, 0.5, 0}, 3); });
   ASSERT_EQ(world().objects.size(), 7U);
   const Pose first = object("high").pose;
   std::size_t found = 0;
@@ -161,7 +161,7 @@ TEST_F(WorldTest, ObjectsAreRenamedRemovedAndRepeated) {
     }
   }
   EXPECT_EQ(found, 4U);
-  change_world(draft_, [&](WorldChange& change) { change.remove(find("high"), true); });
+  change_world(draft_, [&](WorldChange& change) { change.remove({find("high")}, true); });
   EXPECT_EQ(world().objects.size(), 6U);
 }
 
@@ -268,11 +268,11 @@ TEST_F(WorldTest, WhatCannotBeDoneIsRefusedWithItsReason) {
            {[&](WorldChange& change) { change.rename(ball, ""); }, "1 to 60 characters"},
            {[&](WorldChange& change) { change.rename(ball, "a\nb"); }, "1 to 60 characters"},
            {[&](WorldChange& change) {
-              change.duplicate(ball, false, {1, 0, 0}, 0);
+              change.duplicate({ball}, false, {1, 0, 0}, 0);
             },
             "1 to 200"},
            {[&](WorldChange& change) {
-              change.duplicate(ball, false, {1, 0, 0}, 200);
+              change.duplicate({ball}, false, {1, 0, 0}, 200);
             },
             "more than 200 bodies"},
            {[&](WorldChange& change) {

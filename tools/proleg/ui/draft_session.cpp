@@ -13,6 +13,7 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/part_change.hpp"
+#include "sim/authoring/world_clipboard.hpp"
 #include "sim/mesh/mesh_file.hpp"
 #include "sim/scenario/actuation_reader.hpp"
 #include "sim/scenario/names.hpp"
@@ -288,8 +289,8 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
       {"draft.take", &DraftSession::take},       {"draft.undo", &DraftSession::undo},
       {"draft.redo", &DraftSession::redo},       {"draft.restore", &DraftSession::restore},
       {"draft.discard", &DraftSession::discard}, {"draft.refresh", &DraftSession::refresh},
-      {"draft.diff", &DraftSession::diff},       {"draft.save", &DraftSession::save},
-      {"draft.save_as", &DraftSession::save_as}};
+      {"draft.diff", &DraftSession::diff},       {"draft.copy", &DraftSession::copy},
+      {"draft.save", &DraftSession::save},       {"draft.save_as", &DraftSession::save_as}};
   const std::string& name = operation.name;
   const json& arguments = operation.arguments;
   const DraftOperationReader reader = reader_of(name);
@@ -311,15 +312,26 @@ json DraftSession::change_draft(const json& arguments, const std::function<Draft
     publish();
   }
   const DraftOperation change = read();
-  const auto layout = argument<std::uint64_t>(arguments, "layout", "the layout of the draft");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  // Positions in lists that another change has altered would name other parts.
-  if (change.names_positions && layout != layout_since_) {
-    throw std::runtime_error("the parts of the draft have changed meanwhile; look at them again");
+  if (change.names_positions) {
+    require_layout(arguments);
   }
   draft().change(change.label, gesture, change.change);
   is_layout_new_ = is_layout_new_ || change.moves_positions;
   return {{"revision", draft().revision()}};
+}
+
+/// Positions in lists that another change has altered would name other parts.
+void DraftSession::require_layout(const json& arguments) const {
+  if (argument<std::uint64_t>(arguments, "layout", "the layout of the draft") != layout_since_) {
+    throw std::runtime_error("the parts of the draft have changed meanwhile; look at them again");
+  }
+}
+
+json DraftSession::copy(const json& arguments) {
+  static_cast<void>(draft());
+  require_layout(arguments);
+  return {{"text", sim::copied_objects(draft(), positions(arguments, "objects"))}};
 }
 
 /// Changes of a scenario with files are kept beside them, and offered when it is opened again.

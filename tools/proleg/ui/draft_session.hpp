@@ -55,7 +55,9 @@ class DraftSession final : private SessionThread {
   ~DraftSession() override;
 
   /// Operations that anybody may use.
-  [[nodiscard]] static std::vector<std::string> free_operations() { return {"draft.diff", "draft.refresh"}; }
+  [[nodiscard]] static std::vector<std::string> free_operations() {
+    return {"draft.diff", "draft.copy", "draft.refresh"};
+  }
 
  private:
   // SessionThread
@@ -81,6 +83,7 @@ class DraftSession final : private SessionThread {
   void publish_missing(const std::optional<MissingAlgorithms>& missing);
   /// Does what reads a scenario. If that lacks algorithms, it publishes them and throws.
   void read_or_name_missing(const std::string& file, const char* action, const std::function<void()>& read);
+  void require_layout(const nlohmann::json& arguments) const;
   /// Reads the draft again if an algorithm was loaded again since it was read.
   void read_algorithms_again();
   void require_unchanged_on_disk(const sim::Draft::ChangedFile& file);
@@ -94,6 +97,7 @@ class DraftSession final : private SessionThread {
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json refresh(const nlohmann::json& arguments);
   nlohmann::json diff(const nlohmann::json& arguments);
+  nlohmann::json copy(const nlohmann::json& arguments);
   nlohmann::json restore(const nlohmann::json& arguments);
   nlohmann::json discard(const nlohmann::json& arguments);
   nlohmann::json save(const nlohmann::json& arguments);

@@ -10,6 +10,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/chain_change.hpp"
+#include "sim/authoring/joint_table.hpp"
 #include "sim/authoring/module_change.hpp"
 #include "sim/authoring/module_kind.hpp"
 #include "sim/authoring/robot_change.hpp"
@@ -101,6 +102,53 @@ DraftOperation rename_joint(const json& words, const sim::Draft& draft) {
                });
 }
 
+std::optional<Eigen::Vector3d> optional_vector(const json& words, const char* name) {
+  return words.contains(name) ? std::optional(vector(words, name)) : std::nullopt;
+}
+
+/// An entry of the argument `joints` of robot.table.
+sim::JointRow joint_row(const json& words) {
+  if (!words.is_object()) {
+    throw InputError("joints", 0, "no object", "an object for each joint");
+  }
+  sim::JointRow row;
+  row.joint = static_cast<unsigned>(position_of(words, "joint"));
+  row.name = argument<std::string>(words, "name", "a text");
+  row.axis = optional_vector(words, "axis");
+  if (words.contains("limits")) {
+    const std::vector<double> given = numbers(words, "limits");
+    if (given.size() != 2) {
+      throw InputError("limits", 0, std::to_string(given.size()) + " numbers", "two numbers, the lower limit first");
+    }
+    row.limits = {given[0], given[1]};
+  }
+  row.torque = argument<double>(words, "torque", "a number");
+  row.speed = argument<double>(words, "speed", "a number");
+  return row;
+}
+
+/// Values of several joints; before that the chain gets `count` joints, if that is there.
+DraftOperation table(const json& words, const sim::Draft& /*draft*/) {
+  const json given = words.value("joints", json());
+  if (!given.is_array() || given.size() > max_joints) {
+    throw InputError("joints", 0, given.is_array() ? std::to_string(given.size()) + " entries" : "no list",
+                     "a list of at most " + std::to_string(max_joints) + " joints");
+  }
+  std::vector<sim::JointRow> rows;
+  for (const json& entry : given) {
+    rows.push_back(joint_row(entry));
+  }
+  const auto count = argument<std::uint32_t>(words, "count", "a number of joints");
+  return {"table of joints",
+          [rows = std::move(rows), count](DraftChange& edit) {
+            if (count) {
+              ChainChange(edit).set_joint_count(*count);
+            }
+            set_joint_table(edit, rows);
+          },
+          count.has_value()};
+}
+
 DraftOperation rename(const json& words, const sim::Draft& draft) {
   return parts("rename robot", draft, [name = text(words, "name")](RobotChange& robot) { robot.rename(name); });
 }
@@ -156,6 +204,12 @@ DraftOperation order(const json& words, const sim::Draft& draft) {
     counted.push_back(from_tail(*joint, draft));
   }
   return chain("order of joints", [counted](ChainChange& changed) { changed.order(counted); });
+}
+
+DraftOperation move_joint(const json& words, const sim::Draft& draft) {
+  return chain("move joint",
+               [from = from_tail(position_of(words, "joint"), draft),
+                to = from_tail(position_of(words, "to"), draft)](ChainChange& changed) { changed.move(from, to); });
 }
 
 sim::ModuleKind kind_named(const std::string& name, const sim::Draft& draft) {
@@ -254,6 +308,7 @@ DraftOperation robot_operation(const std::string& name, const json& arguments, c
                                                           {"robot.speed", speed},
                                                           {"robot.rename_joint", rename_joint},
                                                           {"robot.rename", rename},
+                                                          {"robot.table", table},
                                                           {"robot.servo", servo},
                                                           {"robot.mass", mass},
                                                           {"robot.friction", friction},
@@ -261,6 +316,7 @@ DraftOperation robot_operation(const std::string& name, const json& arguments, c
                                                           {"robot.remove", remove_joint},
                                                           {"robot.count", count},
                                                           {"robot.order", order},
+                                                          {"robot.move", move_joint},
                                                           {"robot.kind", kind},
                                                           {"robot.add_sensor", add_sensor},
                                                           {"robot.remove_sensor", remove_sensor},

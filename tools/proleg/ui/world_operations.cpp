@@ -11,6 +11,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/world_change.hpp"
+#include "sim/authoring/world_clipboard.hpp"
 #include "tools/proleg/ui/draft_arguments.hpp"
 #include "tools/proleg/ui/draft_operations.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -78,19 +79,26 @@ WorldOperation rename(const json& arguments, const sim::WorldContents& world) {
           }};
 }
 
+/// "box", or "3 objects"; the parts of a group count as one.
+std::string name_of_all(const json& arguments, const sim::WorldContents& world) {
+  const std::vector<std::size_t> all = positions(arguments, "objects");
+  return all.size() == 1 && all.front() < world.objects.size() ? world.objects[all.front()].name
+                                                               : std::to_string(all.size()) + " objects";
+}
+
 WorldOperation remove(const json& arguments, const sim::WorldContents& world) {
-  return {"delete " + name_of(arguments, world),
-          [object = position_of(arguments, "object"), group = is_set(arguments, "group")](WorldChange& change) {
-            change.remove(object, group);
+  return {"delete " + name_of_all(arguments, world),
+          [objects = positions(arguments, "objects"), group = is_set(arguments, "group")](WorldChange& change) {
+            change.remove(objects, group);
           }};
 }
 
 WorldOperation duplicate(const json& arguments, const sim::WorldContents& world) {
   return {
-      "duplicate " + name_of(arguments, world),
-      [object = position_of(arguments, "object"), group = is_set(arguments, "group"), step = vector(arguments, "step"),
+      "duplicate " + name_of_all(arguments, world),
+      [objects = positions(arguments, "objects"), group = is_set(arguments, "group"), step = vector(arguments, "step"),
        count = argument<std::uint32_t>(arguments, "count", "a whole number").value_or(1)](WorldChange& change) {
-        change.duplicate(object, group, step, count);
+        change.duplicate(objects, group, step, count);
       }};
 }
 
@@ -136,6 +144,13 @@ WorldOperation remove_ruler(const json& arguments, const sim::WorldContents& /*w
 
 DraftOperation world_operation(const std::string& name, const json& arguments, const sim::Draft& draft) {
   auto world = std::make_shared<const sim::WorldContents>(read_world_contents(draft));
+  if (name == "world.paste") {
+    return {"paste objects",
+            [world, pasted = text(arguments, "text"), step = vector(arguments, "step")](sim::DraftChange& edit) {
+              paste_objects(*world, edit, pasted, step);
+            },
+            false, false};
+  }
   using Reader = WorldOperation (*)(const json&, const sim::WorldContents&);
   static const std::map<std::string_view, Reader> readers{{"world.place", place},
                                                           {"world.resize", resize},

@@ -5,7 +5,7 @@ import { ActionList } from '../state/actions.js';
 import type { PageState } from '../state/page_state.js';
 import { SignalSelection } from '../state/signal_selection.js';
 import { TimeView } from '../state/time_view.js';
-import type { RobotView } from '../view/robot_view.js';
+import type { Choice, RobotView } from '../view/robot_view.js';
 import type { RobotDocument, Signal, TelemetryDocument } from '../wire/messages.js';
 import { rowLayout } from '../wire/subscription.js';
 
@@ -33,6 +33,7 @@ export class DraftView implements RobotView {
     page: PageState,
     readonly actions: ActionList,
     readonly startSceneWorker: () => Worker,
+    readonly choice: Choice,
   ) {
     effect(() => {
       const robot = page.draftRobot.value;

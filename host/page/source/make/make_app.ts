@@ -2,7 +2,9 @@
 import { computed, effect, signal } from '@preact/signals-core';
 import { arrayOf, headingOf, outline, type Point } from '../geometry/outline.js';
 import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
+import type { PlacedObject } from '../scene/scene_messages.js';
 import { ActionList } from '../state/actions.js';
+import { openDialog, toggleDialog } from '../view/dialogs.js';
 import { addFront } from '../view/front.js';
 import type { Stores } from '../view/robot_view.js';
 import type { Body, DraftDocument, NewScenario, Operations, PartOperation, RobotDocument, WorldObject } from '../wire/messages.js';
@@ -10,6 +12,7 @@ import { algorithmApp } from './algorithm/algorithm_app.js';
 import { AlgorithmOffer } from './algorithm/algorithm_offer.js';
 import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
+import { copyJoints, jointColumns, type JointPaste } from './joint_table.js';
 import { OwnMesh } from './own_mesh.js';
 import type { MeshFile } from './mesh_transfer.js';
 
@@ -32,6 +35,9 @@ interface Drag {
 }
 
 export const startOfRobot = -1;
+export const groundSize = 40; // metres; what is larger is ground, which is not dragged or chosen in a drawing
+const copyStep = [0.5, 0, 0] as const; // metres
+const mostPasted = 50_000; // characters; the program refuses more than 48 KiB, and a message has a limit
 
 // What an object looks like.
 export function bodyOf(robot: RobotDocument, object: WorldObject): Body | undefined {
@@ -39,7 +45,7 @@ export function bodyOf(robot: RobotDocument, object: WorldObject): Body | undefi
 }
 
 export class MakeApp {
-  readonly chosen = signal<number | null>(null);
+  readonly chosenObjects = signal<readonly number[]>([]); // of a group one
   readonly drag = signal<Drag | null>(null);
   readonly panel = signal<'none' | 'new' | 'open' | 'save' | 'algorithm'>('none'); // what is open below the bar
   readonly part = signal<PartName>('world');
@@ -55,10 +61,14 @@ export class MakeApp {
   readonly mesh: OwnMesh; // before it is part of the draft
   readonly draft = computed(() => this.page.state.draft.value);
   readonly objects = computed(() => this.draft.value?.world.objects ?? []);
+  // The only object that is chosen; null: none, or several.
+  readonly chosen = computed(() => (this.chosenObjects.value.length === 1 ? (this.chosenObjects.value[0] as number) : null));
   readonly chosenObject = computed(() => {
     const chosen = this.chosen.value;
     return chosen === null ? null : (this.objects.value[chosen] ?? null);
   });
+  // Text for the table of joints, until the table takes it.
+  readonly jointText = signal<string | null>(null);
   private isSending = false;
   private waiting: (() => Promise<unknown>) | null = null; // the newest step of a drag
   private whenSent: (() => void) | null = null; // what is done when no step is on its way
@@ -72,7 +82,11 @@ export class MakeApp {
       restore: () => this.restore(),
     });
     this.actions = new ActionList(page.actions, (action) => action.group === 'Page' || action.group === 'Robot');
-    this.view = new DraftView(page.state, this.actions, () => page.startSceneWorker());
+    this.view = new DraftView(page.state, this.actions, () => page.startSceneWorker(), {
+      joints: this.chosenJoints,
+      objects: computed(() => this.objects.value.filter((_, number) => this.isChosen(number))),
+      choose: (joint, object, adds) => this.chooseInView(joint, object, adds),
+    });
     this.mesh = new OwnMesh({
       operations: page.operations,
       obstacle: () => this.obstacle(),
@@ -80,7 +94,11 @@ export class MakeApp {
       makeModule: (words) => this.change('robot.own_module', words),
     });
     const canChange = () => this.obstacle() === null && this.draft.value !== null;
-    const canChangeChosen = () => canChange() && this.chosenObject.value?.editable === true;
+    const hasChosen = () => this.chosenObjects.value.length > 0 && this.chosenObjects.value.every((number) => this.objects.value[number]?.editable === true);
+    const isRobot = () => this.part.value === 'robot';
+    const hasOneJoint = () => this.chosenJoints.value.length === 1;
+    // Text that is chosen in the page is copied by the browser.
+    const canCopy = () => (isRobot() ? this.draft.value !== null : hasChosen()) && (document.getSelection()?.isCollapsed ?? true);
     this.actions.add(
       { id: 'draft_new', title: 'New: a robot, its gait and its world', group: 'Make', keys: ['N'], run: () => this.toggle('new') },
       { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
@@ -88,8 +106,13 @@ export class MakeApp {
       { id: 'draft_open', title: 'Open: show the scenarios', group: 'Make', keys: ['Ctrl+O'], isGlobal: true, run: () => this.toggle('open') },
       { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, isEnabled: () => !hasEditorFocus(), run: () => this.toggle('save') },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
-      { id: 'delete_object', title: 'Delete the chosen object, or joint', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: () => (this.part.value === 'robot' ? canChange() && this.chosenJoints.value.length === 1 : canChangeChosen()), run: () => void (this.part.peek() === 'robot' ? this.removeJoint() : this.remove()) },
-      { id: 'duplicate_object', title: 'Duplicate the chosen object', group: 'Make', keys: ['Ctrl+D'], isEnabled: canChangeChosen, run: () => void this.duplicate([0.5, 0, 0], 1) },
+      { id: 'delete_object', title: 'Delete the chosen objects, or the joint', group: 'Make', keys: ['Delete', 'Backspace'], isEnabled: () => canChange() && (isRobot() ? hasOneJoint() : hasChosen()), run: () => void (isRobot() ? this.removeJoint() : this.remove()) },
+      { id: 'joint_table', title: 'Table of joints: copy and paste', group: 'Make', keys: ['T'], isEnabled: () => this.draft.value !== null, run: () => this.toggleJointTable() },
+      { id: 'duplicate_object', title: 'Duplicate the chosen objects, or the joint', group: 'Make', keys: ['Ctrl+D'], isEnabled: () => canChange() && (isRobot() ? hasOneJoint() : hasChosen()), run: () => void (isRobot() ? this.duplicateJoint() : this.tellDuplicate()) },
+      { id: 'copy_object', title: 'Copy the chosen objects, or the table of joints', group: 'Make', keys: ['Ctrl+C'], isEnabled: canCopy, run: () => void (isRobot() ? this.copyJoints() : this.copy()) },
+      { id: 'cut_object', title: 'Cut the chosen objects', group: 'Make', keys: ['Ctrl+X'], isEnabled: () => canChange() && !isRobot() && hasChosen() && canCopy(), run: () => void this.cut() },
+      // The browser gives the text of the clipboard with the event that the key becomes.
+      { id: 'paste', title: 'Paste objects, or a table of joints', group: 'Make', keys: ['Ctrl+V'], isLeftToBrowser: true, isEnabled: canChange, run: () => void this.pasteFromClipboard() },
     );
     page.makeActions.value = this.actions;
     addFront({
@@ -168,7 +191,7 @@ export class MakeApp {
 
   // Another scenario has other parts.
   private forgetChoice(): void {
-    this.chosen.value = null;
+    this.chosenObjects.value = [];
     this.chosenJoints.value = [];
     this.chosenModule.value = 0;
     this.discards.value = false;
@@ -300,19 +323,139 @@ export class MakeApp {
     return { position: pose.position, orientation: multiply(fromAxisAngle([0, 0, 1], by), pose.orientation) };
   }
 
+  // Whether an object is chosen, or belongs to one that is.
+  isChosen(number: number): boolean {
+    const object = this.objects.value[number];
+    return this.chosenObjects.value.some((chosen) => {
+      const other = this.objects.value[chosen];
+      return chosen === number || (object !== undefined && object.group_size > 1 && object.group === other?.group);
+    });
+  }
+
+  // Chooses one object, or none. adds: the others stay chosen, and a chosen one is taken out again.
+  chooseObject(number: number | null, adds = false): void {
+    const chosen = this.chosenObjects.peek();
+    if (number === null) {
+      if (!adds) this.chosenObjects.value = [];
+      return;
+    }
+    const group = this.objects.peek()[number]?.group ?? null;
+    const others = chosen.filter((other) => other !== number && (group === null || this.objects.peek()[other]?.group !== group));
+    this.chosenObjects.value = adds ? (others.length === chosen.length ? [...chosen, number] : others) : [number];
+  }
+
+  // Chooses what was clicked in the 3D view, and shows its part. The ground is the background.
+  private chooseInView(joint: number | null, object: PlacedObject | null, adds: boolean): void {
+    const number = object === null ? -1 : this.objects.peek().findIndex(({ moves, index }) => moves === object.moves && index === object.index);
+    const isGround = this.objects.peek()[number]?.shapes.some(({ size }) => Math.max(...size) > groundSize) ?? true;
+    if (joint !== null) {
+      this.part.value = 'robot';
+      this.chosenObjects.value = [];
+      this.chooseJoint(joint, adds);
+    } else if (!isGround) {
+      this.part.value = 'world';
+      this.chosenJoints.value = [];
+      this.chooseObject(number, adds);
+    } else if (!adds) {
+      this.chooseObject(null);
+      this.chosenJoints.value = [];
+    }
+  }
+
   async remove(): Promise<void> {
-    const chosen = this.chosen.peek();
-    const object = this.chosenObject.peek();
-    if (chosen === null || object === null) return;
-    this.chosen.value = null;
-    await this.tell('world.remove', { object: chosen, group: object.group_size > 1 });
+    const objects = this.chosenObjects.peek();
+    this.chosenObjects.value = [];
+    await this.tell('world.remove', { objects, group: true });
   }
 
   async duplicate(step: [number, number, number], count: number): Promise<string | null> {
-    const chosen = this.chosen.peek();
-    const object = this.chosenObject.peek();
-    if (chosen === null || object === null) return null;
-    return this.change('world.duplicate', { object: chosen, group: object.group_size > 1, step, count });
+    const objects = this.chosenObjects.peek();
+    return objects.length === 0 ? null : this.change('world.duplicate', { objects, group: true, step, count });
+  }
+
+  private async tellDuplicate(): Promise<void> {
+    const refusal = await this.duplicate([...copyStep], 1);
+    if (refusal !== null) this.page.state.addNotice('warning', refusal);
+  }
+
+  private async duplicateJoint(): Promise<void> {
+    const joint = this.chosenJoints.peek()[0];
+    if (joint !== undefined) await this.tell('robot.duplicate', { joint });
+  }
+
+  // Puts the chosen objects on the clipboard. Returns whether they are there.
+  async copy(): Promise<boolean> {
+    const layout = this.draft.peek()?.layout ?? 0;
+    const answer = await this.page.operations.tell('draft.copy', { layout, objects: this.chosenObjects.peek() });
+    const text = (answer as { text: string } | null)?.text;
+    return text !== undefined && this.toClipboard(text);
+  }
+
+  async cut(): Promise<void> {
+    const objects = this.chosenObjects.peek();
+    if ((await this.copy()) && this.chosenObjects.peek() === objects) await this.remove();
+  }
+
+  // The rows of the chosen joints, or of all, with titles.
+  async copyJoints(): Promise<boolean> {
+    const joints = this.draft.peek()?.robot.joints ?? [];
+    const chosen = this.chosenJoints.peek();
+    const rows = joints.filter((_, joint) => chosen.length === 0 || chosen.includes(joint)).reverse();
+    return this.toClipboard(copyJoints(rows, { from: { row: 0, column: 0 }, to: { row: rows.length, column: jointColumns.length } }));
+  }
+
+  private async toClipboard(text: string): Promise<boolean> {
+    try {
+      await navigator.clipboard.writeText(text);
+      return true;
+    } catch {
+      this.page.state.addNotice('warning', 'Nothing was copied: the browser does not let this page write to the clipboard.');
+      return false;
+    }
+  }
+
+  // A text of the clipboard: objects of a world, or in the part Robot a table of joints.
+  async paste(text: string): Promise<void> {
+    if (this.part.peek() === 'robot' && !text.trimStart().startsWith('<')) {
+      this.jointText.value = text;
+      this.panel.value = 'none';
+      openDialog.value = 'joint_table';
+      return;
+    }
+    const count = () => this.objects.peek().filter(({ editable }) => editable).length;
+    const before = count();
+    const layout = this.draft.peek()?.layout ?? 0;
+    const answer = await this.page.operations.tell('world.paste', { layout, text: text.slice(0, mostPasted), step: [...copyStep] });
+    if (answer === null) return;
+    await this.draftOf((answer as { revision: number }).revision);
+    this.part.value = 'world';
+    this.chosenObjects.value = [];
+    for (let number = before; number < count(); number += 1) {
+      if (!this.isChosen(number)) this.chooseObject(number, true);
+    }
+  }
+
+  // Waits for the draft of a revision, or a later one: an answer may come before the documents.
+  private draftOf(revision: number): Promise<void> {
+    return new Promise((resolve) => {
+      const stop = effect(() => {
+        if ((this.draft.value?.revision ?? 0) < revision) return;
+        resolve();
+        queueMicrotask(() => stop());
+      });
+    });
+  }
+
+  // For a button and a touch screen.
+  async pasteFromClipboard(): Promise<void> {
+    let text: string;
+    try {
+      text = await navigator.clipboard.readText();
+    } catch {
+      this.page.state.addNotice('warning', 'The browser does not let this page read the clipboard: press Ctrl + V.');
+      return;
+    }
+    await this.paste(text);
   }
 
   // The outlines of the shapes in the world from above.
@@ -347,8 +490,34 @@ export class MakeApp {
     const round = (value: number) => Math.round(value * 1000) / 1000;
     const position: [number, number, number] = [round(x + distance * Math.cos(heading)), round(y + distance * Math.sin(heading)), 0];
     const refusal = await add({ position, turn: draft.world.start.degrees[2] });
-    if (refusal === null) this.chosen.value = before;
+    if (refusal === null) this.chooseObject(before);
     return refusal;
+  }
+
+  private toggleJointTable(): void {
+    this.part.value = 'robot';
+    this.panel.value = 'none';
+    toggleDialog('joint_table');
+  }
+
+  // Chooses one joint, or adds it to those that are chosen; a chosen one is taken out again.
+  chooseJoint(joint: number, adds: boolean): void {
+    const chosen = this.chosenJoints.peek();
+    const others = chosen.filter((other) => other !== joint);
+    this.chosenJoints.value = adds ? (others.length === chosen.length ? [...chosen, joint] : others) : [joint];
+  }
+
+  // Moves a joint, with its link, to the place of another one. Returns whether that was possible.
+  async moveJoint(joint: number, to: number): Promise<boolean> {
+    const isDone = to !== joint && (await this.tell('robot.move', { joint, to }));
+    if (isDone) this.chosenJoints.value = [to];
+    return isDone;
+  }
+
+  // Sets values of joints as one change, with the joints that are missing. Returns the reason if it was refused, else null.
+  async setJointTable({ joints, missing }: JointPaste): Promise<string | null> {
+    const count = (this.draft.peek()?.robot.joints.length ?? 0) + missing;
+    return this.change('robot.table', { joints, ...(missing > 0 ? { count } : {}) });
   }
 
   // Removes the chosen joint with its link.

@@ -1,6 +1,9 @@
 // The page Make: the scenario from above, from the side and in 3D, where the robot will go in it, and its parts: robot,
 // behaviour, world, run.
+import { useEffect } from 'preact/hooks';
 import { ScenePanel } from '../panels/scene_panel.js';
+import { openDialog } from '../view/dialogs.js';
+import { isTextField } from '../view/keyboard.js';
 import type { ForesightDocument } from '../wire/messages.js';
 import { AlgorithmOfferBand } from './algorithm_offer_band.js';
 import { AlgorithmPart } from './algorithm/algorithm_part.js';
@@ -193,9 +196,23 @@ function Part({ app }: { app: MakeApp }) {
   }
 }
 
+// What is pasted outside text fields is for the part that is shown.
+function listenToPaste(app: MakeApp): () => void {
+  const onPaste = (event: ClipboardEvent) => {
+    if (isTextField(event.composedPath()[0] ?? null) || openDialog.peek() !== 'none' || app.draft.peek() === null) return;
+    event.preventDefault();
+    const obstacle = app.obstacle();
+    if (obstacle !== null) app.page.state.addNotice('warning', obstacle);
+    else void app.paste(event.clipboardData?.getData('text/plain') ?? '');
+  };
+  document.addEventListener('paste', onPaste);
+  return () => document.removeEventListener('paste', onPaste);
+}
+
 export function MakePage({ app: page }: { app: MakeStores }) {
   make ??= new MakeApp(page);
   const app = make;
+  useEffect(() => listenToPaste(app), []);
   const draft = app.draft.value;
   if (draft === null) {
     return (

@@ -89,8 +89,20 @@ function CopyForm({ app }: { app: MakeApp }) {
 export function ObjectForm({ app }: { app: MakeApp }) {
   const number = app.chosen.value;
   const object = app.chosenObject.value;
+  const count = app.chosenObjects.value.length;
+  if (count > 1) {
+    return (
+      <div class="object-form">
+        <p>{count} objects</p>
+        <CopyForm app={app} />
+        <button type="button" disabled={app.obstacle() !== null} onClick={() => void app.remove()} title="Undo brings them back (Delete)">
+          Delete {count} objects
+        </button>
+      </div>
+    );
+  }
   if (number === null || object === null) {
-    return <p class="hint">Choose an object in the list or in the drawing to see and change its numbers.</p>;
+    return <p class="hint">Choose an object in the list, in a drawing or in the 3D view to see and change its numbers; with Shift several.</p>;
   }
   if (!object.editable) {
     return (

@@ -1,7 +1,9 @@
-// The robot as a chain: joints and links in a table from the tail to the head, and the numbers of what is chosen.
+// The robot as a chain of joints and links, and the numbers of what is chosen.
+import { openDialog } from '../view/dialogs.js';
 import type { DraftRobot } from '../wire/messages.js';
-import { axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from './robot_text.js';
+import { ChainTable } from './chain_table.js';
 import { JointForm, LinkForm } from './joint_form.js';
+import { JointTableDialog } from './joint_table_dialog.js';
 import type { MakeApp } from './make_app.js';
 import { ModuleMeshForm } from './mesh_form.js';
 import { formatNumber } from '../state/parameter_values.js';
@@ -16,68 +18,6 @@ const servoFields = [
   { name: 'latency', unit: 'ms', title: 'How late the servo acts on a new angle.' },
 ] as const;
 
-// Chooses one joint, or adds it to those that are chosen.
-function choose(app: MakeApp, joint: number, adds: boolean): void {
-  const chosen = app.chosenJoints.peek();
-  const others = chosen.filter((other) => other !== joint);
-  app.chosenJoints.value = adds ? (others.length === chosen.length ? [...chosen, joint] : others) : [joint];
-  app.view.selection.hoveredJoint.value = joint;
-}
-
-function ChainTable({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
-  const order = fromTail(robot.joints.length);
-  const chosen = app.chosenJoints.value;
-  const isDisabled = app.obstacle() !== null;
-  const kernelName = (joint: number) => robot.joints[joint]?.name ?? '';
-  return (
-    <div class="chain" data-testid="chain">
-      <table>
-        <caption>From the tail to the head</caption>
-        <thead>
-          <tr>
-            <th scope="row">joint</th>
-            {order.map((joint) => (
-              <th scope="col" key={joint}>
-                <button
-                  type="button"
-                  aria-pressed={chosen.includes(joint)}
-                  title={`${axisWord(robot.joints[joint]!.axis)}. Shift: choose several.`}
-                  onClick={(event) => choose(app, joint, event.shiftKey || event.ctrlKey)}
-                  onPointerEnter={() => (app.view.selection.hoveredJoint.value = joint)}
-                >
-                  {kernelName(joint)}
-                </button>
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          <tr>
-            <th scope="row">axis</th>
-            {order.map((joint) => {
-              const axis = robot.joints[joint]!.axis;
-              const isPitch = axisLetter(axis) === 'p';
-              return (
-                <td key={joint}>
-                  <button
-                    type="button"
-                    disabled={isDisabled}
-                    aria-label={`axis of ${kernelName(joint)}: ${axisWord(axis)}`}
-                    title={`${axisWord(axis)}. Press: ${isPitch ? 'yaw' : 'pitch'}.`}
-                    onClick={() => void app.tell('robot.axis', { joints: [joint], value: axisOfAngle(isPitch ? 90 : 0) })}
-                  >
-                    {axisLetter(axis)}
-                  </button>
-                </td>
-              );
-            })}
-          </tr>
-        </tbody>
-      </table>
-    </div>
-  );
-}
-
 // What a person does with the chosen joint as a whole.
 function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
   const count = robot.joints.length;
@@ -86,10 +26,6 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
   const obstacle = app.obstacle() ?? (robot.obstacle === null ? null : `Links cannot be added here: ${robot.obstacle}`);
   const isDisabled = obstacle !== null || joint === undefined;
   const why = obstacle ?? (joint === undefined ? 'Choose a joint first.' : undefined);
-  const move = async (to: number) => {
-    if (joint === undefined) return;
-    if (await app.tell('robot.order', { order: movedOrder(count, joint, to) })) app.chosenJoints.value = [to];
-  };
   const all = Array.from({ length: count }, (_, i) => i);
   return (
     <>
@@ -108,10 +44,10 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
         <button type="button" disabled={isDisabled || count < 2} title={why ?? 'Undo brings it back (Delete)'} onClick={() => void app.removeJoint()}>
           Delete
         </button>
-        <button type="button" disabled={isDisabled || joint === count - 1} title={why ?? 'Exchanges it with the joint behind it'} onClick={() => void move(joint! + 1)}>
+        <button type="button" disabled={isDisabled || joint === count - 1} title={why ?? 'Exchanges it, with its link, with the joint behind it'} onClick={() => void app.moveJoint(joint!, joint! + 1)}>
           ← to the tail
         </button>
-        <button type="button" disabled={isDisabled || joint === 0} title={why ?? 'Exchanges it with the joint in front of it'} onClick={() => void move(joint! - 1)}>
+        <button type="button" disabled={isDisabled || joint === 0} title={why ?? 'Exchanges it, with its link, with the joint in front of it'} onClick={() => void app.moveJoint(joint!, joint! - 1)}>
           to the head →
         </button>
         <button
@@ -124,6 +60,9 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
         </button>
         <button type="button" title="Values of several joints can be set at once" onClick={() => (app.chosenJoints.value = chosen.length === count ? [] : all)}>
           {chosen.length === count ? 'Choose none' : 'Choose all'}
+        </button>
+        <button type="button" title="All values of all joints, to copy from and to paste into (T)" onClick={() => (openDialog.value = 'joint_table')}>
+          Table …
         </button>
       </div>
       {robot.obstacle !== null && <p class="hint">Links cannot be added or removed here: {robot.obstacle}</p>}
@@ -175,6 +114,7 @@ export function RobotPart({ app }: { app: MakeApp }) {
           <KindButtons app={app} link={joint} />
         </section>
       )}
+      {openDialog.value === 'joint_table' && <JointTableDialog app={app} robot={robot} />}
       <SensorPanel app={app} robot={robot} />
       <section class="panel make-panel" aria-label="Modules and servos">
         <h2>Modules</h2>

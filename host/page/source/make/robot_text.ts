@@ -34,13 +34,6 @@ export function fromTail(count: number): number[] {
   return Array.from({ length: count }, (_, i) => count - 1 - i);
 }
 
-// What each position gets when the part at one position goes to another one.
-export function movedOrder(count: number, from: number, to: number): number[] {
-  const order = Array.from({ length: count }, (_, i) => i);
-  order.splice(to, 0, ...order.splice(from, 1));
-  return order;
-}
-
 // "sinusoidal extended" for PatternGenerator_sinusoidal_extended.
 export function algorithmTitle(name: string): string {
   return name.replace(/^(PatternGenerator|SensingModule)_/, '').replaceAll('_', ' ');

@@ -7,11 +7,10 @@ import { flat, headingOf, lifted, outline, type Plane, type Point } from '../geo
 import { fromAxisAngle, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { decimalsOf, formatNumber, roundStep } from '../state/parameter_values.js';
 import type { RobotDocument } from '../wire/messages.js';
-import { bodyOf, startOfRobot, type MakeApp } from './make_app.js';
+import { bodyOf, groundSize, startOfRobot, type MakeApp } from './make_app.js';
 
 const lineDistance = 70; // pixels between two lines of the grid, at least
 const labelHeight = 14; // pixels
-const groundSize = 40; // metres; what is larger is ground, which is not dragged here
 const wheelFactor = 0.0015;
 const keySteps = { fine: 0.01, usual: 0.1 }; // metres
 const turnStep = 5; // degrees
@@ -174,7 +173,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
     const isFixed = kind !== 'view' && (obstacle !== null || event.button !== 0 || event.shiftKey || pointers.size > 1);
     grip.current = { kind: isFixed ? 'view' : kind, number, at: worldAt(event), pose, isAlone: event.ctrlKey, hasMoved: false };
-    if (kind === 'object') app.chosen.value = number;
+    if (kind === 'object' && !event.shiftKey) app.chooseObject(number);
     if (grip.current.kind !== 'view') app.beginDrag();
   };
 
@@ -221,9 +220,11 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     const held = grip.current;
     if (held !== null && held.kind !== 'view') app.endDrag();
     if (pointers.size === 0) {
-      if (held?.kind === 'view' && !held.hasMoved && held.number === background && event.type === 'pointerup') {
+      if (held?.kind === 'view' && !held.hasMoved && (held.number === background || event.shiftKey) && event.type === 'pointerup') {
         const at = worldAt(event);
-        if (Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * (view.peek() ?? shown).scale < smallestDrag) app.chosen.value = null;
+        if (Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * (view.peek() ?? shown).scale < smallestDrag) {
+          app.chooseObject(held.number >= 0 ? held.number : null, event.shiftKey);
+        }
       }
       grip.current = null;
     }
@@ -262,6 +263,9 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
   const transform = `translate(${width / 2} ${height / 2}) scale(${shown.scale} ${-shown.scale}) translate(${-shown.centre[0]} ${-shown.centre[1]})`;
   const head = app.drag.value?.moved.get(startOfRobot) ?? (draft === null ? null : poseFromArray(draft.head));
   const title = plane === 'top' ? 'The world from above' : 'The world from the side';
+  const hovered = app.view.selection.hoveredJoint.value;
+  const chosenJoints = app.chosenJoints.value;
+  const isLit = (joint: number) => joint === hovered || chosenJoints.includes(joint);
   const start = app.page.state.foresightStart.value;
   const rest = app.page.state.foresight.value?.path.slice(start.length) ?? []; // that of the path before, until it comes
   return (
@@ -286,7 +290,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
             const pose = app.poseOf(number, object);
             const outlines = body?.shapes.map((shape) => outline(plane, pose, shape)) ?? [];
             const isFloor = isGround(outlines.flat());
-            const classes = ['object', isFloor ? 'ground' : '', object.moves ? 'moves' : '', number === chosen ? 'chosen' : ''];
+            const classes = ['object', isFloor ? 'ground' : '', object.moves ? 'moves' : '', app.isChosen(number) ? 'chosen' : ''];
             const colour = object.shapes[0]?.colour ?? null;
             const fill = colour === null || isFloor ? undefined : `rgb(${colour.map((part) => Math.round(255 * part)).join()})`;
             return (
@@ -313,7 +317,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
           {robot !== null && head !== null && (
             <g class="robot" onPointerDown={(event) => press(event, 'start', startOfRobot, head)}>
               <title>The robot at its start</title>
-              <RobotOutline robot={robot} head={head} plane={plane} />
+              <RobotOutline robot={robot} head={head} plane={plane} isLit={isLit} />
             </g>
           )}
         </g>
@@ -329,13 +333,14 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
   );
 }
 
-function RobotOutline({ robot, head, plane }: { robot: RobotDocument; head: Pose; plane: Plane }) {
+// The link in front of a joint is lit with it, as in the 3D view.
+function RobotOutline({ robot, head, plane, isLit }: { robot: RobotDocument; head: Pose; plane: Plane; isLit(joint: number): boolean }) {
   const poses = new ForwardKinematics(robot).linkPoses(head, []);
   return (
     <>
       {robot.links.map((link, i) =>
         link.shapes.map((shape, k) => (
-          <polygon key={`${i}/${k}`} class={i === 0 ? 'head' : ''} points={pathOf(outline(plane, poses[i] as Pose, shape))} />
+          <polygon key={`${i}/${k}`} class={[i === 0 && 'head', isLit(i) && 'lit'].filter(Boolean).join(' ')} points={pathOf(outline(plane, poses[i] as Pose, shape))} />
         )),
       )}
     </>

@@ -11,8 +11,7 @@ function isFirstOfGroup(objects: readonly WorldObject[], number: number): boolea
 
 // An object, or a group of them.
 function ObjectRow({ app, object, number }: { app: MakeApp; object: WorldObject; number: number }) {
-  const chosen = app.chosenObject.value;
-  const isChosen = app.chosen.value === number || (chosen !== null && object.group_size > 1 && chosen.group === object.group);
+  const isChosen = app.isChosen(number);
   const kind = !object.editable
     ? `in ${object.file.split('/').at(-1)}`
     : object.group_size > 1
@@ -20,7 +19,12 @@ function ObjectRow({ app, object, number }: { app: MakeApp; object: WorldObject;
       : object.shapes.map(({ type }) => type).join(', ');
   return (
     <li>
-      <button type="button" aria-pressed={isChosen} onClick={() => (app.chosen.value = isChosen ? null : number)}>
+      <button type="button" aria-pressed={isChosen}  title="Shift: choose several"
+        onClick={(event) => {
+          const adds = event.shiftKey || event.ctrlKey;
+          app.chooseObject(isChosen && !adds && app.chosenObjects.peek().length === 1 ? null : number, adds);
+        }}
+      >
         {object.name}
       </button>
       <span class="hint">
@@ -28,6 +32,27 @@ function ObjectRow({ app, object, number }: { app: MakeApp; object: WorldObject;
         {object.moves ? ', moves' : ''}
       </span>
     </li>
+  );
+}
+
+// Copies go to other scenarios, too: those that are opened later, and those in other tabs.
+function ClipboardButtons({ app }: { app: MakeApp }) {
+  const chosen = app.chosenObjects.value;
+  const isEditable = chosen.every((number) => app.objects.value[number]?.editable === true);
+  const why = chosen.length === 0 ? 'Choose an object first.' : isEditable ? null : 'It is in a file of its own, and can be copied there.';
+  const obstacle = app.obstacle();
+  return (
+    <div class="fields" role="group" aria-label="Clipboard">
+      <button type="button" disabled={why !== null} title={why ?? 'Ctrl + C'} onClick={() => void app.copy()}>
+        Copy
+      </button>
+      <button type="button" disabled={(why ?? obstacle) !== null} title={why ?? obstacle ?? 'Ctrl + X'} onClick={() => void app.cut()}>
+        Cut
+      </button>
+      <button type="button" disabled={obstacle !== null} title={obstacle ?? 'Adds what was copied, in this scenario or in another one (Ctrl + V)'} onClick={() => void app.pasteFromClipboard()}>
+        Paste
+      </button>
+    </div>
   );
 }
 
@@ -43,6 +68,7 @@ export function WorldPart({ app }: { app: MakeApp }) {
             isFirstOfGroup(objects, number) ? <ObjectRow key={number} app={app} object={object} number={number} /> : null,
           )}
         </ul>
+        <ClipboardButtons app={app} />
         <ObjectForm app={app} />
       </section>
       <section class="panel make-panel" aria-label="Start of the robot">

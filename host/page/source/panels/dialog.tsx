@@ -14,7 +14,7 @@ export function Dialog({ title, isWide, children }: { title: string; isWide?: bo
   useEffect(() => {
     const before = document.activeElement;
     const find = (tag: string) => dialog.current?.querySelector<HTMLElement>(tag);
-    (find('input') ?? find('button'))?.focus();
+    (find('input:not([tabindex="-1"])') ?? find('button'))?.focus();
     return () => {
       if (before instanceof HTMLElement) before.focus();
     };

@@ -165,6 +165,7 @@ export function DialogView({ app }: { app: Stores<'newGesture' | 'operations' | 
       return <LaterView app={app} part={fileDiff()} wait="" />;
     case 'value_table':
       return <LaterView app={app} part={valueTable()} wait="" />;
+    case 'joint_table': // the page Make shows it
     case 'none':
       return null;
   }

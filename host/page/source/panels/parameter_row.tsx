@@ -1,5 +1,6 @@
 // One parameter: a slider and a number for all joints, and a cell for each joint.
 import { useSignal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
 import type { Stores } from '../view/robot_view.js';
 import { formatRaw, parseValue, placeName, setWord, splitHelp, summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
@@ -31,25 +32,36 @@ export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 's
   const isHolder = app.state.isHolder.value;
   const { isUniform, isChanged } = summarise(parameter);
   const gesture = useSignal(0);
+  const typed = useSignal<string | null>(null); // until it is accepted; a text that was refused stays, to be corrected
   const problem = useSignal<string | null>(null);
   const helpIsOpen = useSignal(false);
   const id = `parameter-${parameter.slot}-${parameter.name}`;
   const title = parameter.name.replace(/_/g, ' ');
 
   const set = (value: number) => app.sets.set([setWord(parameter, null, value)], gesture.value);
-  const reset = () => app.sets.reset([placeName(parameter, null)]);
+  const reset = () => {
+    typed.value = problem.value = null;
+    app.sets.reset([placeName(parameter, null)]);
+  };
   const mean = parameter.wanted.reduce((sum, raw) => sum + raw, 0) / Math.max(1, parameter.wanted.length);
   const first = parameter.wanted[0] ?? 0;
   const unit = parameter.unit === '' ? '' : ` ${parameter.unit}`;
   const fileText = [...new Set(parameter.file)].map((raw) => formatRaw(raw, parameter)).join(', ');
 
-  const type = (input: HTMLInputElement) => {
-    const value = parseValue(input.value, parameter);
-    if (typeof value === 'string') {
-      problem.value = value;
-      return;
-    }
-    problem.value = null;
+  const shown = isUniform ? formatRaw(first, parameter) : '';
+  // What was refused is over when the value changes by other means.
+  useEffect(() => {
+    if (problem.peek() !== null) typed.value = problem.value = null;
+  }, [shown]);
+
+  const accept = () => {
+    const text = typed.peek();
+    if (text === null) return;
+    const value = text.trim() === shown ? null : parseValue(text, parameter);
+    problem.value = typeof value === 'string' ? value : null;
+    if (typeof value === 'string') return;
+    typed.value = null;
+    if (value === null) return;
     gesture.value = app.newGesture();
     set(value);
   };
@@ -93,10 +105,14 @@ export function ParameterRow({ app, parameter }: { app: Stores<'newGesture' | 's
           inputMode="decimal"
           aria-label={`${title}, all joints, in ${parameter.unit || 'numbers'}`}
           aria-invalid={problem.value !== null}
-          value={isUniform ? formatRaw(first, parameter) : ''}
+          value={typed.value ?? shown}
           placeholder={isUniform ? '' : 'several'}
           disabled={!isHolder}
-          onChange={(event) => type(event.currentTarget)}
+          onInput={(event) => (typed.value = event.currentTarget.value)}
+          onBlur={accept}
+          onKeyDown={(event) => {
+            if (event.key === 'Enter') accept();
+          }}
           onDblClick={reset}
         />
         <span class="unit">{parameter.unit}</span>

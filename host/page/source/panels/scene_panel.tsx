@@ -65,6 +65,7 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
     worker.onmessage = (event: MessageEvent<FromScene>) => {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
+      if (message.kind === 'chosen') app.choice?.choose(message.joint, message.object, message.adds);
       if (message.kind === 'grabbed_robot') app.mover?.begin();
       if (message.kind === 'dragged_robot') app.mover?.drag(message.offset, message.turn);
       if (message.kind === 'dropped_robot') void app.mover?.drop();
@@ -86,6 +87,7 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
       isActive: () => app.mover?.isActive.peek() ?? false,
       step: (way, degrees) => void app.mover?.step(way, degrees),
     };
+    const choose = app.choice === undefined ? null : (x: number, y: number, adds: boolean) => send({ kind: 'choose', x, y, adds });
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);
     setPictureSource(canvas, () => {
       const reason = failure.peek();
@@ -99,7 +101,7 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
     });
     observer.observe(parent);
     const stops = [
-      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover, pull),
+      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover, pull, choose),
       effect(() => void canvas.classList.toggle('can-pull', pull.isPossible)),
       effect(() => send({ kind: 'theme', isDark: isDark.value })),
       effect(() => {
@@ -118,7 +120,11 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
         const heads = app.compared?.value?.reader.wholePath.value ?? null;
         if (heads !== null) send({ kind: 'path', heads, isOfGhost: true });
       }),
-      effect(() => send({ kind: 'highlight', joint: app.selection.hoveredJoint.value })),
+      effect(() => {
+        const hovered = app.selection.hoveredJoint.value;
+        const chosen = app.choice?.joints.value ?? [];
+        send({ kind: 'highlight', joints: hovered === null ? chosen : [...chosen, hovered], objects: app.choice?.objects.value ?? [] });
+      }),
       followPose(app, send, readout),
     ];
     app.actions.find('follow') ??

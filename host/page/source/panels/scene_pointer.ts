@@ -1,4 +1,5 @@
 // Mouse, touch and keys of the 3D view.
+//   click, touch: choose what is there, where that is possible; with Shift or Ctrl in addition
 //   drag, one finger: turn the view, or a joint of a robot that is held
 //   right or Shift and drag, two fingers: pan      wheel, pinch: zoom
 import type { Vector } from '../geometry/quaternion.js';
@@ -14,6 +15,7 @@ const keyStep = 24; // pixels
 const moveStep = 0.01; // metres
 const turnStep = 5; // degrees
 const degreesPerPixel = 0.5;
+const smallestDrag = 4; // pixels: a click with a trembling hand turns nothing
 const wheelFactor = 0.0012; // change of the zoom for each pixel
 
 // Moves the robot with the same pointer and keys instead, while it is active.
@@ -29,11 +31,13 @@ export function listenToPointer(
   leave: () => void,
   mover: RobotMover,
   pull: ScenePull,
+  choose: ((x: number, y: number, adds: boolean) => void) | null = null, // what a click does
 ): () => void {
   let moverStart: Point | null = null; // where a drag of the robot began
   let turn = 0; // degrees since the drag began
   const pointers = new Map<number, Point>();
   let isPanning = false;
+  let clickStart: Point | null = null; // where a press began that may become a click
   const abort = new AbortController();
   const options = { signal: abort.signal };
 
@@ -42,6 +46,7 @@ export function listenToPointer(
     (event) => {
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      clickStart = choose !== null && pointers.size === 1 && event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
       isPanning = event.button !== 0 || event.shiftKey;
       const { x, y } = positionIn(canvas, event);
       if (mover.isActive() && event.button === 0 && pointers.size === 1) {
@@ -65,6 +70,8 @@ export function listenToPointer(
         return;
       }
       const now = { x: event.clientX, y: event.clientY };
+      if (clickStart !== null && distance(now, clickStart) < smallestDrag) return;
+      clickStart = null;
       const right = now.x - before.x;
       const down = now.y - before.y;
       if (moverStart !== null && pointers.size === 1) {
@@ -86,6 +93,11 @@ export function listenToPointer(
   const release = (event: PointerEvent) => {
     pointers.delete(event.pointerId);
     pull.release();
+    if (clickStart !== null && event.type === 'pointerup') {
+      const { x, y } = positionIn(canvas, event);
+      choose?.(x, y, event.shiftKey || event.ctrlKey);
+    }
+    clickStart = null;
     if (moverStart !== null) {
       moverStart = null;
       send({ kind: 'drop_robot' });

@@ -1,102 +1,13 @@
-// The robot and its terrain as meshes, one instanced mesh for each kind of shape.
+// The robot and its terrain as meshes: one for each kind of shape that moves, one for all shapes that do not.
 import * as THREE from 'three';
 import { ForwardKinematics } from '../geometry/forward_kinematics.js';
 import { compose, fromAxisAngle, multiply, poseFromArray, rotate, type Pose, type Vector } from '../geometry/quaternion.js';
-import type { Body, Joint, Mesh, RobotDocument, Ruler, Shape } from '../wire/messages.js';
+import type { Body, Joint, RobotDocument, Ruler, Shape } from '../wire/messages.js';
+import { type DrawnSet, type Instance, InstanceSet } from './instance_set.js';
+import { MergedSet } from './merged_set.js';
 import { colours } from './scene_colours.js';
-
-// A shape of a body, or a mark on it.
-interface Instance {
-  link: number; // -1: does not move
-  pose: Pose; // in the link's frame
-  scale: Vector;
-}
-
-type Primitive = Exclude<Shape['kind'], 'mesh'>;
-
-const unitGeometry: Record<Primitive, () => THREE.BufferGeometry> = {
-  box: () => new THREE.BoxGeometry(2, 2, 2),
-  sphere: () => new THREE.SphereGeometry(1, 24, 16),
-  cylinder: () => new THREE.CylinderGeometry(1, 1, 2, 24),
-};
-
-function scaleOf(shape: Shape): Vector {
-  const [a, b, c] = shape.size;
-  switch (shape.kind) {
-    case 'box':
-      return [a, b, c];
-    case 'sphere':
-      return [a, a, a];
-    case 'cylinder':
-      return [a, b, a];
-    case 'mesh':
-      return [1, 1, 1];
-  }
-}
-
-// The geometry has a normal for each triangle, not for each vertex, so that edges are visible.
-function geometryOf(mesh: Mesh): THREE.BufferGeometry {
-  const geometry = new THREE.BufferGeometry();
-  const count = mesh.vertices.length / 3;
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(mesh.vertices, 3));
-  if (mesh.colours.length > 0) {
-    const colours = mesh.colours.length === 3 * count ? mesh.colours : [];
-    const linear = new THREE.Color();
-    const parts = new Float32Array(3 * count);
-    for (let i = 0; i < count; i += 1) {
-      const part = (k: number) => (colours[3 * i + k] ?? 160) / 255;
-      linear.setRGB(part(0), part(1), part(2), THREE.SRGBColorSpace).toArray(parts, 3 * i);
-    }
-    geometry.setAttribute('color', new THREE.BufferAttribute(parts, 3));
-  }
-  geometry.setIndex(mesh.triangles);
-  const apart = geometry.toNonIndexed();
-  geometry.dispose();
-  apart.computeVertexNormals();
-  return apart;
-}
-
-class InstanceSet {
-  readonly mesh: THREE.InstancedMesh;
-  private readonly matrix = new THREE.Matrix4();
-  private readonly quaternion = new THREE.Quaternion();
-  private readonly position = new THREE.Vector3();
-  private readonly scale = new THREE.Vector3();
-
-  constructor(
-    geometry: THREE.BufferGeometry,
-    readonly instances: readonly Instance[],
-    material: THREE.Material,
-    readonly isColoured = false, // the shape has colours of its own
-  ) {
-    this.mesh = new THREE.InstancedMesh(geometry, material, instances.length);
-    this.mesh.frustumCulled = false;
-    this.mesh.castShadow = true;
-    this.mesh.receiveShadow = true;
-  }
-
-  place(links: readonly Pose[]): void {
-    this.instances.forEach((instance, i) => {
-      const link = links[instance.link];
-      const pose = link === undefined ? instance.pose : compose(link, instance.pose);
-      const [w, x, y, z] = pose.orientation;
-      this.matrix.compose(
-        this.position.set(...pose.position),
-        this.quaternion.set(x, y, z, w),
-        this.scale.set(...instance.scale),
-      );
-      this.mesh.setMatrixAt(i, this.matrix);
-    });
-    this.mesh.instanceMatrix.needsUpdate = true;
-  }
-
-  paint(colourOf: (instance: Instance, index: number) => THREE.Color): void {
-    this.instances.forEach((instance, i) => this.mesh.setColorAt(i, colourOf(instance, i)));
-    if (this.mesh.instanceColor !== null) {
-      this.mesh.instanceColor.needsUpdate = true;
-    }
-  }
-}
+import type { PlacedObject } from './scene_messages.js';
+import { geometryOf, primitives, scaleOf, unitGeometry } from './shapes.js';
 
 function instancesOf(bodies: readonly Body[], isWanted: (shape: Shape) => boolean, areLinks: boolean): Instance[] {
   return bodies.flatMap((body, link) =>
@@ -105,12 +16,10 @@ function instancesOf(bodies: readonly Body[], isWanted: (shape: Shape) => boolea
       .map((shape) => {
         const local = poseFromArray(shape.pose);
         const pose = areLinks ? local : compose(poseFromArray(body.pose), local);
-        return { link: areLinks ? link : -1, pose, scale: scaleOf(shape) };
+        return { link: areLinks ? link : -1, body: link, pose, scale: scaleOf(shape) };
       }),
   );
 }
-
-const kinds = ['box', 'sphere', 'cylinder'] as const;
 
 const white = new THREE.Color(1, 1, 1);
 
@@ -126,6 +35,7 @@ function rulerInstances(rulers: readonly Ruler[]): Instance[] {
       const middle = (begin + end) / 2 / length;
       return {
         link: -1 - number,
+        body: number,
         pose: { position: [from[0] + way[0] * middle, from[1] + way[1] * middle, from[2] + way[2] * middle], orientation },
         scale: [width / 2, (end - begin) / 2, 0.001],
       };
@@ -143,6 +53,19 @@ const ghostLook = {
   polygonOffsetUnits: 2,
 };
 
+// The first shape that a ray hits.
+function firstHit(caster: THREE.Raycaster, sets: readonly DrawnSet[]): { set: DrawnSet; instance: Instance; point: Vector } | null {
+  sets.forEach(({ mesh }) => mesh instanceof THREE.InstancedMesh && mesh.computeBoundingSphere()); // its instances may have moved
+  const found = caster.intersectObjects(sets.map(({ mesh }) => mesh), false)[0];
+  const set = sets.find(({ mesh }) => mesh === found?.object);
+  const instance = found === undefined ? undefined : set?.instanceAt(found);
+  if (found === undefined || set === undefined || instance === undefined) {
+    return null;
+  }
+  const { x, y, z } = found.point;
+  return { set, instance, point: [x, y, z] };
+}
+
 // A link that a ray hits, and the joint that a pull at it turns.
 export interface Hit {
   joint: number;
@@ -159,14 +82,16 @@ export class RobotModel {
   head: Vector = [0, 0, 0];
   private readonly kinematics: ForwardKinematics;
   private readonly links: InstanceSet[];
-  private readonly terrain: InstanceSet[];
+  private readonly terrain: DrawnSet[];
+  private readonly still: MergedSet | null; // in `terrain`
   private readonly objects: InstanceSet[];
   private readonly rulers: InstanceSet;
   private readonly joints: InstanceSet;
   private readonly contacts: InstanceSet;
   private readonly centres: Vector[]; // centres of the links, in their frames
   private contactBits: ArrayLike<number> = [];
-  private highlighted: number | null = null;
+  private litJoints: readonly number[] = [];
+  private litObjects: readonly PlacedObject[] = [];
   private displacements: Pose[] = [];
   private isDark: boolean;
 
@@ -182,27 +107,31 @@ export class RobotModel {
     const marks = new THREE.MeshBasicMaterial();
     const coloured = new THREE.MeshLambertMaterial({ ...(isGhost ? ghostLook : { vertexColors: true }), side: THREE.DoubleSide });
     const plain = new THREE.MeshLambertMaterial({ ...(isGhost ? ghostLook : {}), side: THREE.DoubleSide });
-    const make = (bodies: readonly Body[], areLinks: boolean) => [
-      ...kinds
+    const shapesOf = (bodies: readonly Body[], areLinks: boolean) =>
+      primitives
         .map((kind) => ({ kind, instances: instancesOf(bodies, (shape) => shape.kind === kind, areLinks) }))
-        .filter(({ instances }) => instances.length > 0)
-        .map(({ kind, instances }) => new InstanceSet(unitGeometry[kind](), instances, material)),
-      ...(robot.meshes ?? [])
+        .filter(({ instances }) => instances.length > 0);
+    const makeShapes = (bodies: readonly Body[]) =>
+      shapesOf(bodies, true).map(({ kind, instances }) => new InstanceSet(unitGeometry[kind](), instances, material));
+    const makeMeshes = (bodies: readonly Body[], areLinks: boolean) =>
+      (robot.meshes ?? [])
         .map((mesh, number) => ({ mesh, instances: instancesOf(bodies, (shape) => shape.mesh === number, areLinks) }))
         .filter(({ instances }) => instances.length > 0)
         .map(({ mesh, instances }) => {
           const isColoured = mesh.colours.length > 0;
           return new InstanceSet(geometryOf(mesh), instances, isColoured ? coloured : plain, isColoured);
-        }),
-    ];
-    this.links = make(robot.links, true);
-    this.terrain = isGhost ? [] : make(robot.terrain, false);
+        });
+    this.links = [...makeShapes(robot.links), ...makeMeshes(robot.links, true)];
+    const still = isGhost ? [] : shapesOf(robot.terrain, false).flatMap(({ kind, instances }) => instances.map((instance) => ({ ...instance, kind })));
+    const surfaces = isGhost ? [] : makeMeshes(robot.terrain, false);
+    this.still = still.length > 0 ? new MergedSet(still, new THREE.MeshLambertMaterial({ vertexColors: true })) : null;
+    this.terrain = [...(this.still === null ? [] : [this.still]), ...surfaces];
     this.rulers = new InstanceSet(unitGeometry.box(), isGhost ? [] : rulerInstances(robot.rulers ?? []), marks);
-    [...this.terrain, this.rulers].forEach((set) => {
+    [...surfaces, this.rulers].forEach((set) => {
       set.place([]);
       set.mesh.castShadow = false;
     });
-    this.objects = isGhost ? [] : make(robot.objects ?? [], true);
+    this.objects = isGhost ? [] : [...makeShapes(robot.objects ?? []), ...makeMeshes(robot.objects ?? [], true)];
     this.centres = robot.links.map(centreOf);
     this.length = Math.max(0.1, this.chainLength(robot));
     const thickness = this.typicalThickness();
@@ -220,7 +149,7 @@ export class RobotModel {
     this.paint();
   }
 
-  private all(): InstanceSet[] {
+  private all(): DrawnSet[] {
     return [...this.links, ...this.terrain, ...this.objects, this.rulers, this.joints, this.contacts];
   }
 
@@ -262,9 +191,15 @@ export class RobotModel {
     this.move({ ...head, position: [x, y, z + this.floorHeight - lowest] }, angles, contactBits);
   }
 
-  highlight(joint: number | null): void {
-    this.highlighted = joint;
+  highlight(joints: readonly number[], objects: readonly PlacedObject[]): void {
+    this.litJoints = joints;
+    this.litObjects = objects;
     this.paint();
+  }
+
+  // As MergedSet.showIn().
+  showIn(frustum: THREE.Frustum, farthest: number): void {
+    this.still?.showIn(frustum, farthest);
   }
 
   setTheme(isDark: boolean): void {
@@ -274,16 +209,27 @@ export class RobotModel {
 
   // The link that is pointed at. It turns about the joint behind it; the last link turns about the joint before it.
   hit(caster: THREE.Raycaster): Hit | null {
-    const sets = [...this.links, this.joints];
-    sets.forEach(({ mesh }) => mesh.computeBoundingSphere());
-    const found = caster.intersectObjects(sets.map(({ mesh }) => mesh), false)[0];
-    const instance = sets.find(({ mesh }) => mesh === found?.object)?.instances[found?.instanceId ?? -1];
-    if (found === undefined || instance === undefined) {
+    const found = firstHit(caster, [...this.links, this.joints]);
+    if (found === null) {
       return null;
     }
     const last = this.joints.instances.length - 1;
-    const { x, y, z } = found.point;
-    return { joint: Math.min(instance.link, last), sense: instance.link > last ? -1 : 1, point: [x, y, z] };
+    const { link } = found.instance;
+    return { joint: Math.min(link, last), sense: link > last ? -1 : 1, point: found.point };
+  }
+
+  // The joint of the link that is pointed at, as hit() has it, or the object that is in front of it.
+  partAt(caster: THREE.Raycaster): { joint: number | null; object: PlacedObject | null } {
+    const found = firstHit(caster, [...this.links, this.joints, ...this.terrain, ...this.objects]);
+    if (found === null) {
+      return { joint: null, object: null };
+    }
+    const { set, instance } = found;
+    const isMoving = this.objects.some((other) => other === set);
+    if (this.terrain.includes(set) || isMoving) {
+      return { joint: null, object: { moves: isMoving, index: instance.body } };
+    }
+    return { joint: Math.min(instance.link, this.joints.instances.length - 1), object: null };
   }
 
   // The present place of a joint's axis; `axis` has length 1.
@@ -300,8 +246,7 @@ export class RobotModel {
 
   dispose(): void {
     for (const set of this.all()) {
-      set.mesh.geometry.dispose();
-      set.mesh.dispose();
+      set.dispose();
     }
   }
 
@@ -311,7 +256,9 @@ export class RobotModel {
       [...this.links, this.joints].forEach((set) => set.paint(() => colour.ghost));
       return;
     }
-    const isLit = (instance: Instance) => instance.link === this.highlighted;
+    const isLit = (instance: Instance) => this.litJoints.includes(instance.link);
+    const lit = (moves: boolean) => new Set(this.litObjects.filter((object) => object.moves === moves).map(({ index }) => index));
+    const [litTerrain, litMoving] = [lit(false), lit(true)];
     this.links.forEach((set) =>
       set.paint((instance) => {
         const own = set.isColoured ? white : instance.link === 0 ? colour.head : colour.link;
@@ -319,8 +266,10 @@ export class RobotModel {
       }),
     );
     this.joints.paint((instance) => (isLit(instance) ? colour.highlight : colour.joint));
-    this.terrain.forEach((set) => set.paint((_, i) => (set.isColoured ? white : i === 0 ? colour.floor : colour.obstacle)));
-    this.objects.forEach((set) => set.paint(() => (set.isColoured ? white : colour.object)));
+    this.terrain.forEach((set) =>
+      set.paint(({ body }, i) => (litTerrain.has(body) ? colour.highlight : set.isColoured ? white : i === 0 ? colour.floor : colour.obstacle)), // the first shape is the ground
+    );
+    this.objects.forEach((set) => set.paint(({ body }) => (litMoving.has(body) ? colour.highlight : set.isColoured ? white : colour.object)));
     this.rulers.paint(({ link }, i) => {
       const first = this.rulers.instances.findIndex((other) => other.link === link);
       return (i - first) % 2 === 0 ? colour.rulerOdd : colour.rulerEven;
@@ -371,6 +320,7 @@ export class RobotModel {
       ];
       return {
         link: j,
+        body: j,
         pose: { position: rotate(inverse, offset), orientation: multiply(inverse, fromYTo(joint.axis)) },
         scale: [thickness * 0.45, 1.04 * Math.max(thickness, halfExtent(robot.links[j] as Body, joint.axis)), thickness * 0.45],
       };
@@ -401,6 +351,7 @@ export class RobotModel {
         const moved = rotate(inverse, offset as unknown as Vector);
         return {
           link,
+          body: link,
           pose: { position: [centre[0] + moved[0], centre[1] + moved[1], centre[2] + moved[2]], orientation: [1, 0, 0, 0] },
           scale: [along(0), along(1), along(2)],
         };

@@ -8,7 +8,7 @@ import { HeadPath } from './head_path.js';
 import type { Detail } from './drawing_budget.js';
 import { RobotModel } from './robot_model.js';
 import { colours } from './scene_colours.js';
-import type { DragWay, ScenePose } from './scene_messages.js';
+import type { DragWay, PlacedObject, ScenePose } from './scene_messages.js';
 
 const fieldOfView = 40; // degrees, vertical
 const gridCells = 60;
@@ -26,6 +26,8 @@ export class RobotScene {
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.01, 200);
   private readonly orbit = new OrbitCamera();
+  private readonly frustum = new THREE.Frustum();
+  private readonly viewMatrix = new THREE.Matrix4();
   private readonly sun = new THREE.DirectionalLight(0xffffff, 2.2);
   private readonly sky = new THREE.HemisphereLight(0xffffff, 0x8090a0, 1.3);
   private readonly axes = new THREE.AxesHelper(0.1);
@@ -38,6 +40,7 @@ export class RobotScene {
   private run = -1;
   private robotKey = '';
   private lastMove: number | null = null;
+  private lit: { joints: readonly number[]; objects: readonly PlacedObject[] } = { joints: [], objects: [] };
   private hasWholePath = false;
   private width = 1;
   private height = 1;
@@ -108,6 +111,7 @@ export class RobotScene {
     const isSameRobot = robotKey === this.robotKey;
     this.robotKey = robotKey;
     this.model = new RobotModel(robot, this.isDark);
+    this.model.highlight(this.lit.joints, this.lit.objects);
     this.path = new HeadPath(this.model.length / 200);
     this.path.setColour(colours(this.isDark).path);
     this.scene.add(this.model.group, this.path.line);
@@ -209,9 +213,15 @@ export class RobotScene {
     this.isDirty = true;
   }
 
-  highlight(joint: number | null): void {
-    this.model?.highlight(joint);
+  highlight(joints: readonly number[], objects: readonly PlacedObject[]): void {
+    this.lit = { joints, objects };
+    this.model?.highlight(joints, objects);
     this.isDirty = true;
+  }
+
+  // The joint or the object at a point; x and y are those of the messages: -1 to 1.
+  partAt(x: number, y: number): { joint: number | null; object: PlacedObject | null } {
+    return this.model?.partAt(this.casterAt(x, y)) ?? { joint: null, object: null };
   }
 
   // The joint at a point; x and y are those of the messages: -1 to 1.
@@ -314,6 +324,10 @@ export class RobotScene {
     // The edge of the grid fades before it ends.
     this.fog.near = this.orbit.distance * 1.3;
     this.fog.far = this.orbit.distance + this.gridCell * gridCells * 0.45;
+    this.camera.updateMatrixWorld();
+    this.viewMatrix.multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    // Behind the fog everything has the colour of the background.
+    this.model?.showIn(this.frustum.setFromProjectionMatrix(this.viewMatrix), this.fog.far);
     this.renderer.render(this.scene, this.camera);
     return true;
   }

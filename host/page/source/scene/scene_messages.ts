@@ -14,6 +14,12 @@ export interface ScenePose {
   lastMove: number | null; // tick of the last move by hand before: another one cuts the path
 }
 
+// An object around the robot: its position in `objects` of the robot's document if it moves, else in `terrain`.
+export interface PlacedObject {
+  moves: boolean;
+  index: number;
+}
+
 // How the pointer moves the robot: over the ground, up and down, or not from its place, because it turns it.
 export type DragWay = 'ground' | 'height' | 'none';
 
@@ -25,7 +31,7 @@ export type ToScene =
   | { kind: 'pose'; pose: ScenePose }
   | { kind: 'path'; heads: Float64Array; isOfGhost: boolean } // the whole path: the values of `head` for each point; NaN: a cut
   | { kind: 'theme'; isDark: boolean }
-  | { kind: 'highlight'; joint: number | null }
+  | { kind: 'highlight'; joints: readonly number[]; objects: readonly PlacedObject[] }
   | { kind: 'turn'; right: number; down: number } // pixels
   | { kind: 'pan'; right: number; down: number }
   | { kind: 'zoom'; factor: number }
@@ -37,6 +43,7 @@ export type ToScene =
   | { kind: 'drop_robot' }
   | { kind: 'grab_joint'; x: number; y: number } // place as in `point`; grabs a link, to turn its joint
   | { kind: 'drag_joint'; x: number; y: number }
+  | { kind: 'choose'; x: number; y: number; adds: boolean } // place as in `point`; answered by `chosen`
   | { kind: 'point'; x: number; y: number }; // -1 to 1, y up
 
 export type FromScene =
@@ -44,6 +51,7 @@ export type FromScene =
   | { kind: 'dragged_robot'; offset: Vector; turn: number } // metres and degrees since the robot was grabbed
   | { kind: 'dropped_robot' } // sent after all messages of the drag
   | { kind: 'pointed'; joint: number | null }
+  | { kind: 'chosen'; joint: number | null; object: PlacedObject | null; adds: boolean } // both null: nothing is there
   | { kind: 'grabbed_joint'; joint: number | null } // null: no joint can be turned from this view
   | { kind: 'dragged_joint'; angle: number } // radians since the grab
   | { kind: 'following'; isOn: boolean }

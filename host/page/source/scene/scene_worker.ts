@@ -53,7 +53,7 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
     case 'theme':
       return view.setTheme(message.isDark);
     case 'highlight':
-      return view.highlight(message.joint);
+      return view.highlight(message.joints, message.objects);
     case 'turn':
       return view.turn(message.right, message.down);
     case 'pan':
@@ -85,6 +85,10 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return post({ kind: 'grabbed_joint', joint: view.grabJoint(message.x, message.y) });
     case 'drag_joint':
       return post({ kind: 'dragged_joint', angle: view.dragJoint(message.x, message.y) });
+    case 'choose': {
+      const { joint, object } = view.partAt(message.x, message.y);
+      return post({ kind: 'chosen', joint, object, adds: message.adds });
+    }
     case 'point':
       return post({ kind: 'pointed', joint: view.jointAt(message.x, message.y) });
   }

@@ -12,6 +12,8 @@ export interface Action {
   isShown?: () => boolean;
   // Whether the key works in text fields, too: only for actions that must always work.
   isGlobal?: boolean;
+  // The key is only listed: the browser makes an event of it, which the page handles.
+  isLeftToBrowser?: boolean;
   run(): void;
 }
 
@@ -69,7 +71,8 @@ export class ActionList {
     }
     const name = nameOf(press);
     return this.all.find(
-      (action) => action.keys.includes(name) && (!isText || action.isGlobal === true) && action.isEnabled?.() !== false,
+      (action) =>
+        action.isLeftToBrowser !== true && action.keys.includes(name) && (!isText || action.isGlobal === true) && action.isEnabled?.() !== false,
     );
   }
 

@@ -3,7 +3,7 @@ import type { ActionList } from '../state/actions.js';
 
 const textInputs = new Set(['text', 'number', 'search']);
 
-function isTextField(target: EventTarget | null): boolean {
+export function isTextField(target: EventTarget | null): boolean {
   return (
     target instanceof HTMLTextAreaElement ||
     (target instanceof HTMLInputElement && textInputs.has(target.type)) ||

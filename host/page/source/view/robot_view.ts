@@ -2,6 +2,7 @@
 // (player/player_app.ts). PageStores: for panels that also drive a robot (page_app.ts).
 import type { ReadonlySignal, Signal } from '@preact/signals-core';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
+import type { PlacedObject } from '../scene/scene_messages.js';
 import type { ActionList } from '../state/actions.js';
 import type { MoveTool } from '../state/move_tool.js';
 import type { OperationQueue } from '../state/operations.js';
@@ -25,6 +26,14 @@ export interface ComparedView {
   };
 }
 
+// The parts of a scenario that a person has chosen, to change them.
+export interface Choice {
+  readonly joints: ReadonlySignal<readonly number[]>;
+  readonly objects: ReadonlySignal<readonly PlacedObject[]>;
+  // Chooses what was clicked in the 3D view; both null: there is nothing. adds: the others stay chosen.
+  choose(joint: number | null, object: PlacedObject | null, adds: boolean): void;
+}
+
 export interface RobotView {
   readonly state: Pick<PageState, 'robot' | 'telemetry' | 'bus' | 'busSession'>;
   readonly history: TelemetryHistory; // rows for lines; for a long time, they have the smallest and largest values
@@ -41,6 +50,7 @@ export interface RobotView {
   // The place of the head in each row, like `head` of the telemetry but in metres; not numbers where the path is cut. Null:
   // the path grows with the robot.
   readonly wholePath: ReadonlySignal<Float64Array | null>;
+  readonly choice?: Choice; // absent: nothing can be chosen
   readonly compared?: ReadonlySignal<ComparedView | null>;
   // The worker of the 3D view. Throws an Error if the browser starts none.
   startSceneWorker(): Worker;

@@ -71,6 +71,16 @@ export interface DraftJoint {
   speed: number; // rad/s
 }
 
+// New values of a joint; what is missing stays.
+export interface JointValues {
+  joint: number;
+  name?: string;
+  axis?: [number, number, number];
+  limits?: [number, number]; // degrees, the lower one first
+  torque?: number; // Nm
+  speed?: number; // rad/s
+}
+
 export interface DraftLink {
   name: string;
   file: string;

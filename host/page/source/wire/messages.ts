@@ -9,6 +9,7 @@ import type {
   DraftDocument,
   ForesightDocument,
   GalleryEntry,
+  JointValues,
   LibraryItem,
   MeshFit,
   MissingAlgorithms,
@@ -370,6 +371,7 @@ export interface Operations {
   'draft.restore': Record<string, never>;
   'draft.discard': Record<string, never>;
   'draft.diff': Record<string, never>;
+  'draft.copy': { layout: number; objects: readonly number[] };
   'draft.save': Record<string, never>;
   'draft.save_as': { folder: string };
   load_draft: Record<string, never>;
@@ -380,8 +382,9 @@ export interface Operations {
   'world.moves': PartOperation & { object: number; value: boolean };
   'world.mass': PartOperation & { object: number; value: number };
   'world.rename': PartOperation & { object: number; name: string };
-  'world.remove': PartOperation & { object: number; group?: boolean };
-  'world.duplicate': PartOperation & { object: number; group?: boolean; step: [number, number, number]; count: number };
+  'world.remove': PartOperation & { objects: readonly number[]; group?: boolean };
+  'world.duplicate': PartOperation & { objects: readonly number[]; group?: boolean; step: [number, number, number]; count: number };
+  'world.paste': PartOperation & { text: string; step: [number, number, number] };
   'world.add': PartOperation & { item: string; values: Record<string, number>; position: [number, number, number]; turn: number };
   'mesh.begin': { files: { name: string; bytes: number }[] };
   'mesh.part': { mesh: number; file: number; at: number; data: string }; // base64
@@ -398,6 +401,7 @@ export interface Operations {
   'robot.torque': PartOperation & { joints: readonly number[]; value: number };
   'robot.speed': PartOperation & { joints: readonly number[]; value: number };
   'robot.rename_joint': PartOperation & { joint: number; name: string };
+  'robot.table': PartOperation & { joints: readonly JointValues[]; count?: number };
   'robot.rename': PartOperation & { name: string };
   'robot.servo': PartOperation & { name: keyof ServoDocument; value: number };
   'robot.mass': PartOperation & { link: number; value: number };
@@ -406,6 +410,7 @@ export interface Operations {
   'robot.remove': PartOperation & { joint: number };
   'robot.count': PartOperation & { value: number };
   'robot.order': PartOperation & { order: readonly number[] };
+  'robot.move': PartOperation & { joint: number; to: number };
   'robot.kind': PartOperation & { kind: string; link: number | null };
   'robot.add_sensor': PartOperation & { kind: string; part: number; place?: string };
   'robot.remove_sensor': PartOperation & { sensor: number };

@@ -84,9 +84,22 @@ describe('a live simulation', () => {
     await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '33.5');
     await field.fill('1000');
     await field.press('Enter');
-    await ui.viewer.parameter('1.amplitude').getByRole('alert').filter({ hasText: 'found 1000, expected' }).waitFor();
+    const refusal = ui.viewer.parameter('1.amplitude').getByRole('alert');
+    await refusal.filter({ hasText: 'found 1000, expected' }).waitFor();
+    assert.equal(await field.inputValue(), '1000', 'what was refused stays, to be corrected');
     await field.fill('33.5');
     await field.press('Enter');
+    await refusal.waitFor({ state: 'detached' });
+    assert.equal(await field.getAttribute('aria-invalid'), 'false');
+    // A change by other means ends it, too.
+    await field.fill('much');
+    await field.press('Tab');
+    await refusal.filter({ hasText: "found 'much', expected a number" }).waitFor();
+    await ui.viewer.parameter('1.amplitude').getByRole('slider', { name: 'amplitude, all joints' }).press('ArrowUp');
+    await refusal.waitFor({ state: 'detached' });
+    await field.fill('33.5');
+    await field.press('Enter');
+    await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '33.5');
   });
 
   it('changes one joint alone, from the keyboard', async () => {

@@ -1,7 +1,7 @@
 // Words for joints, and the order of a chain.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, fromTail, movedOrder } from '../../../../host/page/source/make/robot_text.js';
+import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, fromTail } from '../../../../host/page/source/make/robot_text.js';
 
 describe('the axis of a joint', () => {
   it('is pitch, yaw or an angle between them', () => {
@@ -29,11 +29,6 @@ describe('the axis of a joint', () => {
 describe('the order of a chain', () => {
   it('is shown from the tail', () => {
     assert.deepEqual(fromTail(3), [2, 1, 0]);
-  });
-
-  it('says what each position gets when a joint goes elsewhere', () => {
-    assert.deepEqual(movedOrder(4, 0, 2), [1, 2, 0, 3]);
-    assert.deepEqual(movedOrder(4, 3, 0), [3, 0, 1, 2]);
   });
 });
 

@@ -1,6 +1,6 @@
 // Reads arbitrary input as an environment file in a draft, and changes it. An input is bytes of the operations, up to a
-// line "===", then the text. For every input each operation must have its effect or throw an InputError of one line and
-// have none; and undo must return to every earlier text.
+// line "===", then the text; behind a second line "===" a text that is pasted first. For every input each operation
+// must have its effect or throw an InputError of one line and have none; and undo must return to every earlier text.
 
 #include <algorithm>
 #include <array>
@@ -20,6 +20,7 @@
 #include "sim/authoring/draft.hpp"
 #include "sim/authoring/own_mesh.hpp"
 #include "sim/authoring/world_change.hpp"
+#include "sim/authoring/world_clipboard.hpp"
 #include "tests/support/fuzz_input.hpp"
 
 namespace {
@@ -73,9 +74,9 @@ void change(WorldChange& world, test::FuzzInput& input) {
     case 6:
       return world.rename(at, std::string(input.byte() % 70, static_cast<char>(input.byte())));
     case 7:
-      return world.remove(at, group);
+      return world.remove({at}, group);
     case 8:
-      return world.duplicate(at, group, vector(input), input.byte() % 4);
+      return world.duplicate({at, 1}, group, vector(input), input.byte() % 4);
     case 9: {
       const LibraryDeclaration& item = library()[input.byte() % library().size()];
       std::map<std::string, double> values;
@@ -110,7 +111,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   MemoryFiles files = small_scenario();
-  files.texts[file] = std::string(all.substr(end + separator.size()));
+  // Behind a second separator is the text of a clipboard.
+  const std::string_view behind = all.substr(end + separator.size());
+  const std::size_t middle = behind.find(separator);
+  files.texts[file] = std::string(behind.substr(0, middle));
   std::optional<Draft> draft;
   try {
     draft.emplace(files.scenario(), files);
@@ -121,8 +125,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::string> states{draft->text(file)};
   for (std::size_t i = 0; i < most_operations && !input.empty(); ++i) {
     const WorldContents world = read_world_contents(*draft);
+    const bool pastes = i == 0 && middle != std::string_view::npos;
     try {
       draft->change("change", std::nullopt, [&](DraftChange& edit) {
+        if (pastes) {
+          return paste_objects(world, edit, behind.substr(middle + separator.size()), {0.5, 0.0, 0.0});
+        }
         WorldChange world_change(world, edit);
         change(world_change, input);
       });

@@ -12,6 +12,7 @@
 #include "sim/authoring/new_scenario.hpp"
 #include "sim/authoring/robot_contents.hpp"
 #include "sim/authoring/sensor_change.hpp"
+#include "sim/authoring/world_clipboard.hpp"
 #include "sim/authoring/world_contents.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
@@ -35,7 +36,7 @@ class RandomOperations {
     const std::size_t modules = sim::used_slots(draft_.scenario()).size();
     const std::size_t objects = read_world_contents(draft_).objects.size();
     const json some_joints = json::array({below(joints), below(joints)});
-    switch (below(24)) {
+    switch (below(27)) {
       case 0:
         return robot("axis", {{"joints", some_joints}, {"value", {below(2), 0, 1}}});
       case 1:
@@ -93,8 +94,18 @@ class RandomOperations {
         return world("add", {{"item", sim::library()[below(sim::library().size())].name},
                              {"position", {number(), number(), 0}}});
       case 21:
-        return world("remove", {{"object", below(objects)}, {"group", below(2) == 0}});
+        return world("remove", {{"objects", {below(objects)}}, {"group", below(2) == 0}});
       case 22:
+        return robot("table", {{"joints",
+                                {{{"joint", below(joints)}, {"name", "knee " + std::to_string(below(4))}},
+                                 {{"joint", below(joints)}, {"torque", number()}, {"limits", {-60, 60}}}}},
+                               {"count", below(3) == 0 ? json(1 + below(7)) : json()}});
+      case 23:
+        return world("paste",
+                     {{"text", sim::copied_objects(draft_, {below(objects)})}, {"step", {0.25 + number() / 8, 0, 0}}});
+      case 24:
+        return robot("move", {{"joint", below(joints)}, {"to", below(joints)}});
+      case 25:
         return world("friction", {{"object", below(objects)}, {"value", std::abs(number())}});
       default:
         return world("start", {{"position", {number(), number(), 0.1}}, {"degrees", {0, 0, 90.0 * number()}}});
@@ -199,17 +210,20 @@ TEST(DraftOperations, ArgumentsOfAnyKindAreTakenOrRefused) {
                                  std::string(5000, 'x'),
                                  json({1e9, -1e9, 1e300}),
                                  "front",
-                                 "TactileSensor"};
-  const std::vector<const char*> words{"joint",     "joints", "value",  "lower",    "upper", "name",
-                                       "link",      "kind",   "sensor", "part",     "place", "order",
-                                       "algorithm", "module", "pose",   "parameter"};
+                                 "TactileSensor",
+                                 json::array({json{{"joint", 0}, {"torque", 0.5}}}),
+                                 "<KinBody/>"};
+  const std::vector<const char*> words{
+      "joint", "joints",    "value",  "lower", "upper",     "name",    "link", "kind", "sensor", "part",   "place",
+      "order", "algorithm", "module", "pose",  "parameter", "objects", "text", "step", "count",  "torque", "to"};
   const std::vector<const char*> names{
       "robot.axis",          "robot.limits",        "robot.torque",       "robot.speed",         "robot.rename_joint",
       "robot.rename",        "robot.servo",         "robot.mass",         "robot.friction",      "robot.duplicate",
       "robot.remove",        "robot.count",         "robot.order",        "robot.kind",          "robot.add_sensor",
       "robot.remove_sensor", "robot.rename_sensor", "robot.place_sensor", "robot.sensor_part",   "robot.set_sensor",
       "behaviour.add",       "behaviour.duplicate", "behaviour.remove",   "behaviour.algorithm", "behaviour.joints",
-      "behaviour.set"};
+      "behaviour.set",       "robot.table",         "robot.move",         "world.paste",         "world.remove",
+      "world.duplicate"};
   sim::SourceTexts texts;
   for (const sim::SourceFile& file : sim::new_scenario_files(sim::robot_kinds().front(), "pyp")) {
     texts.add(file.path, file.text);
@@ -226,8 +240,7 @@ TEST(DraftOperations, ArgumentsOfAnyKindAreTakenOrRefused) {
     const std::string name = names[below(names.size())];
     const auto before = files_of(draft);
     try {
-      const DraftOperation operation = name.starts_with("robot.") ? robot_operation(name, arguments, draft)
-                                                                  : behaviour_operation(name, arguments, draft);
+      const DraftOperation operation = reader_of(name)(name, arguments, draft);
       draft.change(operation.label, {}, operation.change);
       ++taken;
       draft.undo();

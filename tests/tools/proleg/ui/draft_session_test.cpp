@@ -46,8 +46,8 @@ class DraftSessionTest : public ::testing::Test {
   }
 
   Viewers::Answer ask(const std::string& name, json arguments = json::object()) {
-    const bool has_positions =
-        name.starts_with("world.") || name.starts_with("robot.") || name.starts_with("behaviour.");
+    const bool has_positions = name.starts_with("world.") || name.starts_with("robot.") ||
+                               name.starts_with("behaviour.") || name == "draft.copy";
     if (has_positions && !arguments.contains("layout")) {
       arguments["layout"] = viewers_.document("draft")["layout"];
     }
@@ -310,7 +310,7 @@ TEST_F(DraftSessionTest, AScenarioWithoutFilesIsSavedAsACopy) {
 TEST_F(DraftSessionTest, AnOperationForAnotherListOfObjectsIsRefused) {
   const json before = draft(0);
   add_box();
-  const Viewers::Answer answer = ask("world.remove", {{"object", 0}, {"layout", before["layout"]}});
+  const Viewers::Answer answer = ask("world.remove", {{"objects", {0}}, {"layout", before["layout"]}});
   EXPECT_FALSE(answer.is_done);
   EXPECT_NE(answer.text.find("have changed meanwhile"), std::string::npos);
 }
@@ -325,7 +325,7 @@ TEST_F(DraftSessionTest, BadArgumentsAreRefusedWithTheirReason) {
   const json place = {0, 0, 0, 1, 0, 0, 0};
   for (const Row& row :
        std::vector<Row>{{"world.fly", {}, "one of world.add"},
-                        {"draft.fly", {}, "one of draft.diff"},
+                        {"draft.fly", {}, "one of draft.copy"},
                         {"world.place", {{"pose", place}}, "object: found none"},
                         {"world.place", {{"object", -1}, {"pose", place}}, "object: found -1"},
                         {"world.place", {{"object", 9}, {"pose", place}}, "object: found 9"},
@@ -340,7 +340,17 @@ TEST_F(DraftSessionTest, BadArgumentsAreRefusedWithTheirReason) {
                         {"world.add", {{"item", "castle"}, {"position", {0, 0, 0}}}, "an item of the library"},
                         {"world.add", {{"item", "box"}, {"position", {0, 0}}}, "2 numbers"},
                         {"world.add", {{"item", "box"}, {"position", {0, 0, 0}}, {"values", {1, 2}}}, "values"},
-                        {"world.duplicate", {{"object", 1}, {"step", {1, 0, 0}}, {"count", 1000000}}, "1 to 200"},
+                        {"world.duplicate", {{"objects", {1}}, {"step", {1, 0, 0}}, {"count", 1000000}}, "1 to 200"},
+                        {"world.duplicate", {{"step", {1, 0, 0}}}, "objects: found none"},
+                        {"world.remove", {{"objects", {1, 9}}}, "object: found 9"},
+                        {"world.paste", {{"text", 5}, {"step", {1, 0, 0}}}, "text"},
+                        {"world.paste", {{"text", "hello"}, {"step", {1, 0, 0}}}, "found 'hello', expected objects"},
+                        {"world.paste", {{"text", "<KinBody/>"}, {"step", {0, 0, 0}}}, "step"},
+                        {"draft.copy", {{"objects", {77}}}, "object: found 77"},
+                        {"robot.table", {{"joints", 5}}, "joints: found no list"},
+                        {"robot.table", {{"joints", {5}}}, "an object for each joint"},
+                        {"robot.table", {{"joints", {{{"joint", 0}, {"limits", {1}}}}}}, "two numbers"},
+                        {"robot.table", {{"joints", {{{"joint", 0}, {"torque", -1}}}}}, "torque of J5: found '-1'"},
                         {"world.start", {{"position", {0, 0, 0}}}, "degrees"},
                         {"world.ruler", {{"ruler", 3}, {"from", {0, 0, 0}}, {"to", {0, 1, 0}}}, "ruler: found 3"}}) {
     const Viewers::Answer answer = ask(row.name, row.arguments);
@@ -455,7 +465,7 @@ TEST_F(DraftSessionTest, AMeshIsAddedSavedAndCopiedAsItCame) {
 TEST_F(DraftSessionTest, AMeshThatIsDeletedBeforeSaveIsNotSaved) {
   send_box();
   must("world.add_mesh", mesh_words());
-  must("world.remove", {{"object", 1}, {"group", true}});
+  must("world.remove", {{"objects", {1}}, {"group", true}});
   EXPECT_EQ(draft(2)["changed"], json::array());
   EXPECT_EQ(must("draft.save")["written"], 0);
   must("draft.undo");
@@ -615,7 +625,7 @@ TEST_F(DraftSessionTest, AFullDiskAtSaveLosesNothing) {
 TEST_F(DraftSessionTest, AWorldOfFiveHundredObjectsCanBeChangedAndSimulated) {
   add_box();
   for (const int count : {200, 200, 98}) {
-    must("world.duplicate", {{"object", 1}, {"group", true}, {"step", {0.0, 0.5, 0.0}}, {"count", count}});
+    must("world.duplicate", {{"objects", {1}}, {"group", true}, {"step", {0.0, 0.5, 0.0}}, {"count", count}});
   }
   const json document = draft(4);
   ASSERT_EQ(document["world"]["objects"].size(), 500U);
@@ -696,6 +706,34 @@ TEST_F(DraftSessionTest, TheRobotIsChangedPartByPart) {
   EXPECT_EQ(viewers_.document("draft")["behaviour"]["modules"][0]["joints"].size(), 6U) << "its gait has grown with it";
 }
 
+TEST_F(DraftSessionTest, ATableOfJointsIsOneChange) {
+  must("robot.table", {{"joints", {{{"joint", 0}, {"name", "neck"}}, {{"joint", 4}, {"torque", 0.25}}}}});
+  const json longer = must("robot.table", {{"joints", {{{"joint", 0}, {"limits", {-30, 30}}}}}, {"count", 7}});
+  const json now = draft(longer["revision"])["robot"];
+  ASSERT_EQ(now["joints"].size(), 7U);
+  EXPECT_EQ(now["joints"][0]["limits"], json({-30.0, 30.0}));
+  EXPECT_EQ(now["joints"][6]["torque"], 0.25);
+  const json back = draft(must("draft.undo")["revision"])["robot"];
+  ASSERT_EQ(back["joints"].size(), 5U);
+  EXPECT_EQ(back["joints"][0]["name"], "neck");
+}
+
+TEST_F(DraftSessionTest, ObjectsAreCopiedIntoAScenarioThatIsOpenedLater) {
+  add_box();
+  const std::string text = must("draft.copy", {{"objects", {1}}})["text"];
+  must("world.paste", {{"text", text}, {"step", {0.5, 0, 0}}});
+  const json objects = viewers_.document("draft")["world"]["objects"];
+  ASSERT_EQ(objects.size(), 3U);
+  EXPECT_NEAR(objects[2]["pose"][0].get<double>() - objects[1]["pose"][0].get<double>(), 0.5, 1e-6);
+  must("draft.save");
+  must("draft.new", {{"kind", "snake"}});
+  const std::size_t before = viewers_.document("draft")["world"]["objects"].size();
+  must("world.paste", {{"text", text}, {"step", {0.5, 0, 0}}});
+  const json pasted = viewers_.document("draft")["world"]["objects"];
+  ASSERT_EQ(pasted.size(), before + 1);
+  EXPECT_EQ(pasted[before]["pose"], objects[1]["pose"]) << "where it stood";
+}
+
 TEST_F(DraftSessionTest, TheBehaviourIsModulesOfJoints) {
   const json before = draft(0)["behaviour"];
   ASSERT_EQ(before["modules"].size(), 1U);
@@ -756,7 +794,7 @@ TEST_F(DraftSessionTest, ANewScenarioIsWhatItsArgumentsSay) {
   const std::string file = must("draft.save_as", {{"folder", "worm"}})["file"];
   const sim::Scenario saved = sim::read_scenario(file, disk_);
   EXPECT_EQ(saved.robot.joints.size(), 4U);
-  must("world.remove", {{"object", 1}, {"group", true}});
+  must("world.remove", {{"objects", {1}}, {"group", true}});
   EXPECT_EQ(must("draft.save")["written"], 1) << "Save goes on where Save as has written";
 }
 

@@ -14,7 +14,19 @@
 namespace proleg::sim {
 namespace {
 
-const ActuationModule& read_algorithm(const XmlElement& module) {
+/// The names of modules that are no algorithm's, each once.
+std::vector<std::string> unknown_algorithms(const XmlDocument& document) {
+  std::vector<std::string> unknown;
+  for (const XmlElement& module : actuation_modules(document)) {
+    const std::optional<std::string> name = module.attribute("name");
+    if (name && find_named_algorithm(*name) == nullptr && std::ranges::find(unknown, *name) == unknown.end()) {
+      unknown.push_back(*name);
+    }
+  }
+  return unknown;
+}
+
+const ActuationModule& read_algorithm(const XmlElement& module, const XmlDocument& document) {
   const std::string name = module.required_attribute("name");
   const ActuationModule* algorithm = find_named_algorithm(name);
   if (algorithm == nullptr) {
@@ -22,8 +34,9 @@ const ActuationModule& read_algorithm(const XmlElement& module) {
     for (std::size_t i = 0; i < algorithm_count(); ++i) {
       known.emplace_back(algorithm_at(i).declaration().name);
     }
-    module.refuse("unknown algorithm " + in_quotes(name),
-                  "one of " + listed(known) + ", or that of a library (--algorithms)");
+    throw UnknownAlgorithms(InputError(document.name(), module.line(), "unknown algorithm " + in_quotes(name),
+                                       "one of " + listed(known) + ", or that of a library (--algorithms)"),
+                            unknown_algorithms(document));
   }
   return *algorithm;
 }
@@ -136,7 +149,7 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
     }
     module.allow({"name"}, {"jointConfiguration", "parameter"});
     Slot& slot = scenario.kernel.slots[slot_number];
-    slot.algorithm = &read_algorithm(module);
+    slot.algorithm = &read_algorithm(module, document);
     slot.group = read_group(module, scenario.robot);
     check_with_kernel(module, scenario.kernel);
     if (slot.group.empty()) {

@@ -63,8 +63,13 @@ export class PageApp implements PageStores {
     this.post({ kind: 'open', url, token, name });
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
+    // Without a robot there are recordings, or the scenario of the start needs an algorithm, which the page Make builds.
+    const needsAlgorithm = computed(() => this.state.missingAlgorithms.value?.action === 'start');
     effect(() => {
-      if (this.state.isAlone.value) this.shownPage.value = 'recordings';
+      if (needsAlgorithm.value) this.shownPage.value = 'make';
+    });
+    effect(() => {
+      if (this.state.isAlone.value) this.shownPage.value = needsAlgorithm.peek() ? 'make' : 'recordings';
     });
     effect(() => {
       if (!this.poses.isPossible) this.poses.forget();

@@ -72,4 +72,17 @@ std::vector<std::string> forbidden_symbols(std::string_view listing) {
   return found;
 }
 
+std::optional<std::uint32_t> flash_bytes(std::string_view sizes) {
+  // "   text    data     bss     dec     hex filename", and the numbers below
+  std::istringstream lines{std::string(sizes)};
+  std::string titles;
+  std::getline(lines, titles);
+  std::uint32_t code = 0;
+  std::uint32_t data = 0;
+  if (lines >> code >> data) {
+    return code + data;
+  }
+  return std::nullopt;
+}
+
 }  // namespace proleg::verify

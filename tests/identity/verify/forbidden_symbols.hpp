@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,5 +12,9 @@ namespace proleg::verify {
 /// functions that a module does not have or that do not give the same bits, and variables that keep a value. One phrase
 /// for each. listing: what `nm -C` prints.
 [[nodiscard]] std::vector<std::string> forbidden_symbols(std::string_view listing);
+
+/// Code and constants of an object file, in bytes: what it takes of the flash. sizes: what `size` prints. Nothing if
+/// that has another form.
+[[nodiscard]] std::optional<std::uint32_t> flash_bytes(std::string_view sizes);
 
 }  // namespace proleg::verify

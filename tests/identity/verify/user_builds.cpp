@@ -1,11 +1,7 @@
 #include "tests/identity/verify/user_builds.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -114,17 +110,6 @@ fs::path UserBuilds::cortex_m_image(const std::string& preset) const {
   configure_cortex_m(preset);
   run(preset, {"cmake", "--build", build_folder(preset).string(), "--target", "core_image"});
   return build_folder(preset) / "bin/core_image.elf";
-}
-
-bool is_installed(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (access((fs::path(folder) / program).c_str(), X_OK) == 0) {
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace proleg::verify

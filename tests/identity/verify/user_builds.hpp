@@ -49,7 +49,4 @@ class UserBuilds {
   std::string name_;
 };
 
-/// Whether a shell would find the program.
-[[nodiscard]] bool is_installed(const std::string& program);
-
 }  // namespace proleg::verify

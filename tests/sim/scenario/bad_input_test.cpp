@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "memory_files.hpp"
+#include "sim/scenario/actuation_reader.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -389,6 +390,20 @@ TEST(BadScenarioFiles, TwoEndsWithTheNameHeadAreRefused) {
       refusal(files),
       "robot.xml:17: found two heads, 'TailAhead' and 'Head', expected one end of the robot with a name that ends "
       "with 'Head'");
+}
+
+TEST(BadScenarioFiles, AllAlgorithmsThatAreMissingAreNamed) {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "\"DirectJointAccess\"", "\"my_wave\"");
+  files.replace("actuation.xml", "</actuation>",
+                "<actuationModule name=\"my_reflex\"/><actuationModule name=\"my_wave\"/></actuation>");
+  try {
+    static_cast<void>(files.scenario());
+    ADD_FAILURE() << "accepted";
+  } catch (const UnknownAlgorithms& error) {
+    EXPECT_EQ(error.names(), (std::vector<std::string>{"my_wave", "my_reflex"}));
+    EXPECT_EQ(std::string(error.what()).substr(0, 50), "actuation.xml:8: found unknown algorithm 'my_wave'");
+  }
 }
 
 TEST(BadScenarioFiles, ARobotWithoutJointsIsRefused) {

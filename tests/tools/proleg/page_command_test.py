@@ -15,6 +15,7 @@ import urllib.request
 from pathlib import Path
 
 PROLEG_UI = Path(sys.argv.pop(1)).resolve()
+SCENARIOS = Path(__file__).resolve().parents[3] / "sim/scenarios"
 WAIT_S = 300  # a limit for a test that fails, not a requirement
 
 
@@ -38,6 +39,53 @@ class PageTest(unittest.TestCase):
         output, errors = process.communicate(timeout=WAIT_S)
         self.assertEqual((process.returncode, output, errors.count("\n")), (2, "", 1), errors)
         return errors
+
+
+class AlgorithmThatIsNotLoaded(PageTest):
+    """A scenario names an algorithm of the user's own, and --algorithms is missing."""
+
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(SCENARIOS / "travelling_wave", self.folder / "mine")
+        gait = self.folder / "mine/uniform.actuation.xml"
+        gait.write_text(gait.read_text().replace("PatternGenerator_sinusoidal", "my_wave"))
+        self.scenario = "mine/uniform.simulation.xml"
+
+    def write_source(self, folder):
+        (folder / "my_wave").mkdir()
+        (folder / "my_wave/CMakeLists.txt").write_text("proleg_algorithm_project()\n")
+        (folder / "my_wave/my_wave.cpp").write_text("\n")
+
+    def test_if_its_source_is_in_the_project_the_page_offers_to_build_it(self):
+        self.write_source(self.folder)
+        for options in ((), ("--paused",)):
+            process = self.start(self.scenario, *options)
+            self.assertIn("page: http://", process.stdout.readline())
+            text = "".join(process.stdout.readline() for _ in range(3))
+            self.assertIn("This scenario needs an algorithm of this folder: my_wave. The page Make offers to build it.", text)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=WAIT_S)
+            self.assertEqual((process.returncode, errors), (0, ""))
+        self.assertFalse((self.folder / "my_wave/build").exists(), "nothing is built before a person wants it")
+
+    def test_without_its_source_the_error_says_what_is_missing(self):
+        self.assertIn("found unknown algorithm 'my_wave'", self.refused(self.scenario))
+
+    def test_a_source_that_is_near_is_named(self):
+        self.write_source(self.folder)
+        library = self.folder.resolve() / "my_wave/build/my_wave.so"
+        (self.folder / "elsewhere").mkdir()
+        for options in (("--recordings", "elsewhere"), ("--set", "amplitude=30"), ("--bus", "can0")):
+            self.assertTrue(self.refused(self.scenario, *options).endswith(f"add --algorithms {library}\n"))
+
+    def test_where_no_code_is_taken_it_is_an_error(self):
+        self.write_source(self.folder)
+        command = re.search("openssl req .*", self.refused("--lan"))[0]
+        subprocess.run(command.replace("$(hostname)", "localhost"), shell=True, cwd=self.folder, check=True, capture_output=True)
+        lan = ("--lan", "--certificate", "page.pem")
+        self.assertIn("build it, then add --algorithms", self.refused(self.scenario, *lan))
+        process = self.start(self.scenario, *lan, "--allow-code")
+        self.assertIn("page: https://", process.stdout.readline())
 
 
 class PageForOthers(PageTest):

@@ -564,6 +564,50 @@ class Verify(unittest.TestCase):
         self.assertRegex(result.stdout, r"cost +\d+ instructions a tick at worst")
         self.assertRegex(result.stdout, r"stack +\d+ bytes at most")
 
+    def verify_json(self, *options):
+        result = proleg("verify", self.algorithm, "--json", *options)
+        return result, json.loads(result.stdout)
+
+    def test_the_object_has_what_the_table_has(self):
+        result, proof = self.verify_json("--cases", "3")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual((proof["algorithm"], proof["cases"], proof["ticks"]), (NAME, 3, 1000))
+        self.assertIs(proof["verified"], True)
+        self.assertEqual([(build["build"], build["kernels"]) for build in proof["builds"]],
+                         [("library", 1)] +
+                         [(f"{compiler} {level}", kernels) for compiler in ("g++", "clang++") for level in ("-O0", "-O2")
+                          for kernels in (1, 5)] + [("Cortex-M4", 5), ("Cortex-M0", 5)])
+        self.assertEqual({build["result"] for build in proof["builds"][1:]}, {"equal"})
+        self.assertEqual({build["ticks"] for build in proof["builds"]}, {3000})
+        self.assertEqual(len({build["setpoint_hash"] for build in proof["builds"]}), 1)
+        self.assertEqual(proof["forbidden"], [])
+        self.assertTrue(0 < proof["instructions"]["worst"] <= proof["instructions"]["limit"])
+        self.assertTrue(0 < proof["stack"]["bytes"] <= proof["stack"]["limit"])
+        self.assertTrue(100 < proof["flash_bytes"] < 5000)
+        self.assertTrue(proof["test"]["passed"])
+        steps = re.findall(r"^proleg verify: (\d+) of (\d+): ", result.stderr, re.M)
+        self.assertEqual([int(done) for done, _ in steps], list(range(1, int(steps[0][1]) + 1)))
+
+        # What the algorithm prints does not come between; a difference is named.
+        self.change("namespace proleg::user {\nnamespace {",
+                    "#include <cstdio>\n#include <cstdlib>\nnamespace proleg::user {\nnamespace {")
+        self.change("next[current_phase] = add_wrapping(",
+                    "std::puts(\"printed\");\n    next[current_phase] = std::rand() + add_wrapping(")
+        result, proof = self.verify_json("--cases", "1", "--leave-out-missing")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIs(proof["verified"], False)
+        self.assertTrue(any("rand" in each for each in proof["forbidden"]), proof["forbidden"])
+        bad = [build for build in proof["builds"] if build["result"] in ("differs", "failed")]
+        self.assertTrue(bad and all(build["text"] for build in bad), proof["builds"])
+
+    def test_bad_input_is_one_line_without_an_object(self):
+        for arguments, text in (((self.algorithm.parent,), "found 0 sources"), ((self.algorithm, "--cases", "0"), "--cases")):
+            result = proleg("verify", *arguments, "--json")
+            self.assertEqual(result.returncode, 2)
+            self.assertEqual(result.stdout, "")
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            self.assertIn(text, result.stderr)
+
     def test_floating_point_and_variables_are_found(self):
         self.change("next[current_phase] = add_wrapping(", "static int calls = 0;\n    calls += 1;\n    "
                     "next[current_phase] = calls + static_cast<std::int32_t>(0.3F * static_cast<float>(state[0])) + "

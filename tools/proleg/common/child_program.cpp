@@ -48,12 +48,12 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 /// How the child differs from its parent.
 class Setup {
  public:
-  Setup(const std::string& folder, int output) {
+  Setup(const std::string& folder, int output, int errors) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
     posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions_, output, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
     posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
     posix_spawnattr_init(&attributes_);
     sigset_t none;
@@ -83,28 +83,49 @@ class Setup {
 
 }  // namespace
 
-ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder) {
-  std::vector<std::string> words = command;
-  const std::vector<char*> arguments = pointers_to(words);
-  std::vector<std::string> environment = english_environment();
-  const std::vector<char*> variables = pointers_to(environment);
+ChildProgram::Pipe::Pipe() {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
   }
-  const Setup setup(folder, ends[1]);
+  end = ends[0];
+  other_end = ends[1];
+  fcntl(end, F_SETFL, O_NONBLOCK);
+}
+
+ChildProgram::Pipe::~Pipe() {
+  close(end);
+  close_other_end();
+}
+
+void ChildProgram::Pipe::close_other_end() {
+  if (other_end >= 0) {
+    close(other_end);
+    other_end = -1;
+  }
+}
+
+ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors) {
+  std::vector<std::string> words = command;
+  const std::vector<char*> arguments = pointers_to(words);
+  std::vector<std::string> environment = english_environment();
+  const std::vector<char*> variables = pointers_to(environment);
+  if (errors == Errors::apart) {
+    errors_.emplace();
+  }
+  const Setup setup(folder, output_.other_end, errors_ ? errors_->other_end : output_.other_end);
   const int error = posix_spawnp(&process_, arguments.front(), setup.actions(), setup.attributes(), arguments.data(),
                                  variables.data());
-  close(ends[1]);
   if (error != 0) {
-    close(ends[0]);
     throw std::runtime_error(error == ENOENT
                                  ? "found no program " + command.front() + ", expected it in a folder of PATH"
                                  : "cannot start " + command.front() + ": " + std::strerror(error));
   }
   setpriority(PRIO_PROCESS, static_cast<id_t>(process_), lower_priority);
-  output_ = ends[0];
-  fcntl(output_, F_SETFL, O_NONBLOCK);
+  output_.close_other_end();
+  if (errors_) {
+    errors_->close_other_end();
+  }
 }
 
 ChildProgram::~ChildProgram() {
@@ -115,14 +136,13 @@ ChildProgram::~ChildProgram() {
       std::this_thread::sleep_for(period);
     }
   }
-  close(output_);
 }
 
-std::string ChildProgram::read() {
+std::string ChildProgram::read_from(int pipe) {
   std::string text;
   std::array<char, 4096> bytes{};
   while (true) {
-    const ssize_t length = ::read(output_, bytes.data(), bytes.size());
+    const ssize_t length = ::read(pipe, bytes.data(), bytes.size());
     if (length > 0) {
       text.append(bytes.data(), static_cast<std::size_t>(length));
     } else if (length == 0 || errno != EINTR) {

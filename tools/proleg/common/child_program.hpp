@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,16 +14,23 @@ namespace proleg::tools {
 /// open files of this program, and English messages; it gives way to other programs. It runs without a shell.
 class ChildProgram {
  public:
+  enum class Errors : std::uint8_t {
+    in_output,  ///< read() gives both, in the order in which they were written
+    apart,      ///< read_errors() gives standard error
+  };
+
   /// Starts it in a folder. command: the program, which is searched for as in a shell, and its arguments. Throws
   /// std::runtime_error if it cannot be started.
-  ChildProgram(const std::vector<std::string>& command, const std::string& folder);
+  ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors = Errors::in_output);
   /// Ends it, with the programs that it has started.
   ~ChildProgram();
   ChildProgram(const ChildProgram&) = delete;
   ChildProgram& operator=(const ChildProgram&) = delete;
 
-  /// What it has written since the last call, to standard output and standard error. Does not wait.
-  [[nodiscard]] std::string read();
+  /// What it has written since the last call. Does not wait.
+  [[nodiscard]] std::string read() { return read_from(output_.end); }
+  /// The same of standard error alone; nothing without Errors::apart.
+  [[nodiscard]] std::string read_errors() { return errors_ ? read_from(errors_->end) : std::string(); }
   /// Its exit status, or 128 + the number of a signal, as a shell reports it; nothing as long as it runs. Does not
   /// wait. What it has started ends with it. Output that it wrote before can still be read.
   [[nodiscard]] std::optional<int> status();
@@ -32,8 +40,21 @@ class ChildProgram {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// The end of a pipe that is read.
+  struct Pipe {
+    int end;
+    int other_end;  ///< until the child has it
+    Pipe();
+    ~Pipe();
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+    void close_other_end();
+  };
+  [[nodiscard]] static std::string read_from(int pipe);
+
+  Pipe output_;
+  std::optional<Pipe> errors_;
   pid_t process_ = 0;
-  int output_ = -1;
   std::optional<int> status_;
   std::optional<Clock::time_point> killed_at_;
 };

@@ -24,6 +24,9 @@ namespace proleg::tools {
 /// that repeats or continues a run needs them.
 [[nodiscard]] std::string algorithm_options();
 
+/// Whether a shell would find the program.
+[[nodiscard]] bool is_installed(const std::string& program);
+
 struct ProgramResult {
   bool was_found = true;
   int status = 0;      ///< exit status, or 128 + the number of a signal, as a shell reports it

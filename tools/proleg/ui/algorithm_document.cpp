@@ -89,9 +89,11 @@ const char* name_of(CompilerMessage::Severity severity) {
 }
 
 /// A file of the algorithm by its name; others as they are.
-std::string shown_file(const std::string& file, const AlgorithmFolder& algorithm) {
+std::string shown_file(const std::string& file, std::span<const AlgorithmFolder> algorithms) {
   const std::filesystem::path path(file);
-  return path.parent_path() == algorithm.path ? path.filename().string() : file;
+  const bool is_own = std::ranges::any_of(
+      algorithms, [&path](const AlgorithmFolder& algorithm) { return path.parent_path() == algorithm.path; });
+  return is_own ? path.filename().string() : file;
 }
 
 }  // namespace
@@ -164,10 +166,10 @@ AlgorithmForm read_form(const json& arguments) {
   return form;
 }
 
-json messages_json(std::span<const CompilerMessage> messages, const AlgorithmFolder& algorithm) {
+json messages_json(std::span<const CompilerMessage> messages, std::span<const AlgorithmFolder> algorithms) {
   json list = json::array();
   for (const CompilerMessage& message : messages) {
-    list.push_back({{"file", shown_file(message.file, algorithm)},
+    list.push_back({{"file", shown_file(message.file, algorithms)},
                     {"line", message.line},
                     {"column", message.column},
                     {"severity", name_of(message.severity)},

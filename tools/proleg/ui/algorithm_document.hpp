@@ -20,7 +20,8 @@ namespace proleg::tools {
 /// Reads a form. Throws InputError for a member of the wrong kind; check_form() judges the rest.
 [[nodiscard]] AlgorithmForm read_form(const nlohmann::json& arguments);
 
-/// The messages of a build, with the files of the algorithm by their names in its folder.
-[[nodiscard]] nlohmann::json messages_json(std::span<const CompilerMessage> messages, const AlgorithmFolder& algorithm);
+/// The messages of a build, with the files of the algorithms by their names in their folders.
+[[nodiscard]] nlohmann::json messages_json(std::span<const CompilerMessage> messages,
+                                           std::span<const AlgorithmFolder> algorithms);
 
 }  // namespace proleg::tools

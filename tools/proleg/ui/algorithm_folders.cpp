@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_entries = 1000;
+constexpr const char* this_folder = ".";
 
 std::string bytes_of(const fs::path& path, std::size_t most) {
   std::ifstream file(path, std::ios::binary);
@@ -64,6 +65,10 @@ AlgorithmFolders::AlgorithmFolders(const fs::path& project) {
 
 std::vector<AlgorithmFolder> AlgorithmFolders::list() const {
   std::vector<AlgorithmFolder> found;
+  if (std::optional<AlgorithmFolder> itself = algorithm_in(project_)) {
+    itself->folder = this_folder;
+    found.push_back(std::move(*itself));
+  }
   std::error_code error;
   std::size_t visited = 0;
   for (fs::directory_iterator entry(project_, error), end;
@@ -80,10 +85,22 @@ std::vector<AlgorithmFolder> AlgorithmFolders::list() const {
   return found;
 }
 
+std::optional<AlgorithmFolder> AlgorithmFolders::with_name(const std::string& name) const {
+  std::vector<AlgorithmFolder> all = list();
+  const auto found = std::ranges::find(all, name, &AlgorithmFolder::name);
+  return found == all.end() ? std::nullopt : std::optional(std::move(*found));
+}
+
 AlgorithmFolder AlgorithmFolders::find(const std::string& folder) const {
   const fs::path name(folder);
   const bool is_plain = !folder.empty() && name.filename() == name && folder.front() != '.' && is_visible_line(folder);
   std::optional<AlgorithmFolder> found = is_plain ? algorithm_in(project_ / name) : std::nullopt;
+  if (folder == this_folder) {
+    found = algorithm_in(project_);
+    if (found) {
+      found->folder = this_folder;
+    }
+  }
   if (!found) {
     throw InputError("folder", 0, in_quotes(shortened(folder)),
                      "a folder of the project with one source, as 'proleg new algorithm' writes it");

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 namespace proleg::tools {
 
 struct AlgorithmFolder {
-  std::string folder;            ///< name in the project folder
+  std::string folder;            ///< name in the project folder; ".": the project folder itself
   std::string name;              ///< of the algorithm: that of its source
   std::filesystem::path path;    ///< absolute
   std::filesystem::path source;  ///< NAME.cpp
@@ -39,6 +40,8 @@ class AlgorithmFolders {
 
   /// All of them, by name.
   [[nodiscard]] std::vector<AlgorithmFolder> list() const;
+  /// The one whose source has this name, if there is one.
+  [[nodiscard]] std::optional<AlgorithmFolder> with_name(const std::string& name) const;
   /// Throws InputError if there is no algorithm in a folder of this name.
   [[nodiscard]] AlgorithmFolder find(const std::string& folder) const;
 

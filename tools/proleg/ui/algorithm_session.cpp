@@ -13,6 +13,8 @@
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/algorithm_document.hpp"
+#include "tools/proleg/ui/compiler_messages.hpp"
+#include "tools/proleg/ui/proof_output.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -20,21 +22,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::chrono::milliseconds look_period{50};
-constexpr std::size_t most_output = std::size_t{1} << 20U;
-constexpr std::size_t most_lines = 200;
-
-json lines_json(std::string_view output) {
-  json lines = json::array();
-  TextLines text(output);
-  while (const std::optional<std::string_view> line = text.next()) {
-    lines.push_back(one_line(*line));
-  }
-  while (lines.size() > most_lines) {
-    lines.erase(0);
-  }
-  return lines;
-}
-
 std::filesystem::path program_beside_this(const std::string& name) {
   std::error_code error;
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
@@ -56,7 +43,10 @@ std::string last_line(std::string_view output) {
 
 AlgorithmSession::AlgorithmSession(AlgorithmSessionOptions options, SessionRequests& requests,
                                    host::SessionOutput& output)
-    : SessionThread(requests, output), options_(std::move(options)), folders_(options_.folder) {
+    : SessionThread(requests, output),
+      options_(std::move(options)),
+      folders_(options_.folder),
+      image_build_(std::filesystem::canonical(options_.folder)) {
   publish("algorithms", algorithms_json());
   publish_folders();
   begin_thread();
@@ -87,7 +77,7 @@ json AlgorithmSession::carry_out(const host::OperationRequest& operation) {
       {"algorithm.refresh", &AlgorithmSession::refresh}, {"algorithm.read", &AlgorithmSession::read},
       {"algorithm.create", &AlgorithmSession::create},   {"algorithm.save", &AlgorithmSession::save},
       {"algorithm.build", &AlgorithmSession::build},     {"algorithm.check", &AlgorithmSession::check},
-      {"algorithm.cancel", &AlgorithmSession::cancel}};
+      {"algorithm.image", &AlgorithmSession::image},     {"algorithm.cancel", &AlgorithmSession::cancel}};
   const Handler handler = handler_of(handlers, operation.name);
   if (!options_.refusal.empty()) {
     throw std::runtime_error(options_.refusal);
@@ -154,27 +144,40 @@ json AlgorithmSession::save(const host::OperationRequest& request) {
 }
 
 json AlgorithmSession::build(const host::OperationRequest& request) {
-  const std::string tree = source_tree("").string();
-  Job job;
-  job.algorithm = folder_of(request.arguments);
-  job.is_build = true;
-  job.version = AlgorithmFolders::read(job.algorithm).version;
-  const std::string folder = job.algorithm.path.string();
-  const std::string build = job.algorithm.build().string();
+  const AlgorithmFolder algorithm = folder_of(request.arguments);
+  const std::string folder = algorithm.path.string();
+  const std::string build = algorithm.build().string();
   // The same as docs/user-algorithms.md has for the command line; `proleg verify` runs the test.
-  job.commands = {{"cmake", "-S", folder, "-B", build, "-G", "Ninja", "-DPROLEG_SOURCE=" + tree},
-                  {"cmake", "--build", build, "--target", job.algorithm.name}};
-  const std::string version = job.version;
-  begin(std::move(job), options_.longest_build);
-  return {{"version", version}};
+  begin(Work::build, {algorithm},
+        {{"cmake", "-S", folder, "-B", build, "-G", "Ninja", "-DPROLEG_SOURCE=" + source_tree("").string()},
+         {"cmake", "--build", build, "--target", algorithm.name}});
+  return {{"version", job_->version}};
 }
 
 json AlgorithmSession::check(const host::OperationRequest& request) {
-  Job job;
-  job.algorithm = folder_of(request.arguments);
-  job.version = AlgorithmFolders::read(job.algorithm).version;
-  job.commands = {{program_beside_this("proleg-verify").string(), job.algorithm.path.string()}};
-  begin(std::move(job), options_.longest_check);
+  const AlgorithmFolder algorithm = folder_of(request.arguments);
+  const std::filesystem::path verifier =
+      options_.verifier.empty() ? program_beside_this("proleg-verify") : options_.verifier;
+  begin(Work::proof, {algorithm}, {{verifier.string(), "--json", algorithm.path.string()}});
+  return json::object();
+}
+
+json AlgorithmSession::image(const host::OperationRequest& request) {
+  const auto names = argument<std::vector<std::string>>(request.arguments, "folders", "names of folders");
+  std::vector<AlgorithmFolder> algorithms;
+  for (const std::string& name : names.value_or(std::vector<std::string>{})) {
+    const AlgorithmFolder algorithm = folders_.find(name);
+    if (std::ranges::find(algorithms, algorithm.name, &AlgorithmFolder::name) != algorithms.end()) {
+      throw InputError("folders", 0, "two algorithms " + in_quotes(algorithm.name), "different names");
+    }
+    algorithms.push_back(algorithm);
+  }
+  if (algorithms.empty()) {
+    throw InputError("folders", 0, "none", "at least one algorithm");
+  }
+  require_no_job();
+  const std::vector<std::vector<std::string>> commands = image_build_.commands(algorithms);
+  begin(Work::image, std::move(algorithms), commands);
   return json::object();
 }
 
@@ -182,51 +185,53 @@ json AlgorithmSession::cancel(const host::OperationRequest& /*request*/) {
   if (!job_) {
     throw std::runtime_error("nothing is being built or verified");
   }
-  job_->end_reason = "cancelled";
-  job_->child->end();
+  job_->programs->cancel();
   return json::object();
 }
 
-void AlgorithmSession::begin(Job job, std::chrono::seconds longest) {
-  if (job_) {
-    throw std::runtime_error(job_->algorithm.name + (job_->is_build ? " is being built" : " is being verified") +
-                             "; wait, or cancel it");
+void AlgorithmSession::require_no_job() const {
+  if (!job_) {
+    return;
   }
-  job.until = Clock::now() + longest;
-  job.child = std::make_unique<ChildProgram>(job.commands.front(), job.algorithm.path.string());
-  job.commands.erase(job.commands.begin());
-  job_ = std::move(job);
+  const std::string& name = job_->algorithms.front().name;
+  const std::string what = job_->work == Work::image   ? "the image is being built"
+                           : job_->work == Work::build ? name + " is being built"
+                                                       : name + " is being verified";
+  throw std::runtime_error(what + "; wait, or cancel it");
+}
+
+void AlgorithmSession::begin(Work work, std::vector<AlgorithmFolder> algorithms,
+                             const std::vector<std::vector<std::string>>& commands) {
+  require_no_job();
+  const AlgorithmFolder& first = algorithms.front();
+  std::string version = AlgorithmFolders::read(first).version;
+  auto programs = std::make_unique<CommandSequence>(
+      commands, work == Work::image ? source_tree("").string() : first.path.string(),
+      work == Work::build ? options_.longest_build : options_.longest_check,
+      work == Work::proof ? ChildProgram::Errors::apart : ChildProgram::Errors::in_output);
+  job_ = Job{work, std::move(algorithms), std::move(version), std::move(programs)};
   publish_job("running", "");
 }
 
 void AlgorithmSession::look_at_job() {
   Job& job = *job_;
-  const std::optional<int> status = job.child->status();
-  const std::string output = job.child->read();
-  if (job.output.size() + output.size() <= most_output) {
-    job.output += output;
-  }
-  if (const BuildProgress progress = build_progress(output); progress.of > 0) {
-    job.progress = progress;
-  }
-  if (!status) {
-    if (Clock::now() >= job.until && job.end_reason.empty()) {
-      job.end_reason = "it took too long, and was ended";
-      job.child->end();
-    }
+  const std::optional<CommandSequence::End> end = job.programs->look();
+  if (!end) {
     publish_job("running", "");
-    return;
-  }
-  if (!job.end_reason.empty()) {
-    finish(job.end_reason == "cancelled" ? "cancelled" : "failed", job.end_reason);
-  } else if (*status != 0) {
-    const std::string line = last_line(job.output);
-    finish("failed", line.empty() ? "exit status " + std::to_string(*status) : line);
-  } else if (!job.commands.empty()) {
-    job.child = std::make_unique<ChildProgram>(job.commands.front(), job.algorithm.path.string());
-    job.commands.erase(job.commands.begin());
+  } else if (end->is_cancelled) {
+    finish("cancelled", "cancelled");
+  } else if (end->is_late) {
+    finish("failed", "it took too long, and was ended");
+  } else if (job.work == Work::proof) {
+    const std::string error = proof_error(proof_object(job.programs->output()), job.programs->errors(), end->status);
+    finish(error.empty() ? "passed" : "failed", error);
+  } else if (job.work == Work::image) {
+    finish_image(end->status);
+  } else if (end->status != 0) {
+    const std::string line = last_line(job.programs->output());
+    finish("failed", line.empty() ? "exit status " + std::to_string(end->status) : line);
   } else {
-    const std::string error = job.is_build ? load(job.algorithm) : "";
+    const std::string error = load(job.algorithms.front());
     finish(error.empty() ? "passed" : "failed", error);
   }
 }
@@ -242,33 +247,79 @@ std::string AlgorithmSession::load(const AlgorithmFolder& algorithm) {
   return "";
 }
 
-void AlgorithmSession::finish(const std::string& state, const std::string& error) {
-  publish_job(state, error);
-  const std::string what = job_->algorithm.name + (job_->is_build ? ": the build " : ": the proof ");
-  const bool was_build = job_->is_build;
-  job_.reset();
-  if (state == "passed") {
-    output_.notice(host::NoticeLevel::info,
-                   what + "passed" + (was_build ? "; Simulate and Restart use it from now on" : ""));
+void AlgorithmSession::finish_image(int status) {
+  if (status != 0) {
+    const std::string& output = job_->programs->output();
+    const std::string problem = image_build_.problem(output);
+    finish("failed", problem.empty() ? last_line(output) : problem);
+    return;
   }
+  try {
+    built_image_ = image_build_.described(job_->algorithms);
+    finish("passed", "");
+  } catch (const std::exception& error) {
+    finish("failed", one_line(error.what()));
+  }
+}
+
+void AlgorithmSession::finish(const std::string& state, const std::string& error) {
+  if (job_->work == Work::image && state != "passed") {
+    image_build_.discard();
+  }
+  publish_job(state, error);
+  const std::string& name = job_->algorithms.front().name;
+  if (state == "passed") {
+    output_.notice(host::NoticeLevel::info, job_->work == Work::build
+                                                ? name + ": the build passed; Simulate and Restart use it from now on"
+                                            : job_->work == Work::proof ? name + ": the proof passed"
+                                                                        : "the image for the modules is built");
+  }
+  job_.reset();
   publish_folders();
 }
 
 void AlgorithmSession::publish_job(const std::string& state, const std::string& error) {
   const Job& job = *job_;
-  json document{{"folder", job.algorithm.folder},
-                {"name", job.algorithm.name},
+  if (job.work == Work::image) {
+    publish_image(state, error);
+    return;
+  }
+  const AlgorithmFolder& algorithm = job.algorithms.front();
+  json document{{"folder", algorithm.folder},
+                {"name", algorithm.name},
                 {"version", job.version},
                 {"state", state},
                 {"error", text_or_null(error)}};
-  if (job.is_build) {
-    document["done"] = job.progress.done;
-    document["of"] = job.progress.of;
-    document["messages"] = messages_json(compiler_messages(job.output), job.algorithm);
+  if (job.work == Work::build) {
+    const BuildProgress progress = build_progress(job.programs->output());
+    document["done"] = progress.done;
+    document["of"] = progress.of;
+    document["messages"] = messages_json(compiler_messages(job.programs->output()), job.algorithms);
+    publish("algorithm_build", std::move(document));
   } else {
-    document["lines"] = lines_json(job.output);
+    const ProofStep step = proof_step(job.programs->errors());
+    document["done"] = step.done;
+    document["of"] = step.of;
+    document["step"] = text_or_null(step.text);
+    document["proof"] = state == "running" ? json() : proof_object(job.programs->output());
+    publish("algorithm_check", std::move(document));
   }
-  publish(job.is_build ? "algorithm_build" : "algorithm_check", std::move(document));
+}
+
+void AlgorithmSession::publish_image(const std::string& state, const std::string& error) {
+  const Job& job = *job_;
+  json algorithms = json::array();
+  for (const AlgorithmFolder& algorithm : job.algorithms) {
+    algorithms.push_back({{"folder", algorithm.folder}, {"name", algorithm.name}});
+  }
+  const BuildProgress progress = build_progress(job.programs->output());
+  publish("algorithm_image", {{"algorithms", std::move(algorithms)},
+                              {"state", state},
+                              {"error", text_or_null(error)},
+                              {"done", progress.done},
+                              {"of", progress.of},
+                              {"messages", messages_json(compiler_messages(job.programs->output()), job.algorithms)},
+                              {"image", state == "passed" ? built_image_ : json()}});
 }
 
 void AlgorithmSession::publish_folders() {
@@ -278,7 +329,10 @@ void AlgorithmSession::publish_folders() {
     folders.push_back({{"folder", algorithm.folder},
                        {"name", algorithm.name},
                        {"library", algorithm.library().string()},
-                       {"loaded", std::ranges::find(loaded, algorithm.library().string()) != loaded.end()}});
+                       {"loaded", std::ranges::any_of(loaded, [&algorithm](const std::string& library) {
+                          std::error_code error;
+                          return std::filesystem::weakly_canonical(library, error) == algorithm.library();
+                        })}});
   }
   publish("algorithm_folders", {{"refusal", text_or_null(options_.refusal)},
                                 {"folders", options_.refusal.empty() ? std::move(folders) : json::array()},

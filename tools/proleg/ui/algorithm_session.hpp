@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/proleg/common/child_program.hpp"
 #include "tools/proleg/ui/algorithm_folders.hpp"
-#include "tools/proleg/ui/compiler_messages.hpp"
+#include "tools/proleg/ui/command_sequence.hpp"
+#include "tools/proleg/ui/image_build.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -27,7 +27,9 @@ struct AlgorithmSessionOptions {
   /// Called in the session's thread when another algorithm, or another version of one, can be used.
   std::function<void()> on_loaded = [] {};
   std::chrono::seconds longest_build = std::chrono::minutes(10);
-  std::chrono::seconds longest_check = std::chrono::hours(1);
+  std::chrono::seconds longest_check = std::chrono::hours(1);  ///< also of an image
+  /// `proleg verify`; empty: the one beside this program.
+  std::filesystem::path verifier = {};
 };
 
 class AlgorithmSession final : private SessionThread {
@@ -40,17 +42,13 @@ class AlgorithmSession final : private SessionThread {
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"algorithm.refresh", "algorithm.read"}; }
 
  private:
-  /// A build, or a proof: programs that run one after the other.
+  enum class Work : std::uint8_t { build, proof, image };
+  /// What goes on.
   struct Job {
-    AlgorithmFolder algorithm;
-    bool is_build = false;
-    std::string version;                             ///< of the source
-    std::vector<std::vector<std::string>> commands;  ///< that are still to be started
-    std::unique_ptr<ChildProgram> child;
-    std::string output;
-    BuildProgress progress;
-    Clock::time_point until;
-    std::string end_reason;  ///< why it is ended; empty: it is not
+    Work work;
+    std::vector<AlgorithmFolder> algorithms;  ///< one, but for an image
+    std::string version;                      ///< of the source of the first one
+    std::unique_ptr<CommandSequence> programs;
   };
   struct Upload {
     host::ClientId client = 0;
@@ -64,13 +62,16 @@ class AlgorithmSession final : private SessionThread {
   void fail(const std::string& why) override;
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation) override;
 
-  void begin(Job job, std::chrono::seconds longest);
+  void require_no_job() const;
+  void begin(Work work, std::vector<AlgorithmFolder> algorithms, const std::vector<std::vector<std::string>>& commands);
   void look_at_job();
   /// error: why it did not pass; empty: it passed.
   void finish(const std::string& state, const std::string& error);
   /// Loads what was built. Returns why it cannot be loaded; empty: it is.
   [[nodiscard]] std::string load(const AlgorithmFolder& algorithm);
   void publish_job(const std::string& state, const std::string& error);
+  void publish_image(const std::string& state, const std::string& error);
+  void finish_image(int status);
   void publish_folders();
   void publish(const std::string& name, nlohmann::json document);
   [[nodiscard]] AlgorithmFolder folder_of(const nlohmann::json& arguments) const;
@@ -82,12 +83,15 @@ class AlgorithmSession final : private SessionThread {
   nlohmann::json save(const host::OperationRequest& request);
   nlohmann::json build(const host::OperationRequest& request);
   nlohmann::json check(const host::OperationRequest& request);
+  nlohmann::json image(const host::OperationRequest& request);
   nlohmann::json cancel(const host::OperationRequest& request);
 
   AlgorithmSessionOptions options_;
   AlgorithmFolders folders_;
+  ImageBuild image_build_;
   std::optional<Job> job_;
   std::optional<Upload> upload_;  ///< a source that comes in several messages
+  nlohmann::json built_image_;    ///< the last one
   std::map<std::string, nlohmann::json> published_;
 };
 

@@ -15,10 +15,12 @@
 #include "sim/authoring/part_change.hpp"
 #include "sim/authoring/world_clipboard.hpp"
 #include "sim/mesh/mesh_file.hpp"
+#include "sim/scenario/actuation_reader.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
+#include "tools/proleg/ui/algorithm_folders.hpp"
 #include "tools/proleg/ui/draft_arguments.hpp"
 #include "tools/proleg/ui/draft_document.hpp"
 #include "tools/proleg/ui/draft_operations.hpp"
@@ -87,6 +89,23 @@ json unsaved_json(const KeptChanges& kept) {
   return {{"time_ms", kept.time_ms}, {"files", std::move(files)}};
 }
 
+/// folder: of the project. An algorithm has a folder, and the path of its library, if its source is in the project.
+json missing_json(const MissingAlgorithms& missing, const std::filesystem::path& folder) {
+  json algorithms = json::array();
+  for (const std::string& name : missing.names) {
+    json entry{{"name", one_line(name)}, {"folder", json()}, {"library", json()}};
+    if (const std::optional<AlgorithmFolder> found = AlgorithmFolders(folder).with_name(name)) {
+      entry["folder"] = found->folder;
+      entry["library"] = found->library().string();
+    }
+    algorithms.push_back(std::move(entry));
+  }
+  return {{"file", one_line(missing.file)},
+          {"action", missing.action},
+          {"error", one_line(missing.error)},
+          {"algorithms", std::move(algorithms)}};
+}
+
 }  // namespace
 
 DraftSession::DraftSession(std::optional<sim::Scenario> scenario, DraftSessionOptions options,
@@ -97,6 +116,7 @@ DraftSession::DraftSession(std::optional<sim::Scenario> scenario, DraftSessionOp
   if (scenario) {
     begin(std::move(*scenario), options_.has_file);
   }
+  publish_missing(options_.missing);
   publish();
   begin_thread();
 }
@@ -155,6 +175,24 @@ void DraftSession::write_journal() {
     output_.notice(host::NoticeLevel::warning,
                    "unsaved changes are lost if this program ends: " + one_line(error.what()));
   }
+}
+
+void DraftSession::publish_missing(const std::optional<MissingAlgorithms>& missing) {
+  if (missing || has_missing_) {
+    output_.publish("missing_algorithms", missing ? missing_json(*missing, options_.folder) : json());
+  }
+  has_missing_ = missing.has_value();
+}
+
+void DraftSession::read_or_name_missing(const std::string& file, const char* action,
+                                        const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const sim::UnknownAlgorithms& error) {
+    publish_missing(MissingAlgorithms{file, action, error.what(), error.names()});
+    throw;
+  }
+  publish_missing(std::nullopt);
 }
 
 sim::Draft& DraftSession::draft() {
@@ -308,6 +346,7 @@ void DraftSession::require_kept_changes(const json& arguments) const {
 json DraftSession::make_new(const json& arguments) {
   require_kept_changes(arguments);
   begin(new_scenario(arguments), false);
+  publish_missing(std::nullopt);
   return {{"revision", draft().revision()}};
 }
 
@@ -323,7 +362,7 @@ std::string DraftSession::file_to_open(const json& arguments) const {
 json DraftSession::open(const json& arguments) {
   const std::string file = file_to_open(arguments);
   require_kept_changes(arguments);
-  begin(sim::read_scenario(file, disk_), true);
+  read_or_name_missing(file, "open", [&] { begin(sim::read_scenario(file, disk_), true); });
   note_opened(file);
   return {{"revision", draft().revision()}};
 }
@@ -392,7 +431,7 @@ json DraftSession::restore(const json& /*arguments*/) {
       draft().adopt(name);
     }
   }
-  draft().change("restore unsaved changes", std::nullopt, [this](sim::DraftChange& change) {
+  const auto restore_texts = [this](sim::DraftChange& change) {
     for (const auto& [name, text] : kept_->texts) {
       if (draft_->has(name)) {
         change.apply(name, {0, draft_->text(name), text});
@@ -400,7 +439,9 @@ json DraftSession::restore(const json& /*arguments*/) {
         change.add_file(name, text);
       }
     }
-  });
+  };
+  read_or_name_missing(draft().scenario().path, "restore",
+                       [&] { draft().change("restore unsaved changes", std::nullopt, restore_texts); });
   kept_.reset();
   journal_->forget_kept();
   return {{"revision", draft().revision()}};
@@ -412,6 +453,7 @@ json DraftSession::discard(const json& /*arguments*/) {
   }
   kept_.reset();
   journal_->discard();
+  publish_missing(std::nullopt);
   is_new_ = true;
   return json::object();
 }

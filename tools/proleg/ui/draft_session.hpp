@@ -25,8 +25,16 @@
 
 namespace proleg::tools {
 
+/// A scenario that this program could not read, because it lacks algorithms.
+struct MissingAlgorithms {
+  std::string file;
+  std::string action;  ///< what was to be done: "start", "open" or "restore"
+  std::string error;   ///< the line of the reader
+  std::vector<std::string> names;
+};
+
 struct DraftSessionOptions {
-  std::filesystem::path folder;  ///< where `draft.save_as` makes folders
+  std::filesystem::path folder;  ///< of the project: where `draft.save_as` makes folders, and where algorithms are
   bool has_file = false;         ///< the scenario is on disk
   /// Whether `draft.open` may open a file; without it, none.
   std::function<bool(const std::string& file)> may_open = {};
@@ -34,6 +42,8 @@ struct DraftSessionOptions {
   std::function<void(const std::string& file)> note_opened = {};
   /// Meshes that viewers have sent; null: none. Must outlive the session.
   const SentMeshes* meshes = nullptr;
+  /// The scenario that was to be shown at the start.
+  std::optional<MissingAlgorithms> missing = {};
 };
 
 class DraftSession final : private SessionThread {
@@ -69,6 +79,10 @@ class DraftSession final : private SessionThread {
   void note_robot(const std::string& before);
   void note_opened(const std::string& file) const;
   void require_kept_changes(const nlohmann::json& arguments) const;
+  /// Publishes what a scenario lacks, and what the project has of it; nothing: nothing is missing.
+  void publish_missing(const std::optional<MissingAlgorithms>& missing);
+  /// Does what reads a scenario. If that lacks algorithms, it publishes them and throws.
+  void read_or_name_missing(const std::string& file, const char* action, const std::function<void()>& read);
   void require_layout(const nlohmann::json& arguments) const;
   /// Reads the draft again if an algorithm was loaded again since it was read.
   void read_algorithms_again();
@@ -103,6 +117,7 @@ class DraftSession final : private SessionThread {
   std::vector<std::size_t> layout_;  ///< of the lists of the draft: what their positions depend on
   bool is_layout_new_ = false;       ///< a change has moved positions
   std::uint64_t layout_since_ = 0;   ///< revision since which it is the same
+  bool has_missing_ = false;         ///< the document `missing_algorithms` names some
   bool is_new_ = true;               ///< something beside the revision has changed
 };
 

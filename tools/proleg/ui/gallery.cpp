@@ -8,6 +8,7 @@
 
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/actuation_reader.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/ui/fast_simulation.hpp"
@@ -83,9 +84,9 @@ std::string hash_of(const sim::Scenario& scenario) {
 }
 
 json entry_of(const ProjectFile& file) {
-  return {{"file", file.file}, {"folder", file.group},         {"title", file.title}, {"text", file.text},
-          {"joints", json()},  {"algorithms", json::array()},  {"distance", json()},  {"failure", json()},
-          {"picture", json()}, {"is_shipped", file.is_shipped}};
+  return {{"file", file.file}, {"folder", file.group},          {"title", file.title},     {"text", file.text},
+          {"joints", json()},  {"algorithms", json::array()},   {"distance", json()},      {"failure", json()},
+          {"picture", json()}, {"is_shipped", file.is_shipped}, {"missing", json::array()}};
 }
 
 }  // namespace
@@ -170,6 +171,11 @@ void Gallery::describe(const ProjectFile& file) {
       entry["distance"] = std::round(*preview.distance * 100.0) / 100.0;
     }
     entry["picture"] = picture_json(scenario, preview);
+  } catch (const sim::UnknownAlgorithms& error) {
+    entry["failure"] = one_line(error.what());
+    for (const std::string& name : error.names()) {
+      entry["missing"].push_back(one_line(name));
+    }
   } catch (const std::exception& error) {
     entry["failure"] = one_line(error.what());
   }

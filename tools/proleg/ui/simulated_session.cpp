@@ -19,6 +19,7 @@
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/document/telemetry_row.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
+#include "tools/proleg/ui/newest_algorithms.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -399,6 +400,10 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
     throw std::runtime_error("the frames that were lost in " + repeated_->name() + " are in no option of a command");
   }
   require_saved_draft();
+  if (has_newer_algorithms(live_->scenario())) {
+    throw std::runtime_error(
+        "an algorithm of this run was built again since the run began: a command would use the new one; Restart first");
+  }
   std::string text = options_.command;
   for (const std::string& word : live_->repeating_words()) {
     text += " --set " + word;

@@ -20,6 +20,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/new_scenario.hpp"
 #include "sim/record/recording_file.hpp"
+#include "sim/scenario/actuation_reader.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/build_id.hpp"
@@ -29,6 +30,7 @@
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
+#include "tools/proleg/ui/algorithm_folders.hpp"
 #include "tools/proleg/ui/algorithm_session.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
@@ -192,45 +194,89 @@ void note_as_recent(const RecentFiles& recent, const std::filesystem::path& path
   }
 }
 
-/// Options of a robot have no effect without one.
-void refuse_robot_options(const UiOptions& options) {
+/// Whether there are options of the robot of FILE, beside --paused.
+bool has_robot_option(const UiOptions& options) {
   const ScenarioOptions& scenario = options.scenario;
   const sim::OverrideWords& overrides = scenario.overrides;
   const bool has_override = std::ranges::any_of(
       sim::override_declarations(), [&](const auto& declaration) { return (overrides.*declaration.word).has_value(); });
-  if (options.paused || options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || has_override) {
-    throw BadInput("found an option of a robot with " + scenario.file + ", expected a scenario");
+  return options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || has_override;
+}
+
+/// Options of a robot have no effect without one.
+void refuse_robot_options(const UiOptions& options) {
+  if (options.paused || has_robot_option(options)) {
+    throw BadInput("found an option of a robot with " + options.scenario.file + ", expected a scenario");
   }
+}
+
+/// Why viewers may not write code; empty: they may. Who writes an algorithm can do all that this program can do.
+std::string code_refusal(const UiOptions& options) {
+  return options.lan.lan && !options.allow_code
+             ? "other computers may open this page, so it takes no code; the option --allow-code lets it"
+             : "";
+}
+
+/// The source of an algorithm in the folder of a scenario, in those around it, or in a folder of these.
+std::optional<AlgorithmFolder> algorithm_near(const std::filesystem::path& scenario, const std::string& name) {
+  constexpr int most_levels = 3;
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::weakly_canonical(scenario, error).parent_path();
+  for (int level = 0; level < most_levels && folder.has_relative_path(); ++level) {
+    if (std::optional<AlgorithmFolder> found = AlgorithmFolders(folder).with_name(name)) {
+      return found;
+    }
+    folder = folder.parent_path();
+  }
+  return std::nullopt;
+}
+
+/// What keeps a scenario from being shown at the start, if the person can build it on the page: the sources of all
+/// missing algorithms are in the project. Else throws the error; it names a source that is near the scenario.
+MissingAlgorithms offer_to_build(const UiOptions& options, const sim::UnknownAlgorithms& error) {
+  const std::string& file = options.scenario.file;
+  const AlgorithmFolders project(options.recordings);
+  const bool has_all =
+      std::ranges::all_of(error.names(), [&](const auto& name) { return project.with_name(name).has_value(); });
+  if (has_all && code_refusal(options).empty() && !has_robot_option(options)) {
+    return {file, "start", error.what(), error.names()};
+  }
+  if (const std::optional<AlgorithmFolder> found = algorithm_near(file, error.names().front())) {
+    throw InputError(std::string(error.what()) + "; its source is in " + found->path.string() +
+                     ": build it, then add --algorithms " + shell_argument(found->library().string()));
+  }
+  throw error;
 }
 
 /// draft: of the session that reads its files again for a new version of an algorithm.
 AlgorithmSessionOptions code_options(const UiOptions& options, const std::filesystem::path& folder,
                                      SessionRequests& draft) {
-  AlgorithmSessionOptions code{folder, "", [&draft] {
-                                 draft.operate({0, "draft.refresh", nlohmann::json::object(), 0, ""});
-                               }};
-  // Who writes an algorithm can do all that this program can do.
-  if (options.lan.lan && !options.allow_code) {
-    code.refusal = "other computers may open this page, so it takes no code; the option --allow-code lets it";
-  }
-  return code;
+  return {folder, code_refusal(options), [&draft] {
+            draft.operate({0, "draft.refresh", nlohmann::json::object(), 0, ""});
+          }};
 }
 
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
-  const RecordedSessionOptions recordings = recordings_of(options);
+  RecordedSessionOptions recordings = recordings_of(options);
   if (options.allow_code && !options.lan.lan) {
     throw InputError("--allow-code", 0, "no --lan", "--lan beside it; this computer may write code without it");
   }
   std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
   NewRobot new_robot;
   std::optional<ScenarioRun> run;
+  std::optional<MissingAlgorithms> missing;
   if (recordings.is_alone) {
     refuse_robot_options(options);
   } else {
-    run = prepare(options.scenario, new_robot, !options.bus.bus);
-    print_warnings("proleg ui", run->scenario);
+    try {
+      run = prepare(options.scenario, new_robot, !options.bus.bus);
+      print_warnings("proleg ui", run->scenario);
+    } catch (const sim::UnknownAlgorithms& error) {
+      missing = offer_to_build(options, error);
+      recordings.is_alone = true;  // until the person has built them
+    }
   }
   const std::filesystem::path page_folder =
       options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
@@ -270,8 +316,9 @@ int serve(UiOptions& options) {
   PresentDraft present_draft;
   const DraftSession draft(
       run ? std::optional(run->scenario) : std::nullopt,
-      {recordings.folder, has_file, [&project_files](const std::string& file) { return project_files.has(file); },
-       [&recent](const std::string& file) { note_as_recent(recent, file); }, &sent_meshes},
+      {recordings.folder, has_file,
+       [&](const std::string& file) { return (missing && file == missing->file) || project_files.has(file); },
+       [&recent](const std::string& file) { note_as_recent(recent, file); }, &sent_meshes, missing},
       draft_requests, present_draft, page);
   const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
   const RemoteThread remote_thread(remote, page);
@@ -303,6 +350,12 @@ int serve(UiOptions& options) {
   const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
+  if (missing) {
+    std::cout << "\nThis scenario needs " << (missing->names.size() == 1 ? "an algorithm" : "algorithms")
+              << " of this folder: " << one_line(listed(missing->names)) << ". The page Make offers to build "
+              << (missing->names.size() == 1 ? "it" : "them") << ".\n"
+              << std::flush;
+  }
   if (std::error_code error; has_file && std::filesystem::is_directory(options.scenario.file, error)) {
     print_scenarios(options.scenario.file);
   }

@@ -8,6 +8,8 @@ import { openDialog, toggleDialog } from '../view/dialogs.js';
 import { addFront } from '../view/front.js';
 import type { Stores } from '../view/robot_view.js';
 import type { Body, DraftDocument, NewScenario, Operations, PartOperation, RobotDocument, WorldObject } from '../wire/messages.js';
+import { algorithmApp } from './algorithm/algorithm_app.js';
+import { AlgorithmOffer } from './algorithm/algorithm_offer.js';
 import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
 import { copyJoints, jointColumns, type JointPaste } from './joint_table.js';
@@ -45,7 +47,7 @@ export function bodyOf(robot: RobotDocument, object: WorldObject): Body | undefi
 export class MakeApp {
   readonly chosenObjects = signal<readonly number[]>([]); // of a group one
   readonly drag = signal<Drag | null>(null);
-  readonly panel = signal<'none' | 'new' | 'open' | 'save'>('none'); // what is open below the bar
+  readonly panel = signal<'none' | 'new' | 'open' | 'save' | 'algorithm'>('none'); // what is open below the bar
   readonly part = signal<PartName>('world');
   readonly chosenJoints = signal<readonly number[]>([]); // kernel order
   readonly discards = signal(false); // changes of a draft without files may be lost
@@ -53,6 +55,7 @@ export class MakeApp {
   readonly chosenModule = signal(0); // an actuation module
   // The joints of an actuation module while a change of them is on its way.
   readonly newJoints = signal<{ module: number; joints: readonly number[] } | null>(null);
+  readonly offer: AlgorithmOffer;
   readonly actions: ActionList;
   readonly view: DraftView;
   readonly mesh: OwnMesh; // before it is part of the draft
@@ -71,6 +74,13 @@ export class MakeApp {
   private whenSent: (() => void) | null = null; // what is done when no step is on its way
 
   constructor(readonly page: MakeStores) {
+    this.offer = new AlgorithmOffer(page, {
+      start: async (file) => {
+        if (await this.open(file)) await this.simulate();
+      },
+      open: async (file) => void (await this.open(file)),
+      restore: () => this.restore(),
+    });
     this.actions = new ActionList(page.actions, (action) => action.group === 'Page' || action.group === 'Robot');
     this.view = new DraftView(page.state, this.actions, () => page.startSceneWorker(), {
       joints: this.chosenJoints,
@@ -116,7 +126,7 @@ export class MakeApp {
   }
 
   // Opens a panel below the bar, or closes it.
-  toggle(panel: 'new' | 'open' | 'save'): void {
+  toggle(panel: 'new' | 'open' | 'save' | 'algorithm'): void {
     this.panel.value = this.panel.peek() === panel ? 'none' : panel;
   }
 
@@ -127,12 +137,38 @@ export class MakeApp {
     return state.isHolder.value ? null : 'Take control first (C).';
   }
 
-  // Opens a scenario of the gallery.
-  async open(file: string): Promise<void> {
-    if ((await this.page.operations.tell('draft.open', { file, ...this.discard() })) !== null) {
-      this.forgetChoice();
-      this.panel.value = 'none';
+  // Opens a scenario of the gallery. Returns whether it is open. Algorithms that it lacks are offered to be built.
+  async open(file: string): Promise<boolean> {
+    this.offer.dismissed.value = null;
+    const refusal = await this.refusal(this.page.operations.ask('draft.open', { file, ...this.discard() }));
+    if (refusal !== null) {
+      this.tellRefusal(refusal);
+      return false;
     }
+    this.forgetChoice();
+    this.panel.value = 'none';
+    return true;
+  }
+
+  // Makes the changes again that an earlier program did not save.
+  async restore(): Promise<void> {
+    this.offer.dismissed.value = null;
+    const refusal = await this.refusal(this.page.operations.ask('draft.restore', {}));
+    if (refusal !== null) this.tellRefusal(refusal);
+  }
+
+  // What is missing is in the offer to build it, which may come later than the refusal.
+  private tellRefusal(refusal: string): void {
+    if (!refusal.includes(': found unknown algorithm ')) this.page.state.addNotice('warning', refusal);
+  }
+
+  // Shows the source of an algorithm, at a place.
+  async showAlgorithm(folder: string, place: { line: number; column: number } | null): Promise<void> {
+    this.part.value = 'algorithm';
+    this.panel.value = this.draft.peek() === null ? 'algorithm' : 'none';
+    const app = algorithmApp(this);
+    await app.open(folder);
+    if (place !== null) app.place.value = { line: place.line, column: place.column };
   }
 
   // Takes parts of another scenario of the gallery.

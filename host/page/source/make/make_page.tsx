@@ -5,6 +5,7 @@ import { ScenePanel } from '../panels/scene_panel.js';
 import { openDialog } from '../view/dialogs.js';
 import { isTextField } from '../view/keyboard.js';
 import type { ForesightDocument } from '../wire/messages.js';
+import { AlgorithmOfferBand } from './algorithm_offer_band.js';
 import { AlgorithmPart } from './algorithm/algorithm_part.js';
 import { BehaviourPart } from './behaviour_part.js';
 import { MakeApp, partNames, type MakeStores, type PartName } from './make_app.js';
@@ -91,14 +92,13 @@ function Unsaved({ app }: { app: MakeApp }) {
   const unsaved = app.draft.value?.unsaved ?? null;
   if (unsaved === null) return null;
   const isDisabled = app.obstacle() !== null;
-  const tell = (name: 'draft.restore' | 'draft.discard') => void app.page.operations.tell(name, {});
   return (
     <div class="band info" role="status" data-testid="unsaved">
       There are changes that were not saved, of {new Date(unsaved.time_ms).toLocaleString()}: {unsaved.files.join(', ')}.{' '}
-      <button type="button" disabled={isDisabled} onClick={() => tell('draft.restore')}>
+      <button type="button" disabled={isDisabled} onClick={() => void app.restore()}>
         Restore
       </button>{' '}
-      <button type="button" disabled={isDisabled} onClick={() => tell('draft.discard')}>
+      <button type="button" disabled={isDisabled} onClick={() => void app.page.operations.tell('draft.discard', {})}>
         Discard
       </button>
     </div>
@@ -222,8 +222,12 @@ export function MakePage({ app: page }: { app: MakeStores }) {
           <button type="button" aria-pressed={app.panel.value === 'new'} title="A robot, its gait and its world in four steps (N)" onClick={() => app.toggle('new')}>
             New …
           </button>
+          <button type="button" aria-pressed={app.panel.value === 'algorithm'} title="Algorithms of your own" onClick={() => app.toggle('algorithm')}>
+            Algorithm …
+          </button>
         </div>
-        {app.panel.value === 'new' ? <NewPanel app={app} /> : <OpenPanel app={app} />}
+        <AlgorithmOfferBand app={app} />
+        {app.panel.value === 'new' ? <NewPanel app={app} /> : app.panel.value === 'algorithm' ? <AlgorithmPart app={app} /> : <OpenPanel app={app} />}
       </div>
     );
   }
@@ -231,6 +235,7 @@ export function MakePage({ app: page }: { app: MakeStores }) {
     <div class="make">
       <MeshDrop app={app} />
       <Bar app={app} />
+      <AlgorithmOfferBand app={app} />
       {app.panel.value === 'save' && <SavePanel app={app} />}
       {app.panel.value === 'open' && (app.wouldLose() ? <LossQuestion app={app} /> : <OpenPanel app={app} />)}
       <Unsaved app={app} />

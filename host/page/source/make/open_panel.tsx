@@ -5,6 +5,7 @@ import type { GalleryEntry } from '../wire/messages.js';
 import { Picture } from './gallery_picture.js';
 import type { MakeApp } from './make_app.js';
 import { algorithmTitle } from './robot_text.js';
+import { shortPath } from './short_path.js';
 
 function distanceText(distance: number): string {
   return `${distance.toFixed(distance < 10 ? 2 : 1)} m in 10 s`;
@@ -23,14 +24,13 @@ function pictureText({ joints, distance, picture }: GalleryEntry): string {
   return `${robot}${way}, ${picture?.view === 'above' ? 'from above' : 'from the side'}`;
 }
 
-// The end of a path, which says most: "gaits/forward.simulation.xml".
-function shortPath(file: string): string {
-  return file.split('/').slice(-2).join('/');
-}
-
 function matches(entry: GalleryEntry, words: readonly string[]): boolean {
   const text = `${entry.title} ${entry.text} ${entry.folder} ${entry.file} ${factsOf(entry).join(' ')}`.toLowerCase();
   return words.every((word) => text.includes(word));
+}
+
+function failureText({ failure, missing }: GalleryEntry): string {
+  return missing.length === 0 ? (failure ?? '') : `Needs ${missing.length === 1 ? 'the algorithm' : 'the algorithms'} ${missing.join(', ')}, not loaded.`;
 }
 
 function EntryButton({ entry, id, obstacle, open }: { entry: GalleryEntry; id: string; obstacle: string | null; open(): void }) {
@@ -58,7 +58,8 @@ function EntryButton({ entry, id, obstacle, open }: { entry: GalleryEntry; id: s
       )}
       <strong id={`${id}-title`}>{entry.title}</strong>
       <span class="gallery-text" id={`${id}-text`}>
-        {entry.failure === null ? entry.text !== '' && <span>{entry.text}</span> : <span class="problem">{entry.failure}</span>}
+        {entry.failure === null && entry.text !== '' && <span>{entry.text}</span>}
+        {entry.failure !== null && <span class="problem">{failureText(entry)}</span>}
         {facts.length > 0 && (
           <span class="gallery-facts">
             {facts.map((fact) => (

@@ -6,12 +6,14 @@ import type {
   AlgorithmBuild,
   AlgorithmCheck,
   AlgorithmFolders,
+  AlgorithmImage,
   BusDocument,
   Documents,
   DraftDocument,
   ForesightDocument,
   AlgorithmDocument,
   LibraryItem,
+  MissingAlgorithms,
   PartsDocument,
   Mesh,
   ControlDocument,
@@ -74,6 +76,8 @@ export class PageState {
   readonly algorithmFolders = signal<AlgorithmFolders | null>(null);
   readonly algorithmBuild = signal<AlgorithmBuild | null>(null);
   readonly algorithmCheck = signal<AlgorithmCheck | null>(null);
+  readonly algorithmImage = signal<AlgorithmImage | null>(null);
+  readonly missingAlgorithms = signal<MissingAlgorithms | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -190,6 +194,12 @@ export class PageState {
           break;
         case 'algorithm_check':
           this.algorithmCheck.value = message.value;
+          break;
+        case 'algorithm_image':
+          this.algorithmImage.value = message.value;
+          break;
+        case 'missing_algorithms':
+          this.missingAlgorithms.value = message.value;
           break;
       }
     }

@@ -221,7 +221,16 @@ export interface GalleryEntry {
   distance: number | null; // metres in 10 s
   is_shipped: boolean;
   failure: string | null; // why it cannot be opened
+  missing: string[]; // algorithms that the program lacks
   picture: GalleryPicture | null;
+}
+
+// A scenario that could not be read, because the program lacks algorithms.
+export interface MissingAlgorithms {
+  file: string;
+  action: 'start' | 'open' | 'restore'; // what was to be done
+  error: string;
+  algorithms: { name: string; folder: string | null; library: string | null }[]; // folder: in the project, with its source
 }
 
 export type UnitName = 'degree' | 'phase_degree' | 'hertz' | 'per_second' | 'ratio' | 'count';
@@ -279,8 +288,63 @@ export interface AlgorithmBuild extends AlgorithmWork {
   messages: BuildMessage[];
 }
 
+// The cases as one build has played them.
+export interface ProofBuild {
+  build: string;
+  kernels: number; // 1: one for all joints
+  result: 'reference' | 'equal' | 'differs' | 'failed' | 'not run';
+  ticks: number; // that were played
+  setpoint_hash: string | null;
+  servo_hash: string | null;
+  text: string | null; // the first difference, the error, or the program that is missing
+}
+
+// What `proleg verify --json` prints.
+export interface Proof {
+  algorithm: string;
+  id: number;
+  sources: string;
+  cases: number;
+  ticks: number; // of a case
+  verified: boolean;
+  builds: ProofBuild[];
+  missing: string[]; // programs that are not installed
+  test: { name: string; passed: boolean; error: string | null } | null;
+  forbidden: string[] | null; // what the code for the modules uses although it may not
+  instructions: { worst: number | null; mean: number | null; limit: number; fits: boolean; error: string | null } | null;
+  stack: { bytes: number | null; function: string | null; limit: number; fits: boolean } | null;
+  flash_bytes: number | null;
+}
+
 export interface AlgorithmCheck extends AlgorithmWork {
-  lines: string[];
+  done: number; // the step that goes on, from 1
+  of: number; // 0: not known yet
+  step: string | null;
+  proof: Proof | null; // when it has ended
+}
+
+// An image for the modules, with algorithms of users.
+export interface BuiltImage {
+  file: string;
+  version: string;
+  commit: string | null;
+  changed_sources: boolean; // it has more than the commit
+  core_fingerprint: string;
+  sha256: string;
+  flash: number | null; // bytes
+  flash_limit: number | null;
+  ram: number | null;
+  ram_limit: number | null;
+  stack: number | null; // at worst
+  stack_limit: number | null;
+  algorithms: { name: string; sources: string | null }[];
+  command: string; // that flashes it
+}
+
+// The present or last build of an image.
+export interface AlgorithmImage extends Pick<AlgorithmBuild, 'state' | 'error' | 'done' | 'of' | 'messages'> {
+  algorithms: { folder: string; name: string }[];
+  image: BuiltImage | null; // null: none, or it was not built
 }
 
 // The value of `algorithm.read`.

@@ -5,12 +5,14 @@ import type {
   AlgorithmDocument,
   AlgorithmFolders,
   AlgorithmForm,
+  AlgorithmImage,
   DraftDocument,
   ForesightDocument,
   GalleryEntry,
   JointValues,
   LibraryItem,
   MeshFit,
+  MissingAlgorithms,
   NewScenario,
   PartOperation,
   PartsDocument,
@@ -275,6 +277,8 @@ export interface Documents {
   algorithm_folders: AlgorithmFolders;
   algorithm_build: AlgorithmBuild;
   algorithm_check: AlgorithmCheck;
+  algorithm_image: AlgorithmImage;
+  missing_algorithms: MissingAlgorithms | null;
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
@@ -354,6 +358,7 @@ export interface Operations {
   'algorithm.save': { folder: string; version: string; text: string; part: number; more: boolean };
   'algorithm.build': { folder: string };
   'algorithm.check': { folder: string };
+  'algorithm.image': { folders: readonly string[] };
   'algorithm.cancel': Record<string, never>;
   'draft.new': NewScenario;
   'draft.open': { file: string; discard?: boolean }; // a file of `gallery`

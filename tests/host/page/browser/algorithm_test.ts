@@ -1,5 +1,6 @@
 // The part Algorithm of the page Make: from a form to a robot that moves by an algorithm of one's own, without a command line.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -7,7 +8,7 @@ import { after, describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
 import { assertNothingIsCut } from './support/layout.js';
 import { useUi } from './support/ui_fixture.js';
-import { UiProgram } from './support/ui_program.js';
+import { program, UiProgram } from './support/ui_program.js';
 import { waitUntil } from './support/waiting.js';
 
 describe("an algorithm of one's own", () => {
@@ -29,10 +30,17 @@ describe("an algorithm of one's own", () => {
   const isInEditor = () => page().evaluate(() => document.activeElement?.closest('.code') !== null);
   const messages = () => part().getByRole('list', { name: 'Messages of the build' });
   const build = async (expected: RegExp) => {
-    await part().getByRole('button', { name: 'Build' }).click();
+    await part().getByRole('button', { name: 'Build', exact: true }).click();
     await part().getByText(/^The build begins|^Building/).waitFor(); // what the one before has said is gone
     assert.ok(await waitUntil(async () => /failed|loaded|cancelled/.test(await buildText())), await buildText());
     assert.match(`${await buildText()} ${(await messages().allTextContents()).join('; ')}`, expected);
+  };
+  // Waits for the end of what says how far it is: each step has its time.
+  const untilTheEnd = async (text: () => Promise<string>, goesOn: RegExp) => {
+    for (let before = await text(); goesOn.test(before); before = await text()) {
+      const shown = before;
+      assert.ok(await waitUntil(async () => (await text()) !== shown), shown);
+    }
   };
   const simulate = async () => {
     await page().getByRole('button', { name: 'Simulate', exact: true }).click();
@@ -155,6 +163,56 @@ describe("an algorithm of one's own", () => {
     await part().getByRole('button', { name: 'Open the file again' }).click();
     await code().getByText('by another editor').waitFor();
     assert.equal(await state(), 'saved');
+  });
+
+  it('is proven, with what it costs on the chip beside the builds', async () => {
+    const check = part().getByRole('button', { name: 'Check', exact: true });
+    const text = async () => (await part().getByTestId('algorithm-check').textContent()) ?? '';
+    await check.click();
+    assert.ok(await waitUntil(async () => /^Proving, step \d+ of \d+: /.test(await text())));
+    await part().getByRole('progressbar', { name: 'Steps of the proof' }).waitFor();
+    assert.equal(await check.isDisabled(), true);
+    await part().getByRole('button', { name: 'Cancel my_wave' }).click();
+    assert.ok(await waitUntil(async () => (await text()) === 'The proof was cancelled.'));
+    await check.click();
+    assert.ok(await waitUntil(async () => /^Proving/.test(await text())));
+    await untilTheEnd(text, /^(The proof begins|Proving)/);
+    assert.equal(await text(), 'Verified: the same bits everywhere.');
+    const cost = part().getByTestId('proof-cost');
+    assert.match((await cost.getByRole('row', { name: /^Cost/ }).textContent()) ?? '', /\d+ instructions a tick at worst.*2500 instructionsgood$/);
+    assert.match((await cost.getByRole('row', { name: /^Stack/ }).textContent()) ?? '', /\d+ bytes at most.*512 bytesgood$/);
+    const builds = part().getByTestId('proof-builds').locator('tbody tr');
+    assert.equal(await builds.count(), 11);
+    assert.match((await builds.filter({ hasText: 'Cortex-M4' }).textContent()) ?? '', /^Cortex-M4equal5 modules50000[0-9a-f]{24}$/);
+    await page().screenshot({ path: 'build/page_test/algorithm_proof.png', fullPage: true });
+  });
+
+  it('comes into the image for the modules, with the command that flashes it', async () => {
+    const image = part().getByRole('region', { name: 'Into the image' });
+    const text = async () => (await image.getByTestId('image-state').textContent()) ?? '';
+    const begin = image.getByRole('button', { name: 'Build the image' });
+    assert.equal(await image.getByRole('checkbox', { name: 'my_wave' }).isChecked(), true);
+    await image.getByRole('checkbox', { name: 'my_wave' }).uncheck();
+    assert.equal(await begin.isDisabled(), true);
+    await image.getByRole('checkbox', { name: 'my_wave' }).check();
+    await begin.click();
+    assert.ok(await waitUntil(async () => /^Building the image: \d+ of \d+ …$/.test(await text())));
+    await image.getByRole('button', { name: 'Cancel the image' }).click();
+    assert.ok(await waitUntil(async () => (await text()) === 'The build of the image was cancelled.'));
+    await begin.click();
+    assert.ok(await waitUntil(async () => /^(The build of the image begins|Building)/.test(await text())));
+    await untilTheEnd(text, /^(The build of the image begins|Building)/);
+    assert.equal(await text(), 'The image is built.');
+    const file = join(folder, 'build/image/bin/proleg_stm32f405.pimg');
+    assert.equal(await image.getByTestId('flash-command').textContent(), `proleg flash --bus can0 ${file}`);
+    const { images } = JSON.parse(execFileSync(program, ['image', 'info', '--json', file], { encoding: 'utf8' })) as { images: { intact: boolean; sha256: string }[] };
+    assert.equal(images[0]?.intact, true);
+    const facts = image.getByTestId('image-facts');
+    await facts.getByRole('row', { name: `SHA-256 ${images[0]?.sha256}` }).waitFor();
+    assert.match((await facts.getByRole('row', { name: /^Flash/ }).textContent()) ?? '', /^Flash\d+ of 90112 bytes, \d+ are left$/);
+    const sources = (await part().getByTestId('proof-builds').locator('caption').textContent())?.match(/0x[0-9A-F]{8}/)?.[0];
+    assert.match((await facts.getByRole('row', { name: /^Contents/ }).textContent()) ?? '', new RegExp(`my_wave \\(sources ${sources}\\)$`));
+    await page().screenshot({ path: 'build/page_test/algorithm_image.png', fullPage: true });
   });
 
   it('only shows to those who do not drive', async () => {

@@ -43,6 +43,13 @@ TEST(ChildProgram, GivesTheOutputAndTheStatusOfItsEnd) {
   EXPECT_EQ(run({"sh", "-c", "kill -9 $$"}).status, 128 + SIGKILL);
 }
 
+TEST(ChildProgram, GivesStandardErrorApartIfThatIsAskedFor) {
+  ChildProgram child({"sh", "-c", "echo out; echo err >&2"}, "/", ChildProgram::Errors::apart);
+  EXPECT_EQ(wait_for(child).output, "out\n");
+  EXPECT_EQ(child.read_errors(), "err\n");
+  EXPECT_EQ(child.read_errors(), "");
+}
+
 TEST(ChildProgram, PassesArgumentsAsTheyAre) {
   EXPECT_EQ(run({"printf", "%s|", "a b", "$HOME", "; exit 1", "*"}).output, "a b|$HOME|; exit 1|*|");
 }

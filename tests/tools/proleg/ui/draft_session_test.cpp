@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh_shapes.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/scenario/reader.hpp"
@@ -132,6 +133,83 @@ TEST_F(DraftSessionTest, ShowsTheWorldOfTheScenario) {
   EXPECT_EQ(document["world"]["start"]["position"], json({0.0, 0.0, 0.026}));
   EXPECT_EQ(viewers_.document("draft_robot")["terrain"].size(), 1U);
   EXPECT_GE(viewers_.document("library").size(), 7U);
+}
+
+/// A scenario that names an algorithm that the program does not have.
+class MissingAlgorithmTest : public DraftSessionTest {
+ protected:
+  [[nodiscard]] std::string gait_file() const { return folder_ / "mine/uniform.actuation.xml"; }
+  [[nodiscard]] static std::string replaced(std::string text, const std::string& part, const std::string& by) {
+    const std::size_t at = text.find(part);
+    EXPECT_NE(at, std::string::npos) << part;
+    return text.replace(at, part.size(), by);
+  }
+  void name_algorithm(const std::string& name) {
+    const std::string text = replaced(file_contents(gait_file()), "PatternGenerator_sinusoidal", name);
+    std::ofstream(gait_file()) << text;
+  }
+  void write_algorithm(const std::string& name) {
+    std::filesystem::create_directory(folder_ / name);
+    std::ofstream(folder_ / name / "CMakeLists.txt") << "proleg_algorithm_project()\n";
+    std::ofstream(folder_ / name / (name + ".cpp")) << "\n";
+  }
+};
+
+TEST_F(MissingAlgorithmTest, OpeningNamesItAndItsSourceInTheProject) {
+  name_algorithm("my_wave");
+  const Viewers::Answer refused = ask("draft.open", {{"file", file_}});
+  EXPECT_FALSE(refused.is_done);
+  json missing = viewers_.document("missing_algorithms");
+  EXPECT_EQ(missing["file"], file_);
+  EXPECT_EQ(missing["action"], "open");
+  EXPECT_EQ(missing["error"], refused.text);
+  EXPECT_EQ(missing["algorithms"], json({{{"name", "my_wave"}, {"folder", nullptr}, {"library", nullptr}}}));
+
+  write_algorithm("my_wave");
+  EXPECT_FALSE(ask("draft.open", {{"file", file_}}).is_done);
+  missing = viewers_.document("missing_algorithms");
+  EXPECT_EQ(missing["algorithms"][0]["folder"], "my_wave");
+  EXPECT_EQ(missing["algorithms"][0]["library"],
+            (std::filesystem::canonical(folder_ / "my_wave") / "build/my_wave.so").string());
+  EXPECT_EQ(draft(0)["behaviour"]["modules"][0]["algorithm"], "PatternGenerator_sinusoidal") << "the draft stays";
+
+  must("draft.open", {{"file", source_path("/sim/scenarios/travelling_wave/coupled.simulation.xml")}});
+  EXPECT_TRUE(viewers_.document("missing_algorithms").is_null());
+}
+
+TEST_F(MissingAlgorithmTest, RestoringKeepsTheChangesUntilItIsThere) {
+  const std::string before = file_contents(gait_file());
+  const std::string journal = folder_ / "mine/.uniform.simulation.xml.unsaved";
+  add_box();
+  session_.reset();
+  json kept = json::parse(file_contents(journal));
+  kept["process"] = "";  // of a program that has ended
+  kept["files"] = {
+      {gait_file(),
+       {{"base", sha256_hex(before)}, {"text", replaced(before, "PatternGenerator_sinusoidal", "my_wave")}}}};
+  std::ofstream(journal) << kept.dump();
+  open();
+  ASSERT_TRUE(viewers_.document("draft")["unsaved"].is_object());
+  EXPECT_FALSE(ask("draft.restore").is_done);
+  EXPECT_EQ(viewers_.document("missing_algorithms")["action"], "restore");
+  EXPECT_EQ(viewers_.document("missing_algorithms")["algorithms"][0]["name"], "my_wave");
+  EXPECT_TRUE(std::filesystem::exists(journal));
+  EXPECT_TRUE(viewers_.document("draft")["unsaved"].is_object()) << "it can be tried again";
+  must("draft.discard");
+  EXPECT_TRUE(viewers_.document("missing_algorithms").is_null());
+}
+
+TEST_F(MissingAlgorithmTest, AProgramWithoutARobotBeginsWithIt) {
+  write_algorithm("my_wave");
+  session_.reset();
+  requests_.emplace();
+  session_.emplace(
+      std::nullopt,
+      DraftSessionOptions{folder_ / "", true, {}, {}, nullptr, MissingAlgorithms{file_, "start", "why", {"my_wave"}}},
+      *requests_, present_, viewers_);
+  const json missing = viewers_.document("missing_algorithms");
+  EXPECT_EQ(missing["action"], "start");
+  EXPECT_EQ(missing["algorithms"][0]["folder"], "my_wave");
 }
 
 TEST_F(DraftSessionTest, AnObjectIsAddedMovedAndTakenBack) {

@@ -80,6 +80,7 @@ TEST_F(GalleryTest, AnEntrySaysWhatTheScenarioIs) {
   EXPECT_NEAR(entry["distance"].get<double>(), 0.57, 0.06);  // a third of the 1.71 m in 30 s of docs/gaits.md
   EXPECT_EQ(entry["is_shipped"], false);
   EXPECT_EQ(entry["failure"], json());
+  EXPECT_EQ(entry["missing"], json::array());
   EXPECT_EQ(entry["picture"]["view"], "side");
 }
 
@@ -90,6 +91,19 @@ TEST_F(GalleryTest, ARefusedScenarioIsListedWithItsError) {
   ASSERT_EQ(entries.size(), 1U);
   EXPECT_NE(entries[0]["failure"].get<std::string>().find("broken.simulation.xml:1: found"), std::string::npos);
   EXPECT_EQ(entries[0]["picture"], json());
+}
+
+TEST_F(GalleryTest, AScenarioThatNeedsOtherAlgorithmsNamesThem) {
+  copy("gaits/forward", "mine");
+  const std::string gait = folder_ / "mine/gaits/forward.actuation.xml";
+  std::string text = file_contents(gait);
+  const std::string name = "PatternGenerator_sinusoidal_extended";
+  text.replace(text.find(name), name.size(), "my_wave");
+  std::ofstream(gait) << text;
+  open();
+  const json entries = look();
+  EXPECT_EQ(entries[0]["missing"], json({"my_wave"}));
+  EXPECT_NE(entries[0]["failure"].get<std::string>().find("unknown algorithm 'my_wave'"), std::string::npos);
 }
 
 TEST_F(GalleryTest, TheNextLookFindsNewAndChangedFiles) {

@@ -15,6 +15,14 @@ export interface OpenSource extends AlgorithmSource {
   typed: string;
 }
 
+let stores: AlgorithmApp | null = null; // what was typed stays when another part is shown
+
+// The only one of the page.
+export function algorithmApp(make: AlgorithmHost): AlgorithmApp {
+  stores ??= new AlgorithmApp(make);
+  return stores;
+}
+
 export class AlgorithmApp {
   readonly sources = signal<ReadonlyMap<string, OpenSource>>(new Map());
   readonly chosen = signal<string | null>(null); // folder
@@ -35,9 +43,14 @@ export class AlgorithmApp {
   });
   // The work that goes on, of any algorithm.
   readonly work = computed(() => {
-    const { algorithmBuild, algorithmCheck } = this.make.page.state;
-    return [algorithmBuild.value, algorithmCheck.value].find((work) => work?.state === 'running') ?? null;
+    const { algorithmBuild, algorithmCheck, algorithmImage } = this.make.page.state;
+    if (algorithmImage.value?.state === 'running') return { name: 'the image', isImage: true };
+    const work = [algorithmBuild.value, algorithmCheck.value].find((each) => each?.state === 'running');
+    return work == null ? null : { name: work.name, isImage: false };
   });
+  // Folders of the algorithms that come into the image; null: the one that is open.
+  readonly inImage = signal<ReadonlySet<string> | null>(null);
+  readonly imageProblem = signal<string | null>(null);
 
   constructor(readonly make: AlgorithmHost) {
     // A page that is left loses what was not saved.
@@ -120,6 +133,17 @@ export class AlgorithmApp {
       await this.make.page.operations.ask(name, { folder });
     } catch (error) {
       this.problem.value = (error as Error).message;
+    }
+  }
+
+  async buildImage(folders: readonly string[]): Promise<void> {
+    this.imageProblem.value = null;
+    const source = this.source.peek();
+    if (source !== null && folders.includes(source.folder) && !(await this.save())) return;
+    try {
+      await this.make.page.operations.ask('algorithm.image', { folders });
+    } catch (error) {
+      this.imageProblem.value = (error as Error).message;
     }
   }
 

@@ -1,11 +1,11 @@
 // The part Algorithm of the page Make: algorithms of the user's own, written, built and run without a command line.
 import { useEffect } from 'preact/hooks';
-import type { AlgorithmBuild, AlgorithmCheck, BuildMessage } from '../../wire/messages.js';
-import { AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
+import type { AlgorithmBuild, BuildMessage } from '../../wire/messages.js';
+import { algorithmApp, type AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
 import { AlgorithmFormView } from './algorithm_form.js';
+import { ImageView } from './image_view.js';
+import { ProofView } from './proof_view.js';
 import { SourceEditor } from './source_editor.js';
-
-let stores: AlgorithmApp | null = null; // what was typed stays when another part is shown
 
 function buildText(build: AlgorithmBuild, isChanged: boolean): string {
   const errors = build.messages.filter(({ severity }) => severity === 'error').length;
@@ -18,19 +18,6 @@ function buildText(build: AlgorithmBuild, isChanged: boolean): string {
       return 'The build was cancelled.';
     case 'failed':
       return errors === 0 ? `The build failed: ${build.error}` : `The build failed: ${errors === 1 ? '1 error' : `${errors} errors`}.`;
-  }
-}
-
-function checkText(check: AlgorithmCheck): string {
-  switch (check.state) {
-    case 'running':
-      return 'Proving; the first time takes minutes …';
-    case 'passed':
-      return 'Proven: the same bits everywhere.';
-    case 'cancelled':
-      return 'The proof was cancelled.';
-    case 'failed':
-      return `Not proven: ${check.error}`;
   }
 }
 
@@ -84,16 +71,7 @@ function Work({ app }: { app: AlgorithmApp }) {
           <code>--algorithms {library.library}</code>.
         </p>
       )}
-      {check !== null && (
-        <section aria-label="Proof">
-          <p role="status" data-testid="algorithm-check">
-            {checkText(check)}
-          </p>
-          <pre class="check-lines" tabIndex={0} aria-label="Table of the proof">
-            {check.lines.join('\n')}
-          </pre>
-        </section>
-      )}
+      {check !== null && <ProofView check={check} isOld={check.version !== source.version || app.isChanged.value} />}
     </>
   );
 }
@@ -136,7 +114,7 @@ function SourceView({ app }: { app: AlgorithmApp }) {
         >
           Check
         </button>
-        {work !== null && (
+        {work !== null && !work.isImage && (
           <button type="button" disabled={obstacle !== null} onClick={() => app.cancel()}>
             Cancel {work.name}
           </button>
@@ -158,8 +136,7 @@ function SourceView({ app }: { app: AlgorithmApp }) {
 }
 
 export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
-  stores ??= new AlgorithmApp(make);
-  const app = stores;
+  const app = algorithmApp(make);
   const { state, operations } = make.page;
   const document = state.algorithmFolders.value;
   // Another program may have written algorithms meanwhile.
@@ -182,7 +159,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
                 aria-pressed={!app.isMaking.value && app.chosen.value === folder}
                 onClick={() => void app.open(folder)}
               >
-                {folder === name ? name : `${name} (${folder})`}
+                {folder === name ? name : `${name} (${folder === '.' ? 'this folder' : folder})`}
               </button>
             ))}
             <button type="button" aria-pressed={app.isMaking.value} onClick={() => (app.isMaking.value = !app.isMaking.value)}>
@@ -195,6 +172,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
               {app.problem.value}
             </p>
           )}
+          {!app.isMaking.value && document.folders.length > 0 && <ImageView app={app} folders={document.folders} />}
         </>
       )}
     </section>

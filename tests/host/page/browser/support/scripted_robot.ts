@@ -217,7 +217,7 @@ export class ScriptedRobot {
   }
 
   private sendDocuments(viewer: Viewer): void {
-    const documents: Omit<Documents, 'remote_values' | 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'parts' | Extract<keyof Documents, `algorithm${string}`> | 'foresight' | 'gallery'> = {
+    const documents: Omit<Documents, 'remote_values' | 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'parts' | Extract<keyof Documents, `algorithm${string}`> | 'missing_algorithms' | 'foresight' | 'gallery'> = {
       robot: chain(),
       parameters: [],
       session: this.session,

@@ -1,0 +1,46 @@
+#include "tools/proleg/ui/command_sequence.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace proleg::tools {
+
+CommandSequence::CommandSequence(std::vector<std::vector<std::string>> commands, std::string folder,
+                                 std::chrono::seconds longest, ChildProgram::Errors errors)
+    : commands_(std::move(commands)), folder_(std::move(folder)), errors_kind_(errors), until_(Clock::now() + longest) {
+  start_next();
+}
+
+void CommandSequence::start_next() {
+  child_ = std::make_unique<ChildProgram>(commands_.front(), folder_, errors_kind_);
+  commands_.erase(commands_.begin());
+}
+
+std::optional<CommandSequence::End> CommandSequence::look() {
+  const std::optional<int> status = child_->status();
+  const std::string output = child_->read();
+  if (output_.size() + output.size() <= most_output) {
+    output_ += output;
+  }
+  errors_ += child_->read_errors();
+  errors_.erase(0, errors_.size() - std::min(errors_.size(), most_errors));
+  if (!status) {
+    if (Clock::now() >= until_ && !is_late_) {
+      is_late_ = true;
+      child_->end();
+    }
+    return std::nullopt;
+  }
+  if (*status == 0 && !commands_.empty() && !is_cancelled_ && !is_late_) {
+    start_next();
+    return std::nullopt;
+  }
+  return End{is_cancelled_, is_late_, *status};
+}
+
+void CommandSequence::cancel() {
+  is_cancelled_ = true;
+  child_->end();
+}
+
+}  // namespace proleg::tools

@@ -15,8 +15,26 @@ namespace {
 // What undo keeps at most; older entries are forgotten.
 constexpr std::size_t max_history_entries = 10'000;
 constexpr std::size_t max_history_bytes = std::size_t{64} << 20U;
+// Of all files of a draft: large meshes, added again and again, would fill the memory.
+constexpr std::size_t max_draft_bytes = std::size_t{64} << 20U;
 
 std::size_t bytes_of(const TextPatch& patch) { return patch.removed.size() + patch.inserted.size(); }
+
+std::size_t bytes_of(const DraftTexts& texts) {
+  std::size_t bytes = 0;
+  for (const auto& [name, text] : texts.all()) {
+    bytes += text.size();
+  }
+  return bytes;
+}
+
+/// A scenario that is larger from the beginning can still be changed.
+void require_room(std::size_t before, std::size_t after) {
+  if (after > max_draft_bytes && after > before) {
+    throw InputError("the draft", 0, "files of " + std::to_string(after >> 20U) + " MiB",
+                     "at most " + std::to_string(max_draft_bytes >> 20U) + " MiB; smaller meshes, or fewer of them");
+  }
+}
 
 }  // namespace
 
@@ -144,12 +162,14 @@ Scenario Draft::read() {
 
 void Draft::change(const std::string& label, std::optional<std::uint64_t> gesture,
                    const std::function<void(DraftChange&)>& change) {
+  const std::size_t bytes_before = bytes_of(texts_);
   DraftChange collected(*this);
   try {
     change(collected);
     if (collected.steps_.empty()) {
       return;
     }
+    require_room(bytes_before, bytes_of(texts_));
     scenario_ = read();
   } catch (...) {
     take_back(collected.steps_);

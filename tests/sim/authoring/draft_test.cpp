@@ -117,6 +117,28 @@ TEST_F(DraftTest, ANewFileComesAndGoesWithItsChange) {
             std::string::npos);
 }
 
+// Files of 15 MiB, until the memory that a draft may have is full.
+TEST_F(DraftTest, FilesMayNotFillTheMemory) {
+  const auto add = [this](int number) {
+    const std::string name = "large" + std::to_string(number) + ".xml";
+    draft_.change("add a large file", {}, [&](DraftChange& change) {
+      change.add_file(name,
+                      "<KinBody><!--" + std::string(std::size_t{15} << 20U, 'x') +
+                          "--><Body type='static'><Geom type='sphere'><radius>0.1</radius></Geom></Body></KinBody>");
+      change.apply(
+          "environment.xml",
+          change.xml("environment.xml").add_last(0, "<KinBody file=\"" + name + "\" name=\"s" + name + "\"/>"));
+    });
+  };
+  for (int number = 0; number < 4; ++number) {
+    add(number);
+  }
+  const std::size_t objects = draft_.scenario().environment.objects.size();
+  EXPECT_NE(message_of<InputError>([&] { add(4); }).find("at most 64 MiB"), std::string::npos);
+  EXPECT_EQ(draft_.scenario().environment.objects.size(), objects);
+  move_ball(2);
+}
+
 TEST_F(DraftTest, AFileThatAChangeNamesBelongsToTheDraftFromThenOn) {
   files_.texts["late.xml"] =
       "<KinBody><Body type='static'><Geom type='sphere'><radius>0.1</radius></Geom></Body></KinBody>";

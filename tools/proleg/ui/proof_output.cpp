@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view program = "proleg verify: ";
+constexpr std::string_view line_begin = "proleg verify: ";
 
 /// The step in "3 of 15: building with g++".
 std::optional<ProofStep> step_in(std::string_view line) {
@@ -35,8 +35,8 @@ ProofStep proof_step(std::string_view errors) {
   ProofStep last;
   TextLines lines(errors);
   while (const std::optional<std::string_view> line = lines.next()) {
-    if (line->starts_with(program)) {
-      last = step_in(line->substr(program.size())).value_or(std::move(last));
+    if (line->starts_with(line_begin)) {
+      last = step_in(line->substr(line_begin.size())).value_or(std::move(last));
     }
   }
   return last;
@@ -54,8 +54,8 @@ std::string proof_error(const json& proof, std::string_view errors, int status) 
   std::string last;
   TextLines lines(errors);
   while (const std::optional<std::string_view> line = lines.next()) {
-    if (line->starts_with(program) && !step_in(line->substr(program.size()))) {
-      last = one_line(line->substr(program.size()));
+    if (line->starts_with(line_begin) && !step_in(line->substr(line_begin.size()))) {
+      last = one_line(line->substr(line_begin.size()));
     }
   }
   return last.empty() ? "proleg verify has ended without a result, with exit status " + std::to_string(status) : last;

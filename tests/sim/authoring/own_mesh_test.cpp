@@ -63,9 +63,9 @@ TEST(OwnMesh, WhatIsNoMeshIsRefusedWithOneLine) {
                                                              {"a\n.off", box_off},
                                                              {std::string(80, 'a') + ".off", box_off},
                                                              {"a.off", "OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n"}};
-  for (const auto& [name, text] : bad) {
-    const std::string message = message_of<InputError>([&] { static_cast<void>(mesh_of(name, text)); });
-    EXPECT_NE(message, "") << name;
+  for (const auto& file : bad) {
+    const std::string message = message_of<InputError>([&] { static_cast<void>(mesh_of(file.first, file.second)); });
+    EXPECT_NE(message, "") << file.first;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
 }

@@ -53,7 +53,7 @@ std::optional<std::pair<int, std::string>> line_of(const std::string& message, c
   return line ? std::optional(std::pair(static_cast<int>(*line), message.substr(end + 2))) : std::nullopt;
 }
 
-/// Reads the scenario. A message about a joint names the joint and the value instead of a line that nobody sees.
+/// Reads the scenario. A message about a joint names the joint and the value instead of a line of the file.
 void require_readable(DraftChange& change, const Scenario& before) {
   try {
     static_cast<void>(change.scenario());

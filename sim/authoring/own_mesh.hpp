@@ -45,8 +45,8 @@ struct OwnMesh {
   MeshFacts facts;
 };
 
-/// Throws InputError for names that no file of a scenario may have (a folder, a beginning with ".", characters that
-/// nobody sees), for an ending of no mesh, for two meshes, and for a file beside the mesh that is no ".mtl" file.
+/// Throws InputError for names that no file of a scenario may have (a folder, a beginning with ".", control
+/// characters), for an ending of no mesh, for two meshes, and for a file beside the mesh that is no ".mtl" file.
 /// Returns the position of the mesh.
 [[nodiscard]] std::size_t require_mesh_files(const std::vector<std::string>& names);
 

@@ -26,7 +26,7 @@ class ImageBuild {
   /// The built image, for the document `algorithm_image`. Throws InputError if it is not there, or not intact.
   [[nodiscard]] nlohmann::json described(std::span<const AlgorithmFolder> algorithms) const;
 
-  /// After a build that has failed: nobody may flash what it has left.
+  /// Removes the image that a failed build has left, so that it is not flashed.
   void discard() const;
 
   /// Why a build has failed, in a line; output: of its programs. Empty if only the compiler's messages say it.

@@ -34,7 +34,7 @@ class SentMeshes {
 };
 
 struct MeshSessionOptions {
-  /// A mesh of which no part has come for so long is forgotten, and a whole one that nobody has used.
+  /// A mesh of which no part has come for so long is forgotten, and a whole one that was not used for so long.
   std::chrono::milliseconds longest_pause{30'000};
   std::chrono::milliseconds longest_rest{3'600'000};
 };

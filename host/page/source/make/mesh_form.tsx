@@ -192,11 +192,38 @@ function ModuleNumbers({ app }: { app: MakeApp }) {
         unit="kg"
         decimals={5}
         value={module.mass}
-        title="Of each module. Suggested: 500 kg/m³, as the modules of the thesis."
+        title="Of each module. Suggested: 500 kg/m³, about that of a module of the shipped caterpillar."
         commit={above0((value) => (own.mass.value = value))}
       />
     </div>
   );
+}
+
+// What makes the mesh a part of the draft, or gives it up; and why the program has refused it.
+function UseButtons({ app, label, obstacle, hint, use }: { app: MakeApp; label: string; obstacle: string | null; hint: string; use(): Promise<unknown> }) {
+  const own = app.mesh;
+  return (
+    <>
+      <div class="fields">
+        <button type="button" class="primary" onClick={() => void use()} disabled={obstacle !== null} title={obstacle ?? hint}>
+          {label}
+        </button>
+        <button type="button" onClick={() => own.close()}>
+          Cancel
+        </button>
+      </div>
+      {own.problem.value !== null && (
+        <p class="problem" role="alert">
+          {own.problem.value}
+        </p>
+      )}
+    </>
+  );
+}
+
+function useText(links: readonly number[] | null): string {
+  if (links === null) return 'Use it for all links';
+  return links.length === 1 ? 'Use it for 1 link' : `Use it for ${links.length} links`;
 }
 
 export function ModuleMeshForm({ app }: { app: MakeApp }) {
@@ -218,19 +245,7 @@ export function ModuleMeshForm({ app }: { app: MakeApp }) {
         <>
           <MeshNumbers app={app} mesh={mesh} />
           <ModuleNumbers app={app} />
-          <div class="fields">
-            <button type="button" class="primary" onClick={() => void own.makeModule()} disabled={obstacle !== null} title={obstacle ?? 'Undo brings the old modules back.'}>
-              {own.links.value === null ? 'Use it for all links' : own.links.value.length === 1 ? 'Use it for 1 link' : `Use it for ${own.links.value.length} links`}
-            </button>
-            <button type="button" onClick={() => own.close()}>
-              Cancel
-            </button>
-          </div>
-          {own.problem.value !== null && (
-            <p class="problem" role="alert">
-              {own.problem.value}
-            </p>
-          )}
+          <UseButtons app={app} label={useText(own.links.value)} obstacle={obstacle} hint="Undo brings the old modules back." use={() => own.makeModule()} />
         </>
       )}
     </div>
@@ -272,19 +287,7 @@ export function WorldMeshForm({ app }: { app: MakeApp }) {
               </label>
             </>
           )}
-          <div class="fields">
-            <button type="button" class="primary" onClick={() => void own.add()} disabled={obstacle !== null} title={obstacle ?? 'It comes in front of the robot.'}>
-              Add {mesh.name}
-            </button>
-            <button type="button" onClick={() => own.close()}>
-              Cancel
-            </button>
-          </div>
-          {own.problem.value !== null && (
-            <p class="problem" role="alert">
-              {own.problem.value}
-            </p>
-          )}
+          <UseButtons app={app} label={`Add ${mesh.name}`} obstacle={obstacle} hint="It comes in front of the robot." use={() => own.add()} />
         </>
       )}
     </div>

@@ -30,7 +30,7 @@ export class OwnMesh {
   readonly state = signal<MeshState>({ phase: 'none' });
   readonly purpose = signal<Purpose>('world');
   readonly isOpen = signal(false); // the form is shown
-  readonly factor = signal<number | null>(null); // metres of the file's unit; null: nobody has said it yet
+  readonly factor = signal<number | null>(null); // metres of the file's unit; null: not chosen yet
   readonly quarters = signal<Quarters>([0, 0, 0]);
   readonly colour = signal<readonly [number, number, number]>([0.6, 0.5, 0.4]);
   readonly isSheet = signal(false);

@@ -85,7 +85,7 @@ function AddModule({ app, robot, algorithms }: { app: MakeApp; robot: DraftRobot
   const obstacle = app.obstacle() ?? (modules.length >= most ? `A robot has at most ${most} actuation modules.` : null);
   const add = async (algorithm: string) => {
     const joints = Array.from({ length: robot.joints.length }, (_, i) => i);
-    if (await app.tell('behaviour.add', { algorithm, joints })) app.chosenModule.value = modules.length;
+    if (await app.changes.tell('behaviour.add', { algorithm, joints })) app.chosenModule.value = modules.length;
   };
   return (
     <details class="add-module">

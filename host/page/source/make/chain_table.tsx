@@ -131,7 +131,7 @@ export function ChainTable({ app, robot }: { app: MakeApp; robot: DraftRobot }) 
                     disabled={app.obstacle() !== null}
                     aria-label={`axis of ${nameOf(joint)}: ${axisWord(axis)}`}
                     title={`${axisWord(axis)}. Press: ${isPitch ? 'yaw' : 'pitch'}.`}
-                    onClick={() => void app.tell('robot.axis', { joints: [joint], value: axisOfAngle(isPitch ? 90 : 0) })}
+                    onClick={() => void app.changes.tell('robot.axis', { joints: [joint], value: axisOfAngle(isPitch ? 90 : 0) })}
                   >
                     {axisLetter(axis)}
                   </button>

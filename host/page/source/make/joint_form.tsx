@@ -17,17 +17,19 @@ export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
   const isDisabled = app.obstacle() !== null;
   const differs = (value: (joint: DraftJoint) => number | null) => joints.some((joint) => value(robot.joints[joint]!) !== value(first));
   const several = (value: (joint: DraftJoint) => number | null) => (differs(value) ? ' (they differ)' : '');
+  const limit = (limits: (old: DraftJoint['limits']) => { lower: number; upper: number }) =>
+    app.changes.changeOf('robot.limits', ({ robot: now }) => ({ joints, ...limits((now.joints[joints[0]!] ?? first).limits) }));
   const angle = axisAngle(first.axis);
   return (
     <div class="object-form" key={joints.join()}>
       {joints.length === 1 && (
-        <TextField label="name" value={first.name} isDisabled={isDisabled} commit={(name) => app.change('robot.rename_joint', { joint: joints[0]!, name })} />
+        <TextField label="name" value={first.name} isDisabled={isDisabled} commit={(name) => app.changes.change('robot.rename_joint', { joint: joints[0]!, name })} />
       )}
       <div class="fields">
-        <button type="button" disabled={isDisabled} aria-pressed={angle === 0} title="It bends up and down." onClick={() => void app.tell('robot.axis', { joints, value: axisOfAngle(0) })}>
+        <button type="button" disabled={isDisabled} aria-pressed={angle === 0} title="It bends up and down." onClick={() => void app.changes.tell('robot.axis', { joints, value: axisOfAngle(0) })}>
           pitch
         </button>
-        <button type="button" disabled={isDisabled} aria-pressed={angle === 90} title="It bends to the sides." onClick={() => void app.tell('robot.axis', { joints, value: axisOfAngle(90) })}>
+        <button type="button" disabled={isDisabled} aria-pressed={angle === 90} title="It bends to the sides." onClick={() => void app.changes.tell('robot.axis', { joints, value: axisOfAngle(90) })}>
           yaw
         </button>
         <NumberField
@@ -37,7 +39,7 @@ export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           value={angle ?? 0}
           isDisabled={isDisabled}
           title="0 is pitch, 90 is yaw; between them the joint bends askew"
-          commit={(value) => app.change('robot.axis', { joints, value: axisOfAngle(value) })}
+          commit={(value) => app.changes.change('robot.axis', { joints, value: axisOfAngle(value) })}
         />
       </div>
       {angle === null && <p class="hint">The axis in the file, {first.axis.join(' ')}, is not across the robot.</p>}
@@ -49,7 +51,7 @@ export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           value={first.limits[0]}
           isDisabled={isDisabled}
           title="Where the joint stops. A gait stays within ±90°."
-          commit={(lower) => app.change('robot.limits', { joints, lower, upper: first.limits[1] })}
+          commit={(lower) => limit((old) => ({ lower, upper: old[1] }))}
         />
         <NumberField
           label={`highest angle${several((joint) => joint.limits[1])}`}
@@ -58,7 +60,7 @@ export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           value={first.limits[1]}
           isDisabled={isDisabled}
           title="Where the joint stops. A gait stays within ±90°."
-          commit={(upper) => app.change('robot.limits', { joints, lower: first.limits[0], upper })}
+          commit={(upper) => limit((old) => ({ lower: old[0], upper }))}
         />
         <NumberField
           label={`torque${several((joint) => joint.torque)}`}
@@ -66,7 +68,7 @@ export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           value={first.torque}
           isDisabled={isDisabled}
           title="How strong the servo is."
-          commit={(value) => app.change('robot.torque', { joints, value })}
+          commit={(value) => app.changes.change('robot.torque', { joints, value })}
         />
         <NumberField
           label={`speed${several((joint) => joint.speed)}`}
@@ -74,7 +76,7 @@ export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           value={first.speed}
           isDisabled={isDisabled}
           title="How fast the servo turns at most."
-          commit={(value) => app.change('robot.speed', { joints, value })}
+          commit={(value) => app.changes.change('robot.speed', { joints, value })}
         />
       </div>
     </div>
@@ -87,13 +89,13 @@ export function LinkForm({ app, robot, link: number }: { app: MakeApp; robot: Dr
   return (
     <>
       <div class="fields">
-        <NumberField label="mass" unit="kg" value={link.mass} isDisabled={isDisabled} commit={(value) => app.change('robot.mass', { link: number, value })} />
+        <NumberField label="mass" unit="kg" value={link.mass} isDisabled={isDisabled} commit={(value) => app.changes.change('robot.mass', { link: number, value })} />
         <NumberField
           label="friction"
           value={link.friction ?? 0}
           isDisabled={isDisabled}
           title="How well it grips: 0 is ice, 1 is rubber."
-          commit={(value) => app.change('robot.friction', { link: number, value })}
+          commit={(value) => app.changes.change('robot.friction', { link: number, value })}
         />
       </div>
       {link.friction === null && <p class="hint">It has no friction of its own: that of the ground holds.</p>}

@@ -7,9 +7,10 @@ import { ActionList } from '../state/actions.js';
 import { openDialog, toggleDialog } from '../view/dialogs.js';
 import { addFront } from '../view/front.js';
 import type { Stores } from '../view/robot_view.js';
-import type { Body, DraftDocument, NewScenario, Operations, PartOperation, RobotDocument, WorldObject } from '../wire/messages.js';
+import type { Body, DraftDocument, NewScenario, Operations, RobotDocument, WorldObject } from '../wire/messages.js';
 import { algorithmApp } from './algorithm/algorithm_app.js';
 import { AlgorithmOffer } from './algorithm/algorithm_offer.js';
+import { DraftChanges, refusalOf } from './draft_changes.js';
 import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
 import { copyJoints, jointColumns, type JointPaste } from './joint_table.js';
@@ -17,10 +18,6 @@ import { OwnMesh } from './own_mesh.js';
 import type { MeshFile } from './mesh_transfer.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
-
-// Operations that name parts of the draft by their positions.
-export type PartOperationName = Extract<keyof Operations, `world.${string}` | `robot.${string}` | `behaviour.${string}`>;
-type Arguments<Name extends PartOperationName> = Omit<Operations[Name], keyof PartOperation>;
 
 // The parts of the draft that can be shown beside the drawings.
 export const partNames = ['robot', 'behaviour', 'algorithm', 'world', 'run'] as const;
@@ -55,6 +52,7 @@ export class MakeApp {
   readonly chosenModule = signal(0); // an actuation module
   // The joints of an actuation module while a change of them is on its way.
   readonly newJoints = signal<{ module: number; joints: readonly number[] } | null>(null);
+  readonly changes: DraftChanges;
   readonly offer: AlgorithmOffer;
   readonly actions: ActionList;
   readonly view: DraftView;
@@ -69,11 +67,9 @@ export class MakeApp {
   });
   // Text for the table of joints, until the table takes it.
   readonly jointText = signal<string | null>(null);
-  private isSending = false;
-  private waiting: (() => Promise<unknown>) | null = null; // the newest step of a drag
-  private whenSent: (() => void) | null = null; // what is done when no step is on its way
 
   constructor(readonly page: MakeStores) {
+    this.changes = new DraftChanges(page, () => (this.newJoints.value = null));
     this.offer = new AlgorithmOffer(page, {
       start: async (file) => {
         if (await this.open(file)) await this.simulate();
@@ -90,8 +86,8 @@ export class MakeApp {
     this.mesh = new OwnMesh({
       operations: page.operations,
       obstacle: () => this.obstacle(),
-      addObject: (words) => this.addInFront((place) => this.change('world.add_mesh', { ...words, ...place })),
-      makeModule: (words) => this.change('robot.own_module', words),
+      addObject: (words) => this.addInFront((place) => this.changes.change('world.add_mesh', { ...words, ...place })),
+      makeModule: (words) => this.changes.change('robot.own_module', words),
     });
     const canChange = () => this.obstacle() === null && this.draft.value !== null;
     const hasChosen = () => this.chosenObjects.value.length > 0 && this.chosenObjects.value.every((number) => this.objects.value[number]?.editable === true);
@@ -140,7 +136,7 @@ export class MakeApp {
   // Opens a scenario of the gallery. Returns whether it is open. Algorithms that it lacks are offered to be built.
   async open(file: string): Promise<boolean> {
     this.offer.dismissed.value = null;
-    const refusal = await this.refusal(this.page.operations.ask('draft.open', { file, ...this.discard() }));
+    const refusal = await refusalOf(this.page.operations.ask('draft.open', { file, ...this.discard() }));
     if (refusal !== null) {
       this.tellRefusal(refusal);
       return false;
@@ -153,7 +149,7 @@ export class MakeApp {
   // Makes the changes again that an earlier program did not save.
   async restore(): Promise<void> {
     this.offer.dismissed.value = null;
-    const refusal = await this.refusal(this.page.operations.ask('draft.restore', {}));
+    const refusal = await refusalOf(this.page.operations.ask('draft.restore', {}));
     if (refusal !== null) this.tellRefusal(refusal);
   }
 
@@ -198,36 +194,9 @@ export class MakeApp {
     this.refit.value += 1;
   }
 
-  // Requests a change of a part. Returns the reason if it was refused, else null.
-  async change<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<string | null> {
-    const layout = this.draft.peek()?.layout ?? 0;
-    const all = { ...words, layout, ...(gesture === undefined ? {} : { gesture }) } as unknown as Operations[Name];
-    return this.refusal(this.page.operations.ask(name, all));
-  }
-
-  // The reason if what was asked for is refused, else null.
-  private refusal(asked: Promise<unknown>): Promise<string | null> {
-    return asked.then(
-      () => null,
-      (error: Error) => error.message,
-    );
-  }
-
-  // As change(), with a notice if it was refused.
-  async tell<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture?: number): Promise<boolean> {
-    const refusal = await this.change(name, words, gesture);
-    if (refusal !== null) this.page.state.addNotice('warning', refusal);
-    return refusal === null;
-  }
-
   // Requests another value of the run. Returns the reason if it was refused, else null.
   changeRun(words: Operations['draft.run']): Promise<string | null> {
-    return this.refusal(this.page.operations.ask('draft.run', words));
-  }
-
-  // Requests a change that follows a slider or a pointer: of several that wait the newest is sent.
-  follow<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture: number): void {
-    this.send(() => this.tell(name, words, gesture));
+    return refusalOf(this.page.operations.ask('draft.run', words));
   }
 
   // The joints that an actuation module moves, also while a change of them is on its way.
@@ -238,7 +207,7 @@ export class MakeApp {
 
   setJoints(module: number, joints: readonly number[], gesture: number): void {
     this.newJoints.value = { module, joints };
-    this.follow('behaviour.joints', { module, joints }, gesture);
+    this.changes.follow('behaviour.joints', { module, joints }, gesture);
   }
 
   // As changeRun(), with a notice if it was refused.
@@ -270,7 +239,7 @@ export class MakeApp {
       if (hasGroup && i !== number && other.group === object.group) moved.set(i, compose(motion, poseFromArray(other.pose)));
     });
     this.drag.value = { ...drag, moved };
-    this.send(() => this.tell('world.place', { object: number, pose: arrayOf(pose), group: hasGroup }, drag.gesture));
+    this.changes.follow('world.place', { object: number, pose: arrayOf(pose), group: hasGroup }, drag.gesture);
   }
 
   // Moves the start of the robot: its head comes to this place.
@@ -282,37 +251,14 @@ export class MakeApp {
     this.drag.value = { ...drag, moved: new Map([[startOfRobot, { position: [x, y, z], orientation }]]) };
     const from = drag.start;
     const to: [number, number, number] = [from[0] + x - position[0], from[1] + y - position[1], from[2] + z - position[2]];
-    this.send(() => this.tell('world.start', { position: to, degrees: draft.world.start.degrees }, drag.gesture));
+    this.changes.follow('world.start', { position: to, degrees: draft.world.start.degrees }, drag.gesture);
   }
 
   endDrag(): void {
     const drag = this.drag.peek();
-    // What is shown stays until the last answer has come.
-    const finish = () => {
+    // What is shown stays until the draft of the last answer has come.
+    this.changes.afterLastStep(() => {
       if (this.drag.peek()?.gesture === drag?.gesture) this.drag.value = null;
-    };
-    if (this.isSending) this.whenSent = finish;
-    else finish();
-  }
-
-  // One step is on its way; of those that come meanwhile the newest goes next.
-  private send(step: () => Promise<unknown>): void {
-    if (this.isSending) {
-      this.waiting = step;
-      return;
-    }
-    this.isSending = true;
-    void step().finally(() => {
-      this.isSending = false;
-      const next = this.waiting;
-      this.waiting = null;
-      if (next !== null) {
-        this.send(next);
-      } else {
-        this.newJoints.value = null;
-        this.whenSent?.();
-        this.whenSent = null;
-      }
     });
   }
 
@@ -365,12 +311,12 @@ export class MakeApp {
   async remove(): Promise<void> {
     const objects = this.chosenObjects.peek();
     this.chosenObjects.value = [];
-    await this.tell('world.remove', { objects, group: true });
+    await this.changes.tell('world.remove', { objects, group: true });
   }
 
   async duplicate(step: [number, number, number], count: number): Promise<string | null> {
     const objects = this.chosenObjects.peek();
-    return objects.length === 0 ? null : this.change('world.duplicate', { objects, group: true, step, count });
+    return objects.length === 0 ? null : this.changes.change('world.duplicate', { objects, group: true, step, count });
   }
 
   private async tellDuplicate(): Promise<void> {
@@ -380,7 +326,7 @@ export class MakeApp {
 
   private async duplicateJoint(): Promise<void> {
     const joint = this.chosenJoints.peek()[0];
-    if (joint !== undefined) await this.tell('robot.duplicate', { joint });
+    if (joint !== undefined) await this.changes.tell('robot.duplicate', { joint });
   }
 
   // Puts the chosen objects on the clipboard. Returns whether they are there.
@@ -424,26 +370,12 @@ export class MakeApp {
     }
     const count = () => this.objects.peek().filter(({ editable }) => editable).length;
     const before = count();
-    const layout = this.draft.peek()?.layout ?? 0;
-    const answer = await this.page.operations.tell('world.paste', { layout, text: text.slice(0, mostPasted), step: [...copyStep] });
-    if (answer === null) return;
-    await this.draftOf((answer as { revision: number }).revision);
+    if (!(await this.changes.tell('world.paste', { text: text.slice(0, mostPasted), step: [...copyStep] }))) return;
     this.part.value = 'world';
     this.chosenObjects.value = [];
     for (let number = before; number < count(); number += 1) {
       if (!this.isChosen(number)) this.chooseObject(number, true);
     }
-  }
-
-  // Waits for the draft of a revision, or a later one: an answer may come before the documents.
-  private draftOf(revision: number): Promise<void> {
-    return new Promise((resolve) => {
-      const stop = effect(() => {
-        if ((this.draft.value?.revision ?? 0) < revision) return;
-        resolve();
-        queueMicrotask(() => stop());
-      });
-    });
   }
 
   // For a button and a touch screen.
@@ -469,7 +401,7 @@ export class MakeApp {
 
   // Adds an item of the library in front of the robot, and chooses it. Returns the reason if it was refused.
   add(item: string, values: Record<string, number>): Promise<string | null> {
-    return this.addInFront((place) => this.change('world.add', { item, values, ...place }));
+    return this.addInFront((place) => this.changes.change('world.add', { item, values, ...place }));
   }
 
   // What was dropped on the page: a module while the robot is shown, else an object of the world.
@@ -509,7 +441,7 @@ export class MakeApp {
 
   // Moves a joint, with its link, to the place of another one. Returns whether that was possible.
   async moveJoint(joint: number, to: number): Promise<boolean> {
-    const isDone = to !== joint && (await this.tell('robot.move', { joint, to }));
+    const isDone = to !== joint && (await this.changes.tell('robot.move', { joint, to }));
     if (isDone) this.chosenJoints.value = [to];
     return isDone;
   }
@@ -517,7 +449,7 @@ export class MakeApp {
   // Sets values of joints as one change, with the joints that are missing. Returns the reason if it was refused, else null.
   async setJointTable({ joints, missing }: JointPaste): Promise<string | null> {
     const count = (this.draft.peek()?.robot.joints.length ?? 0) + missing;
-    return this.change('robot.table', { joints, ...(missing > 0 ? { count } : {}) });
+    return this.changes.change('robot.table', { joints, ...(missing > 0 ? { count } : {}) });
   }
 
   // Removes the chosen joint with its link.
@@ -525,14 +457,14 @@ export class MakeApp {
     const joint = this.chosenJoints.peek()[0];
     if (joint === undefined) return;
     this.chosenJoints.value = [];
-    await this.tell('robot.remove', { joint });
+    await this.changes.tell('robot.remove', { joint });
   }
 
   // Makes the draft a new scenario. Of several calls in a row the newest counts. answered: with the reason of a refusal,
   // or null.
   makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
-    this.send(async () => {
-      const refusal = await this.refusal(this.page.operations.ask('draft.new', { ...words, ...this.discard() }));
+    this.changes.send(async () => {
+      const refusal = await refusalOf(this.page.operations.ask('draft.new', { ...words, ...this.discard() }));
       if (refusal === null) this.forgetChoice();
       answered(refusal);
     });

@@ -35,7 +35,7 @@ function ParameterFields({ app, robot, module, number, parameter }: Row) {
   const set = (joints: readonly number[], text: string) => {
     if (text === '') return null;
     const value = parseValue(text, parameter);
-    return typeof value === 'string' ? value : app.change('behaviour.set', words(joints, value));
+    return typeof value === 'string' ? value : app.changes.change('behaviour.set', words(joints, value));
   };
   const range = parameter.wraps
     ? 'Any angle'
@@ -60,8 +60,8 @@ function ParameterFields({ app, robot, module, number, parameter }: Row) {
           describedBy={id}
           isDisabled={isDisabled}
           begin={() => (gesture.value = app.page.newGesture())}
-          set={(value) => app.follow('behaviour.set', words(module.joints, value), gesture.value)}
-          reset={() => void app.tell('behaviour.set', words(module.joints, parameter.default * parameter.scale))}
+          set={(value) => app.changes.follow('behaviour.set', words(module.joints, value), gesture.value)}
+          reset={() => void app.changes.tell('behaviour.set', words(module.joints, parameter.default * parameter.scale))}
         />
         <button type="button" aria-expanded={isOpen.value} disabled={module.joints.length < 2} title="A value for each joint" onClick={() => (isOpen.value = !isOpen.value)}>
           {isUniform ? 'each joint' : 'they differ'}
@@ -104,7 +104,7 @@ export function ModuleForm({ app, robot, module, number, algorithms, isOnly }: {
   const most = app.page.state.parts.value?.most_modules ?? 4;
   const isFull = (app.draft.value?.behaviour.modules.length ?? 0) >= most;
   const copy = async () => {
-    if (await app.tell('behaviour.duplicate', { module: number, joints: [...module.joints] })) app.chosenModule.value = number + 1;
+    if (await app.changes.tell('behaviour.duplicate', { module: number, joints: [...module.joints] })) app.chosenModule.value = number + 1;
   };
   return (
     <section class="panel make-panel" aria-label={`Module ${number + 1}`}>
@@ -118,12 +118,12 @@ export function ModuleForm({ app, robot, module, number, algorithms, isOnly }: {
           texts={Object.fromEntries(algorithms.map(({ name }) => [name, name]))}
           isDisabled={obstacle !== null}
           title="It keeps the values of parameters that both have."
-          commit={(name) => void app.tell('behaviour.algorithm', { module: number, algorithm: name })}
+          commit={(name) => void app.changes.tell('behaviour.algorithm', { module: number, algorithm: name })}
         />
         <button type="button" disabled={obstacle !== null || isFull} title={obstacle ?? (isFull ? `A robot has at most ${most} actuation modules.` : 'A second module with the same values')} onClick={() => void copy()}>
           Copy
         </button>
-        <button type="button" disabled={obstacle !== null || isOnly} title={obstacle ?? (isOnly ? 'A robot has at least one.' : 'Undo brings it back')} onClick={() => void app.tell('behaviour.remove', { module: number })}>
+        <button type="button" disabled={obstacle !== null || isOnly} title={obstacle ?? (isOnly ? 'A robot has at least one.' : 'Undo brings it back')} onClick={() => void app.changes.tell('behaviour.remove', { module: number })}>
           Delete
         </button>
       </div>

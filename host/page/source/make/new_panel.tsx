@@ -2,7 +2,7 @@
 // and the next half minute show it at once. Nothing is on disk before the last step.
 import { signal } from '@preact/signals-core';
 import { useEffect } from 'preact/hooks';
-import type { NewScenario } from '../wire/messages.js';
+import type { NewScenario, RobotKind } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
 import { algorithmTitle } from './robot_text.js';
 
@@ -73,27 +73,26 @@ function Choose({ name, label, value, all, set }: { name: string; label: string;
   );
 }
 
-// The axes of the joints as letters: the present ones of the draft.
-function axesOf(app: MakeApp): string {
-  const joints = app.draft.value?.robot.joints ?? [];
-  return [...joints].reverse().map(({ axis }) => (Math.abs(axis[2]) > Math.abs(axis[0]) ? 'y' : 'p')).join('');
+// The axes of a new robot of a kind as letters, from the tail.
+function axesOf({ axes, joints }: RobotKind): string {
+  return axes.repeat(Math.ceil(joints / axes.length)).slice(0, joints);
 }
 
 function RobotStep({ app, send }: { app: MakeApp; send(): void }) {
   const kinds = app.page.state.parts.value?.kinds ?? [];
   const most = app.page.state.parts.value?.most_joints ?? 64;
-  const axes = choices.axes.value ?? axesOf(app);
+  const kind = kinds.find(({ name }) => name === choices.kind.value) ?? kinds[0];
+  const axes = choices.axes.value ?? (kind === undefined ? '' : axesOf(kind));
   const setAxes = (next: string) => {
     choices.axes.value = next;
     send();
   };
-  const kind = choices.kind.value === '' ? (kinds[0]?.name ?? '') : choices.kind.value;
   return (
     <>
       <Choose
         name="kind"
         label="Which robot?"
-        value={kind}
+        value={kind?.name ?? ''}
         all={kinds.map((each) => ({ value: each.name, title: each.name, text: each.help }))}
         set={(value) => {
           choices.kind.value = value;

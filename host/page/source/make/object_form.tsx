@@ -1,8 +1,8 @@
 // The numbers of the chosen object.
 import { useSignal } from '@preact/signals';
 import { arrayOf, headingOf } from '../geometry/outline.js';
-import { poseFromArray, type Vector } from '../geometry/quaternion.js';
-import type { WorldShape } from '../wire/messages.js';
+import { poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
+import type { DraftDocument, WorldObject, WorldShape } from '../wire/messages.js';
 import { fromHex, toHex } from './colour_text.js';
 import type { MakeApp } from './make_app.js';
 import { NumberField } from './number_field.js';
@@ -23,7 +23,11 @@ const axisTitles = ['to the right', 'the way of the robot', 'up'] as const;
 interface Place {
   place: Vector;
   isDisabled: boolean;
-  commit(place: Vector): Promise<string | null>;
+  commit(moved: (old: Vector) => Vector): Promise<string | null>;
+}
+
+function replaced<Values extends readonly number[]>(values: Values, at: number, value: number): Values {
+  return values.map((old, i) => (i === at ? value : old)) as unknown as Values;
 }
 
 function PlaceFields({ place, isDisabled, commit }: Place) {
@@ -37,7 +41,7 @@ function PlaceFields({ place, isDisabled, commit }: Place) {
           value={place[i] as number}
           isDisabled={isDisabled}
           title={axisTitles[i] as string}
-          commit={(value) => commit(place.map((old, at) => (at === i ? value : old)) as unknown as Vector)}
+          commit={(value) => commit((old) => replaced(old, i, value))}
         />
       ))}
     </>
@@ -113,16 +117,35 @@ export function ObjectForm({ app }: { app: MakeApp }) {
   }
   const isDisabled = app.obstacle() !== null;
   const pose = app.poseOf(number, object);
-  const place = (position: Vector) =>
-    app.change('world.place', { object: number, pose: arrayOf({ position, orientation: pose.orientation }), group: object.group_size > 1 });
+  const place = (moved: (now: WorldObject) => Pose) =>
+    app.changes.changeOf('world.place', ({ world }) => ({
+      object: number,
+      pose: arrayOf(moved(world.objects[number] ?? object)),
+      group: object.group_size > 1,
+    }));
+  const resize = (k: number, size: (now: number[]) => number[]) =>
+    app.changes.changeOf('world.resize', ({ world }) => ({
+      object: number,
+      shape: k,
+      size: size(world.objects[number]?.shapes[k]?.size ?? []),
+    }));
   const colour = object.shapes[0]?.colour ?? null;
   const friction = object.shapes[0]?.friction ?? null;
   return (
     <div class="object-form" key={number}>
-      <TextField label="name" value={object.name} isDisabled={isDisabled} commit={(name) => app.change('world.rename', { object: number, name })} />
+      <TextField label="name" value={object.name} isDisabled={isDisabled} commit={(name) => app.changes.change('world.rename', { object: number, name })} />
       {object.group_size > 1 && <p class="hint">One of {object.group_size} parts, which move together. Ctrl and drag moves it alone.</p>}
       <div class="fields">
-        <PlaceFields place={pose.position} isDisabled={isDisabled} commit={place} />
+        <PlaceFields
+          place={pose.position}
+          isDisabled={isDisabled}
+          commit={(position) =>
+            place((now) => {
+              const { position: old, orientation } = poseFromArray(now.pose);
+              return { position: position(old), orientation };
+            })
+          }
+        />
         <NumberField
           label="turn"
           unit="°"
@@ -130,9 +153,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
           decimals={2}
           isDisabled={isDisabled}
           title="to the left, about the vertical"
-          commit={(value) =>
-            app.change('world.place', { object: number, pose: arrayOf(app.turned(object, value)), group: object.group_size > 1 })
-          }
+          commit={(value) => place((now) => app.turned(now, value))}
         />
       </div>
       {object.shapes.map((shape, k) => (
@@ -144,9 +165,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
               unit="m"
               value={value}
               isDisabled={isDisabled}
-              commit={(next) =>
-                app.change('world.resize', { object: number, shape: k, size: shape.size.map((old, at) => (at === i ? next : old)) })
-              }
+              commit={(next) => resize(k, (size) => replaced(size, i, next))}
             />
           ))}
           {shape.type === 'trimesh' && shape.size.length > 0 && (
@@ -155,7 +174,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
               value={1}
               isDisabled={isDisabled}
               title="All sides become so many times as long"
-              commit={(by) => app.change('world.resize', { object: number, shape: k, size: shape.size.map((side) => side * by) })}
+              commit={(by) => resize(k, (size) => size.map((side) => side * by))}
             />
           )}
           {shape.type === 'trimesh' && shape.size.length === 0 && <p class="hint">Its shape is a mesh in the file of the world.</p>}
@@ -167,7 +186,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
           value={friction ?? 0}
           isDisabled={isDisabled}
           title="How slippery it is: 0 is ice, 1 is rubber."
-          commit={(value) => app.change('world.friction', { object: number, value })}
+          commit={(value) => app.changes.change('world.friction', { object: number, value })}
         />
         <label class="number-field">
           <span>colour</span>
@@ -175,7 +194,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
             type="color"
             value={toHex(colour ?? [0.7, 0.7, 0.7])}
             disabled={isDisabled}
-            onChange={(event) => void app.tell('world.colour', { object: number, value: fromHex(event.currentTarget.value) })}
+            onChange={(event) => void app.changes.tell('world.colour', { object: number, value: fromHex(event.currentTarget.value) })}
           />
         </label>
         <label class="switch">
@@ -183,9 +202,9 @@ export function ObjectForm({ app }: { app: MakeApp }) {
             type="checkbox"
             checked={object.moves}
             disabled={isDisabled}
-            onChange={(event) => void app.tell('world.moves', { object: number, value: event.currentTarget.checked })}
+            onChange={(event) => void app.changes.tell('world.moves', { object: number, value: event.currentTarget.checked })}
             onKeyDown={(event) => {
-              if (event.key === 'Enter') void app.tell('world.moves', { object: number, value: !object.moves }); // Space is STOP
+              if (event.key === 'Enter') void app.changes.tell('world.moves', { object: number, value: !object.moves }); // Space is STOP
             }}
           />
           moves when something pushes it
@@ -196,7 +215,7 @@ export function ObjectForm({ app }: { app: MakeApp }) {
             unit="kg"
             value={object.mass}
             isDisabled={isDisabled}
-            commit={(value) => app.change('world.mass', { object: number, value })}
+            commit={(value) => app.changes.change('world.mass', { object: number, value })}
           />
         )}
       </div>
@@ -213,12 +232,12 @@ export function StartForm({ app }: { app: MakeApp }) {
   const start = app.draft.value?.world.start;
   if (start === undefined) return null;
   const isDisabled = app.obstacle() !== null;
-  const change = (position: readonly number[], degrees: readonly number[]) =>
-    app.change('world.start', { position: position as [number, number, number], degrees: degrees as [number, number, number] });
-  const replaced = (values: readonly number[], at: number, value: number) => values.map((old, i) => (i === at ? value : old));
+  type Start = DraftDocument['world']['start'];
+  const change = (changed: (now: Start) => Partial<Start>) =>
+    app.changes.changeOf('world.start', ({ world }) => ({ ...world.start, ...changed(world.start) }));
   return (
     <div class="fields">
-      <PlaceFields place={start.position} isDisabled={isDisabled} commit={(position) => change(position, start.degrees)} />
+      <PlaceFields place={start.position} isDisabled={isDisabled} commit={(position) => change((now) => ({ position: [...position(now.position)] }))} />
       <NumberField
         label="turn"
         unit="°"
@@ -226,7 +245,7 @@ export function StartForm({ app }: { app: MakeApp }) {
         decimals={2}
         isDisabled={isDisabled}
         title="to the left, about the vertical"
-        commit={(value) => change(start.position, replaced(start.degrees, 2, value))}
+        commit={(value) => change((now) => ({ degrees: replaced(now.degrees, 2, value) }))}
       />
       <p class="hint">
         The robot points to {headingOf(poseFromArray(app.draft.value?.head ?? [0, 0, 0, 1, 0, 0, 0])).toFixed(0)}°. In the ground it is

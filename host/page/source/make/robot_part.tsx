@@ -36,9 +36,9 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           value={count}
           isDisabled={obstacle !== null}
           title={obstacle ?? 'New ones come at the head. Axes that alternate go on so.'}
-          commit={(value) => (Number.isInteger(value) && value > 0 ? app.change('robot.count', { value }) : `found ${value}, expected a whole number above 0`)}
+          commit={(value) => (Number.isInteger(value) && value > 0 ? app.changes.change('robot.count', { value }) : `found ${value}, expected a whole number above 0`)}
         />
-        <button type="button" disabled={isDisabled} title={why ?? 'Adds a copy of the chosen joint and its link'} onClick={() => void app.tell('robot.duplicate', { joint: joint! })}>
+        <button type="button" disabled={isDisabled} title={why ?? 'Adds a copy of the chosen joint and its link'} onClick={() => void app.changes.tell('robot.duplicate', { joint: joint! })}>
           Add a copy
         </button>
         <button type="button" disabled={isDisabled || count < 2} title={why ?? 'Undo brings it back (Delete)'} onClick={() => void app.removeJoint()}>
@@ -54,7 +54,7 @@ function ChainTools({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
           type="button"
           disabled={obstacle !== null || count < 2}
           title={obstacle ?? 'The last joint becomes the first one'}
-          onClick={() => void app.tell('robot.order', { order: [...all].reverse() })}
+          onClick={() => void app.changes.tell('robot.order', { order: [...all].reverse() })}
         >
           Reverse
         </button>
@@ -80,7 +80,7 @@ function KindButtons({ app, link }: { app: MakeApp; link: number | null }) {
   return (
     <div class="fields" role="group" aria-label={link === null ? 'Modules of the robot' : 'Module of the link'}>
       {kinds.map(({ name, help }) => (
-        <button key={name} type="button" disabled={obstacle !== null} title={obstacle ?? help} onClick={() => void app.tell('robot.kind', { kind: name, link })}>
+        <button key={name} type="button" disabled={obstacle !== null} title={obstacle ?? help} onClick={() => void app.changes.tell('robot.kind', { kind: name, link })}>
           {name}
         </button>
       ))}
@@ -98,7 +98,7 @@ export function RobotPart({ app }: { app: MakeApp }) {
     <>
       <section class="panel make-panel" aria-label="Chain">
         <h2>Chain</h2>
-        <TextField label="name" value={robot.name} isDisabled={isDisabled} commit={(name) => app.change('robot.rename', { name })} />
+        <TextField label="name" value={robot.name} isDisabled={isDisabled} commit={(name) => app.changes.change('robot.rename', { name })} />
         <ChainTable app={app} robot={robot} />
         <ChainTools app={app} robot={robot} />
       </section>
@@ -142,7 +142,7 @@ export function RobotPart({ app }: { app: MakeApp }) {
               title={title}
               value={robot.servo[name]}
               isDisabled={isDisabled}
-              commit={(value) => app.change('robot.servo', { name, value })}
+              commit={(value) => app.changes.change('robot.servo', { name, value })}
             />
           ))}
         </div>

@@ -32,7 +32,7 @@ function AddForm({ app, robot, parts }: { app: MakeApp; robot: DraftRobot; parts
       aria-label="New sensor"
       onSubmit={(event) => {
         event.preventDefault();
-        void app.tell('robot.add_sensor', { kind: kind.value, part: Math.min(part.value, names.length - 1), place: place.value });
+        void app.changes.tell('robot.add_sensor', { kind: kind.value, part: Math.min(part.value, names.length - 1), place: place.value });
       }}
     >
       <ChoiceField
@@ -67,11 +67,11 @@ function AddForm({ app, robot, parts }: { app: MakeApp; robot: DraftRobot; parts
 
 function SensorForm({ app, sensor, number }: { app: MakeApp; sensor: DraftSensor; number: number }) {
   const isDisabled = app.obstacle() !== null;
-  const set = (name: string, value: string) => app.change('robot.set_sensor', { sensor: number, name, value });
+  const set = (name: string, value: string) => app.changes.change('robot.set_sensor', { sensor: number, name, value });
   const isPlaced = sensor.kind !== 'ServoCurrent';
   return (
     <div class="object-form">
-      <TextField label="name" value={sensor.name} isDisabled={isDisabled} commit={(name) => app.change('robot.rename_sensor', { sensor: number, name })} />
+      <TextField label="name" value={sensor.name} isDisabled={isDisabled} commit={(name) => app.changes.change('robot.rename_sensor', { sensor: number, name })} />
       {isPlaced && (
         <div class="fields">
           {(['x', 'y', 'z'] as const).map((axis, i) => (
@@ -82,11 +82,12 @@ function SensorForm({ app, sensor, number }: { app: MakeApp; sensor: DraftSensor
               title={['to the right', 'towards the head', 'up'][i] as string}
               value={sensor.pose[i] as number}
               isDisabled={isDisabled}
-              commit={(value) => {
-                const pose = [...sensor.pose] as unknown as typeof sensor.pose;
-                (pose as unknown as number[])[i] = value;
-                return app.change('robot.place_sensor', { sensor: number, pose });
-              }}
+              commit={(value) =>
+                app.changes.changeOf('robot.place_sensor', ({ robot }) => {
+                  const pose = (robot.sensors[number] ?? sensor).pose.map((old, at) => (at === i ? value : old));
+                  return { sensor: number, pose: pose as unknown as typeof sensor.pose };
+                })
+              }
             />
           ))}
         </div>
@@ -101,7 +102,12 @@ function SensorForm({ app, sensor, number }: { app: MakeApp; sensor: DraftSensor
                 unit="m"
                 value={2 * sensor.extents![i]!}
                 isDisabled={isDisabled}
-                commit={(value) => set('extents', sensor.extents!.map((half, at) => (at === i ? value / 2 : half)).join(' '))}
+                commit={(value) =>
+                  app.changes.changeOf('robot.set_sensor', ({ robot }) => {
+                    const halves = robot.sensors[number]?.extents ?? sensor.extents!;
+                    return { sensor: number, name: 'extents', value: halves.map((half, at) => (at === i ? value / 2 : half)).join(' ') };
+                  })
+                }
               />
             ))}
           <ChoiceField
@@ -110,7 +116,7 @@ function SensorForm({ app, sensor, number }: { app: MakeApp; sensor: DraftSensor
             texts={inputTexts}
             isDisabled={isDisabled}
             title="A module has two inputs for touch. Reflexes react to what is wired to them."
-            commit={(value) => void app.tell('robot.set_sensor', { sensor: number, name: 'input', value: value === 'none' ? '' : value })}
+            commit={(value) => void app.changes.tell('robot.set_sensor', { sensor: number, name: 'input', value: value === 'none' ? '' : value })}
           />
         </div>
       )}
@@ -121,7 +127,7 @@ function SensorForm({ app, sensor, number }: { app: MakeApp; sensor: DraftSensor
           ))}
         </div>
       )}
-      <button type="button" disabled={isDisabled} title="Undo brings it back" onClick={() => void app.tell('robot.remove_sensor', { sensor: number })}>
+      <button type="button" disabled={isDisabled} title="Undo brings it back" onClick={() => void app.changes.tell('robot.remove_sensor', { sensor: number })}>
         Delete {sensor.name}
       </button>
     </div>

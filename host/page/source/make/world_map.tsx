@@ -1,7 +1,7 @@
 // The world from above or from the side: objects, the robot at its start, and where it will go. Objects and the start are
 // dragged here; arrow keys move the chosen object.
 import { useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { ForwardKinematics } from '../geometry/forward_kinematics.js';
 import { flat, headingOf, lifted, outline, type Plane, type Point } from '../geometry/outline.js';
 import { fromAxisAngle, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
@@ -142,19 +142,21 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     if (refit > 0) view.value = viewOfAll(app, plane, size.peek());
   }, [refit]);
 
-  // What is chosen, and what is new, is in the drawing.
+  const draft = app.draft.value;
+  const robot = app.page.state.draftRobot.value;
+  // What is chosen, and what is new, is in the drawing. A new object is chosen before the documents with its body have come.
   const chosen = app.chosen.value;
-  useEffect(() => {
+  const chosenObject = app.chosenObject.value;
+  const drawn = robot === null || chosenObject === null || bodyOf(robot, chosenObject) === undefined ? null : chosenObject.name;
+  useLayoutEffect(() => {
     const object = app.chosenObject.peek();
     const now = view.peek();
-    if (object === null || now === null) return;
+    if (object === null || now === null || drawn === null) return;
     const place = flat(plane, poseFromArray(object.pose).position);
     const isOutside = (axis: 0 | 1) => Math.abs(place[axis] - now.centre[axis]) * now.scale > size.peek()[axis] / 2;
     if (isOutside(0) || isOutside(1)) view.value = viewOfAll(app, plane, size.peek());
-  }, [chosen]);
+  }, [chosen, drawn]);
 
-  const draft = app.draft.value;
-  const robot = app.page.state.draftRobot.value;
   const shown = view.value ?? { centre: [0, 0] as Point, scale: 100 };
   const obstacle = app.obstacle();
 

@@ -247,6 +247,7 @@ describe('what is arranged in Make', () => {
       await object('box').click();
       const x = await field('x in m').inputValue();
       await focusMap();
+      await writeClipboard(page(), '');
       await page().keyboard.press('Control+c');
       assert.ok(await waitUntil(async () => (await readClipboard(page())).includes('box')));
       const other = await UiProgram.start(join(folder, 'other/uniform.simulation.xml'), ['--recordings', folder]);

@@ -190,6 +190,7 @@ describe('robot and behaviour', () => {
     await page().getByRole('button', { name: 'to the head →' }).click();
     assert.ok(await waitUntil(async () => (await axes()) === 'yppypypy'), await axes());
     await page().keyboard.press('Control+z');
+    assert.ok(await waitUntil(async () => (await axes()) === 'pypypypy'), await axes());
     await page().getByRole('button', { name: 'Reverse' }).click();
     assert.ok(await waitUntil(async () => (await axes()) === 'ypypypyp'), await axes());
     await page().keyboard.press('Control+z');
@@ -280,8 +281,9 @@ describe('robot and behaviour', () => {
     await fill('Objects', 'mass in kg', '0,2');
     // Dragged in the drawing from above, then to an exact place.
     const before = await field('Objects', 'y in m').inputValue();
-    const box = (await page().getByTestId('map-top').locator('[data-name=box]').boundingBox())!;
-    await page().mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    const object = page().getByTestId('map-top').locator('[data-name=box] polygon').first();
+    await object.hover();
+    const box = (await object.boundingBox())!;
     await page().mouse.down();
     await page().mouse.move(box.x + box.width / 2 + 40, box.y + box.height / 2 + 30, { steps: 5 });
     await page().mouse.up();

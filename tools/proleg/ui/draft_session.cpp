@@ -223,6 +223,10 @@ void DraftSession::publish() {
   }
   const sim::Draft& draft = *draft_;
   const bool is_changed = published_ != draft.revision();
+  if (is_watched_ && foreseen_ != draft.revision()) {
+    foresight_->look_at(std::make_shared<const sim::Scenario>(draft.scenario()), draft.revision());
+    foreseen_ = draft.revision();
+  }
   if (!is_changed && !is_new_) {
     return;
   }
@@ -240,10 +244,6 @@ void DraftSession::publish() {
     }
     output_.publish("draft_robot", robot_document(scenario, "draft", MeshesInDocument::no));
   }
-  const auto shared = std::make_shared<const sim::Scenario>(scenario);
-  if (is_changed) {
-    foresight_->look_at(shared, draft.revision());
-  }
   const sim::WorldContents world = read_world_contents(draft);
   const sim::RobotContents contents = read_robot_contents(draft);
   note_layout(world, contents);
@@ -251,7 +251,7 @@ void DraftSession::publish() {
   for (const sim::Draft::ChangedFile& file : draft.changed_files()) {
     changed.push_back(file.name);
   }
-  present_.set({shared, draft.revision(), options_.has_file && changed.empty()});
+  present_.set({std::make_shared<const sim::Scenario>(scenario), draft.revision(), options_.has_file && changed.empty()});
   output_.publish("draft", {{"file", one_line(scenario.path)},
                             {"revision", draft.revision()},
                             {"undo", draft.undo_label() ? json(*draft.undo_label()) : json()},
@@ -302,6 +302,7 @@ json DraftSession::carry_out(const host::OperationRequest& operation) {
   } else {
     value = (this->*handler_of(handlers, name))(arguments);
   }
+  is_watched_ = true;
   // The answer comes behind what it is about, and the next operation that waits is compared with this layout.
   publish();
   return value;

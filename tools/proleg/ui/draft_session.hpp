@@ -112,6 +112,8 @@ class DraftSession final : private SessionThread {
   std::optional<DraftJournal> journal_;
   std::optional<KeptChanges> kept_;         ///< of an earlier program, until somebody decides about them
   std::optional<std::uint64_t> published_;  ///< revision of the draft
+  std::optional<std::uint64_t> foreseen_;   ///< revision whose path is computed, or was
+  bool is_watched_ = false;                 ///< somebody has asked about the draft: without, no path is computed
   std::vector<std::shared_ptr<const sim::TriangleMesh>> published_meshes_;
   bool has_published_meshes_ = false;
   std::vector<std::size_t> layout_;  ///< of the lists of the draft: what their positions depend on

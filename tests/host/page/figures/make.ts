@@ -5,6 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { uniform } from '../browser/support/ui_program.js';
+import type { Viewer } from '../browser/support/viewer.js';
 import { withLivePage, type Measurement } from './bench.js';
 import { countFrames } from './drawing.js';
 import { sleep } from './processes.js';
@@ -38,8 +39,11 @@ async function untilChanged(page: Page, watched: string, act: () => Promise<void
   return page.evaluate(() => (window as unknown as { delay: Promise<number> }).delay);
 }
 
-export const make: Measurement = async (bench) => {
-  const figures = await withLivePage(bench, uniform, async ({ page }) => {
+export const make: Measurement = async (bench) => [...(await editFigures(bench)), ...(await objectFrames(bench))];
+
+const editFigures: Measurement = async (bench) => {
+  const folder = mkdtempSync(join(tmpdir(), 'proleg-figures-')); // for unsaved changes
+  const edit = async ({ page }: Viewer) => {
     await page.keyboard.press('3');
     await page.getByRole('tab', { name: 'Behaviour' }).click();
     await page.locator('.foresight-text:not(.old)').waitFor();
@@ -62,8 +66,12 @@ export const make: Measurement = async (bench) => {
       { name: 'slider to the drawn path of the next half minute', unit: 'ms', wanted: { median: 50 }, conditions, samples: paths },
       { name: 'click to the new robot in the drawings', unit: 'ms', wanted: { median: 100 }, conditions, samples: robots },
     ];
-  });
-  return [...figures, ...(await objectFrames(bench))];
+  };
+  try {
+    return await withLivePage(bench, uniform, edit, ['--recordings', folder]);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
 };
 
 // Sixty joints in a world of many objects.

@@ -4,11 +4,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "mesh_shapes.hpp"
 #include "shared/computer/hash/sha256.hpp"
@@ -383,6 +385,17 @@ TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
     }
   }
   EXPECT_EQ(foresight["distance"], simulation.measures()[sim::Measure::distance]);
+}
+
+// Many a robot is shown and driven, and nobody looks at its draft.
+TEST_F(DraftSessionTest, NoPathIsComputedBeforeSomebodyAsksAboutTheDraft) {
+  draft(0);
+  for (int wait = 0; wait < 100; ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_EQ(viewers_.document("foresight"), json());
+  }
+  must("draft.refresh");
+  EXPECT_EQ(path_of_revision(0)["failure"], json());
 }
 
 TEST_F(DraftSessionTest, AWorldThatTheReducedEngineLacksIsForeseenByOde) {

@@ -207,7 +207,7 @@ std::string edited(std::string text, std::span<const ActuationEdit> edits) {
 Scenario with_actuation_text(const Scenario& scenario, const std::string& text) {
   SourceTexts files;
   for (const SourceFile& source : scenario.sources) {
-    files.add(source.path, source.path == scenario.actuation_file ? text : source.text);
+    files.add(source.path, source.path == scenario.actuation_file ? SharedText(text) : source.text);
   }
   Scenario again = read_scenario(scenario.path, files, scenario.overrides);
   again.moves = scenario.moves;  // of the command line, as the overrides

@@ -14,9 +14,11 @@ namespace {
 
 // What undo keeps at most; older entries are forgotten.
 constexpr std::size_t max_history_entries = 10'000;
-constexpr std::size_t max_history_bytes = std::size_t{64} << 20U;
-// Of all files of a draft: large meshes, added again and again, would fill the memory.
-constexpr std::size_t max_draft_bytes = std::size_t{64} << 20U;
+constexpr std::size_t max_history_bytes = std::size_t{16} << 20U;
+// Of all files of a draft, and of its meshes: large ones, added again and again, would fill the memory. A triangle
+// takes about 300 bytes, because the engine, the page and the path of the next half minute have forms of it.
+constexpr std::size_t max_draft_bytes = std::size_t{24} << 20U;
+constexpr std::size_t max_draft_triangles = 100'000;
 
 std::size_t bytes_of(const TextPatch& patch) { return patch.removed.size() + patch.inserted.size(); }
 
@@ -28,7 +30,39 @@ std::size_t bytes_of(const DraftTexts& texts) {
   return bytes;
 }
 
+/// Triangles of the meshes of a scenario, which bodies may share: for each body of those that collide or of those that
+/// are drawn, whichever are more.
+std::size_t triangles_of(const Scenario& scenario) {
+  std::set<std::shared_ptr<const TriangleMesh>> counted;
+  const auto new_triangles = [&counted](const auto& shapes) {
+    std::size_t triangles = 0;
+    for (const auto& shape : shapes) {
+      triangles += shape.mesh && counted.insert(shape.mesh).second ? shape.mesh->triangles.size() : 0;
+    }
+    return triangles;
+  };
+  std::size_t triangles = 0;
+  const auto add = [&](const auto& bodies) {
+    for (const auto& body : bodies) {
+      const std::size_t colliding = new_triangles(body.geometries);
+      triangles += std::max(colliding, new_triangles(body.looks));
+    }
+  };
+  add(scenario.robot.links);
+  add(scenario.environment.objects);
+  add(scenario.environment.moving_objects);
+  return triangles;
+}
+
 /// A scenario that is larger from the beginning can still be changed.
+void require_room(const Scenario& before, const Scenario& after) {
+  const std::size_t triangles = triangles_of(after);
+  if (triangles > max_draft_triangles && triangles > triangles_of(before)) {
+    throw InputError("the draft", 0, "meshes of " + std::to_string(triangles) + " triangles in all",
+                     "at most " + std::to_string(max_draft_triangles) + "; smaller meshes, or fewer of them");
+  }
+}
+
 void require_room(std::size_t before, std::size_t after) {
   if (after > max_draft_bytes && after > before) {
     throw InputError("the draft", 0, "files of " + std::to_string(after >> 20U) + " MiB",
@@ -38,9 +72,9 @@ void require_room(std::size_t before, std::size_t after) {
 
 }  // namespace
 
-std::optional<std::string> DraftTexts::read(const std::filesystem::path& path) {
-  const std::string* const text = find(name_of(path));
-  return text != nullptr ? std::optional(*text) : disk_->read(path);
+std::optional<SharedText> DraftTexts::read(const std::filesystem::path& path) {
+  const auto found = texts_.find(name_of(path));
+  return found != texts_.end() ? std::optional(found->second) : disk_->read(path);
 }
 
 std::optional<std::string> DraftTexts::found_instead(const std::filesystem::path& path) {
@@ -49,7 +83,7 @@ std::optional<std::string> DraftTexts::found_instead(const std::filesystem::path
 
 const std::string* DraftTexts::find(const std::string& name) const {
   const auto found = texts_.find(name);
-  return found == texts_.end() ? nullptr : &found->second;
+  return found == texts_.end() ? nullptr : &found->second.str();
 }
 
 const std::string& DraftTexts::at(const std::string& name) const {
@@ -88,24 +122,32 @@ void DraftChange::apply_all(const std::string& name, std::vector<TextPatch> patc
   }
 }
 
-void DraftChange::add_file(const std::string& name, std::string text) {
+void DraftChange::add_file(const std::string& name, SharedText text) {
   if (texts_.read(name)) {
     throw InputError(name, 0, "a file that exists", "a new name");
   }
-  steps_.push_back({name, {0, {}, std::move(text)}, true});
+  steps_.push_back({name, {}, true, false, std::move(text)});
   apply_step(steps_.back(), texts_);
 }
 
 void DraftChange::remove_file(const std::string& name) {
-  steps_.push_back({name, {0, texts_.at(name), {}}, false, true});
+  steps_.push_back({name, {}, false, true, *texts_.read(name)});
   apply_step(steps_.back(), texts_);
 }
 
 bool DraftChange::Step::absorbs(const Step& next) {
+  if (file != next.file || next.is_new_file || next.is_removed_file || is_removed_file) {
+    return false;
+  }
+  if (is_new_file) {
+    std::string changed = text;
+    sim::apply(next.patch, changed);
+    text = std::move(changed);
+    return true;
+  }
   const std::size_t begin = patch.position;
   const std::size_t at = next.patch.position;
-  if (file != next.file || next.is_new_file || next.is_removed_file || is_removed_file || at < begin ||
-      at + next.patch.removed.size() > begin + patch.inserted.size()) {
+  if (at < begin || at + next.patch.removed.size() > begin + patch.inserted.size()) {
     return false;
   }
   patch.inserted.replace(at - begin, next.patch.removed.size(), next.patch.inserted);
@@ -117,8 +159,11 @@ void DraftChange::apply_step(const Step& step, DraftTexts& texts) {
     texts.erase(step.file);
     return;
   }
-  const std::string* const before = texts.find(step.file);
-  std::string text = before == nullptr ? std::string() : *before;
+  if (step.is_new_file) {
+    texts.set(step.file, step.text);
+    return;
+  }
+  std::string text = texts.at(step.file);
   sim::apply(step.patch, text);
   texts.set(step.file, std::move(text));
 }
@@ -129,7 +174,7 @@ void DraftChange::take_back(const Step& step, DraftTexts& texts) {
     return;
   }
   if (step.is_removed_file) {
-    texts.set(step.file, step.patch.removed);
+    texts.set(step.file, step.text);
     return;
   }
   std::string text = *texts.find(step.file);
@@ -170,7 +215,9 @@ void Draft::change(const std::string& label, std::optional<std::uint64_t> gestur
       return;
     }
     require_room(bytes_before, bytes_of(texts_));
-    scenario_ = read();
+    Scenario changed = read();
+    require_room(scenario_, changed);
+    scenario_ = std::move(changed);
   } catch (...) {
     take_back(collected.steps_);
     throw;
@@ -219,7 +266,7 @@ void Draft::limit_history() {
   std::size_t kept = 0;
   for (auto entry = history_.rbegin(); entry != history_.rend(); ++entry) {
     for (const DraftChange::Step& step : entry->steps) {
-      bytes += bytes_of(step.patch);
+      bytes += bytes_of(step.patch) + step.text.str().size();
     }
     if (kept > 0 && (bytes > max_history_bytes || kept == max_history_entries)) {
       break;
@@ -304,13 +351,14 @@ bool Draft::refresh() {
       in_history.insert(step.file);
     }
   }
-  std::map<std::string, std::string> before;
+  std::map<std::string, SharedText> before;
   for (const auto& [name, saved] : saved_) {
     const std::string* const text = texts_.find(name);
-    if (in_history.contains(name) || saved.size() > large || text == nullptr || *text != saved) {
+    if (in_history.contains(name) || saved.str().size() > large || text == nullptr || *text != saved.str()) {
       continue;
     }
-    if (std::optional<std::string> now = disk_->read(name); now && *now != saved && *now != bytes_of_source(saved)) {
+    if (std::optional<SharedText> now = disk_->read(name);
+        now && *now != saved && now->str() != bytes_of_source(saved)) {
       before.emplace(name, saved);
       texts_.set(name, std::move(*now));
     }
@@ -327,7 +375,7 @@ bool Draft::refresh() {
     return false;
   }
   for (const auto& [name, text] : before) {
-    saved_[name] = texts_.at(name);
+    saved_[name] = *texts_.read(name);
   }
   ++revision_;
   return true;
@@ -339,8 +387,8 @@ void Draft::read_again() {
 }
 
 void Draft::adopt(const std::string& name) {
-  if (std::optional<std::string> bytes = disk_->read(name)) {
-    std::string text = source_text(std::move(*bytes));
+  if (std::optional<SharedText> bytes = disk_->read(name)) {
+    SharedText text = source_text(std::move(*bytes));
     saved_.insert_or_assign(name, text);
     texts_.set(name, std::move(text));
   }
@@ -361,7 +409,7 @@ void Draft::rename_files(const std::map<std::string, std::string>& renamed, cons
     const auto found = renamed.find(name);
     return found == renamed.end() ? name : found->second;
   };
-  const std::map<std::string, std::string> texts = texts_.all();
+  const std::map<std::string, SharedText> texts = texts_.all();
   for (const auto& [name, text] : texts) {
     texts_.erase(name);
   }

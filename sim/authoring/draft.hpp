@@ -27,7 +27,7 @@ class DraftTexts final : public FileSource {
   /// disk: must outlive this.
   explicit DraftTexts(FileSource& disk) : disk_(&disk) {}
 
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
+  [[nodiscard]] std::optional<SharedText> read(const std::filesystem::path& path) override;
   [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
   [[nodiscard]] KnownMeshes* known_meshes() override { return &meshes_; }
 
@@ -35,14 +35,14 @@ class DraftTexts final : public FileSource {
   [[nodiscard]] const std::string* find(const std::string& name) const;
   /// The same. Throws InputError if there is no such file.
   [[nodiscard]] const std::string& at(const std::string& name) const;
-  void set(const std::string& name, std::string text) { texts_.insert_or_assign(name, std::move(text)); }
+  void set(const std::string& name, SharedText text) { texts_.insert_or_assign(name, std::move(text)); }
   void erase(const std::string& name) { texts_.erase(name); }
   void set_disk(FileSource& disk) { disk_ = &disk; }
-  [[nodiscard]] const std::map<std::string, std::string>& all() const { return texts_; }
+  [[nodiscard]] const std::map<std::string, SharedText>& all() const { return texts_; }
 
  private:
   FileSource* disk_;
-  std::map<std::string, std::string> texts_;
+  std::map<std::string, SharedText> texts_;
   KnownMeshes meshes_;
 };
 
@@ -56,7 +56,7 @@ class DraftChange {
   /// The text of a file after the calls before; null if the draft has no such file. Valid until the next apply().
   [[nodiscard]] const std::string* text(const std::string& name) const { return texts_.find(name); }
   /// The same, also of a file that only the disk has.
-  [[nodiscard]] std::optional<std::string> read(const std::string& name) const { return texts_.read(name); }
+  [[nodiscard]] std::optional<SharedText> read(const std::string& name) const { return texts_.read(name); }
   /// A file after the calls before. Throws InputError for a file that the draft does not have, or that is no XML. Valid
   /// until the next apply() to this file.
   [[nodiscard]] const XmlText& xml(const std::string& name);
@@ -64,7 +64,7 @@ class DraftChange {
   /// Patches of the same xml(name), of places that do not overlap. Faster than one after the other.
   void apply_all(const std::string& name, std::vector<TextPatch> patches);
   /// Adds a file. Throws InputError if the draft, or the disk, has one of this name.
-  void add_file(const std::string& name, std::string text);
+  void add_file(const std::string& name, SharedText text);
 
  private:
   friend class Draft;
@@ -72,9 +72,10 @@ class DraftChange {
 
   struct Step {
     std::string file;
-    TextPatch patch;
-    bool is_new_file = false;      ///< the patch has its text
-    bool is_removed_file = false;  ///< the same
+    TextPatch patch;  ///< of a file that was there and stays
+    bool is_new_file = false;
+    bool is_removed_file = false;
+    SharedText text = {};  ///< of a file that comes or goes
 
     /// Adds a later step to this one if that changes only what this one has inserted, as the steps of a drag do.
     /// Returns false if it does not.
@@ -98,8 +99,8 @@ class Draft {
   /// A file that is not as it is on disk.
   struct ChangedFile {
     std::string name;
-    std::optional<std::string> saved;  ///< its text when it was read or saved; nothing: it is new
-    std::string text;
+    std::optional<SharedText> saved;  ///< its text when it was read or saved; nothing: it is new
+    SharedText text;
   };
 
   /// scenario: as it was read, with its sources. disk: where files are that a change names; must outlive the draft.
@@ -166,7 +167,7 @@ class Draft {
 
   FileSource* disk_;
   DraftTexts texts_;
-  std::map<std::string, std::string> saved_;  ///< texts as they are on disk
+  std::map<std::string, SharedText> saved_;  ///< texts as they are on disk
   Scenario scenario_;
   std::uint64_t revision_ = 0;
   std::deque<Entry> history_;

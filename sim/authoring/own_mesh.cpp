@@ -184,7 +184,7 @@ std::string add_in_free_folder(DraftChange& change, const fs::path& parent, cons
     std::vector<SourceFile> missing;
     const bool is_free = std::ranges::all_of(files, [&](const SourceFile& file) {
       const std::string path = name_of(parent / name / fs::path(file.path).filename());
-      const std::optional<std::string> present = change.read(path);
+      const std::optional<SharedText> present = change.read(path);
       if (!present) {
         missing.push_back({path, file.text});
       }

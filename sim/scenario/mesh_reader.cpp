@@ -130,17 +130,16 @@ KnownMeshes::Import& imported(const XmlElement& mention, const std::string& refe
   }
   KnownMeshes::Import import;
   import.source = *file.source;
-  import.mesh = std::make_shared<const TriangleMesh>(with_place(mention, "", [&] {
-    return read_mesh_file(reference, bytes_of_source(import.source), [&](const std::string& beside) {
-      std::filesystem::path path = file.path.parent_path() / std::filesystem::path(beside).filename();
-  std::optional<std::string> text = sources.companion(mention, path);
-  import.companions.push_back({std::move(path), text});
-  return text;
-});
-}  // namespace
-));
-return imports.insert_or_assign(name, std::move(import)).first->second;
-}  // namespace proleg::sim
+  const auto beside = [&](const std::string& companion) {
+    std::filesystem::path path = file.path.parent_path() / std::filesystem::path(companion).filename();
+    std::optional<std::string> text = sources.companion(mention, path);
+    import.companions.push_back({std::move(path), text});
+    return text;
+  };
+  const auto read = [&] { return read_mesh_file(reference, bytes_of_source(import.source), beside); };
+  import.mesh = std::make_shared<const TriangleMesh>(with_place(mention, "", read));
+  return imports.insert_or_assign(name, std::move(import)).first->second;
+}
 
 NumberText numbers_of(const XmlElement& element) { return {element.text(), element.label()}; }
 

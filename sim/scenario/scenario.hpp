@@ -17,6 +17,7 @@
 #include "sim/environment/environment_model.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/overrides.hpp"
+#include "sim/scenario/shared_text.hpp"
 
 namespace proleg::sim {
 
@@ -29,7 +30,7 @@ enum class Solver : std::uint8_t {
 /// A file as it was read, kept for the recording.
 struct SourceFile {
   std::string path;
-  std::string text;
+  SharedText text;
 };
 
 /// The robot is put elsewhere, as a hand does it: at a tick, as a rigid body, and at rest.

@@ -44,7 +44,7 @@ void KnownMeshes::forget_unused() {
   }
 }
 
-std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
+std::optional<SharedText> DiskFiles::read(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     return std::nullopt;
@@ -94,11 +94,12 @@ std::string data_url(std::string_view bytes) {
   return text;
 }
 
-std::string source_text(std::string bytes) {
-  if (bytes.starts_with(head)) {
+SharedText source_text(SharedText bytes) {
+  const std::string& text = bytes;
+  if (text.starts_with(head)) {
     return bytes;  // it is one already
   }
-  return find_invalid_utf8(bytes) || bytes.find('\0') != std::string::npos ? data_url(bytes) : std::move(bytes);
+  return find_invalid_utf8(text) || text.find('\0') != std::string::npos ? SharedText(data_url(text)) : bytes;
 }
 
 std::optional<std::string> decode_base64(std::string_view text) {
@@ -145,12 +146,12 @@ std::size_t size_of_source(std::string_view text) {
   return std::min(encoded.size(), encoded.find('=')) * group_bytes / group_digits;
 }
 
-const std::string* SourceSet::text_of(const std::filesystem::path& path, Contents contents) {
+const SharedText* SourceSet::text_of(const std::filesystem::path& path, Contents contents) {
   const std::string name = name_of(path);
   if (const auto known = recorded_.find(name); known != recorded_.end()) {
     return &(*record_)[known->second].text;
   }
-  std::optional<std::string> text = files_->read(path);
+  std::optional<SharedText> text = files_->read(path);
   if (!text || size_of_source(*text) > max_file_bytes) {
     return nullptr;
   }
@@ -163,7 +164,7 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path, Content
 }
 
 std::unique_ptr<XmlDocument> SourceSet::open_top() {
-  const std::string* const text = text_of(top_, Contents::xml);
+  const SharedText* const text = text_of(top_, Contents::xml);
   if (text == nullptr) {
     throw InputError(name_of(top_), 0, files_->found_instead(top_).value_or("no file that can be read"), readable_file);
   }
@@ -192,7 +193,7 @@ SourceSet::Found SourceSet::find(const XmlElement& mention, const std::string& r
   }
   std::optional<std::string> instead;
   for (std::filesystem::path& path : paths_of(mention, reference)) {
-    if (const std::string* const text = text_of(path, contents)) {
+    if (const SharedText* const text = text_of(path, contents)) {
       return {std::move(path), text};
     }
     instead = instead ? instead : files_->found_instead(path);
@@ -222,7 +223,7 @@ SourceSet::Bytes SourceSet::find_bytes(const XmlElement& mention, const std::str
 }
 
 std::optional<std::string> SourceSet::companion(const XmlElement& mention, const std::filesystem::path& path) {
-  const std::string* const text = text_of(path, Contents::any);
+  const SharedText* const text = text_of(path, Contents::any);
   if (text == nullptr) {
     return std::nullopt;
   }

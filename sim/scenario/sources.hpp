@@ -29,7 +29,7 @@ class KnownMeshes {
   /// A file that an import has asked for, beside the mesh.
   struct Companion {
     std::filesystem::path path;
-    std::optional<std::string> text;  ///< nothing: it was not there
+    std::optional<SharedText> text;  ///< nothing: it was not there
   };
   /// What was made of a file for a use and a scale.
   struct Made {
@@ -38,7 +38,7 @@ class KnownMeshes {
     bool is_used = true;  ///< since forget_unused()
   };
   struct Import {
-    std::string source;  ///< text of the file
+    SharedText source;  ///< text of the file
     std::vector<Companion> companions;
     std::shared_ptr<const TriangleMesh> mesh;  ///< in the unit of the file
     std::map<std::string, Made> made;          ///< by use and scale
@@ -59,7 +59,7 @@ class FileSource {
  public:
   virtual ~FileSource() = default;
   /// The text of a file, or nothing if it cannot be read.
-  [[nodiscard]] virtual std::optional<std::string> read(const std::filesystem::path& path) = 0;
+  [[nodiscard]] virtual std::optional<SharedText> read(const std::filesystem::path& path) = 0;
   /// What is at a path that cannot be read, for "found ...": "a folder". Nothing if nothing is there.
   [[nodiscard]] virtual std::optional<std::string> found_instead(const std::filesystem::path& /*path*/) { return {}; }
   /// Where the reader keeps meshes for the next read; null: nowhere.
@@ -73,7 +73,7 @@ class DiskFiles final : public FileSource {
  public:
   explicit DiskFiles(std::size_t most_bytes = max_file_bytes) : most_bytes_(most_bytes) {}
 
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
+  [[nodiscard]] std::optional<SharedText> read(const std::filesystem::path& path) override;
   [[nodiscard]] std::optional<std::string> found_instead(const std::filesystem::path& path) override;
 
  private:
@@ -83,16 +83,16 @@ class DiskFiles final : public FileSource {
 /// Files as they were read before: the sources of a scenario or of a recording.
 class SourceTexts final : public FileSource {
  public:
-  void add(const std::filesystem::path& path, std::string text) {
+  void add(const std::filesystem::path& path, SharedText text) {
     texts_.insert_or_assign(path.lexically_normal().string(), std::move(text));
   }
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+  [[nodiscard]] std::optional<SharedText> read(const std::filesystem::path& path) override {
     const auto found = texts_.find(path.lexically_normal().string());
     return found == texts_.end() ? std::nullopt : std::optional(found->second);
   }
 
  private:
-  std::map<std::string, std::string> texts_;
+  std::map<std::string, SharedText> texts_;
 };
 
 /// Bytes as text, for sources that are no text, such as a binary STL file: "data:application/octet-stream;base64,..."
@@ -100,7 +100,7 @@ class SourceTexts final : public FileSource {
 [[nodiscard]] std::string data_url(std::string_view bytes);
 
 /// A file of any bytes as recordings and documents keep it: its text; for what is no text, that of data_url().
-[[nodiscard]] std::string source_text(std::string bytes);
+[[nodiscard]] SharedText source_text(SharedText bytes);
 
 /// The bytes of a text in base64 (RFC 4648) with "=" at its end; nothing for another text.
 [[nodiscard]] std::optional<std::string> decode_base64(std::string_view text);
@@ -133,7 +133,7 @@ class SourceSet {
   /// counts once towards the limits.
   struct Bytes {
     std::filesystem::path path;
-    const std::string* source;  ///< valid until another file is read; bytes_of_source() gives its bytes
+    const SharedText* source;  ///< valid until another file is read; bytes_of_source() gives its bytes
   };
   [[nodiscard]] Bytes find_bytes(const XmlElement& mention, const std::string& reference);
   /// Whether find_bytes() would find a file.
@@ -153,7 +153,7 @@ class SourceSet {
  private:
   struct Found {
     std::filesystem::path path;
-    const std::string* text;
+    const SharedText* text;
   };
 
   enum class Contents { xml, any };
@@ -161,7 +161,7 @@ class SourceSet {
   /// Where a file may be that an element names.
   [[nodiscard]] std::array<std::filesystem::path, 2> paths_of(const XmlElement& mention,
                                                               const std::string& reference) const;
-  [[nodiscard]] const std::string* text_of(const std::filesystem::path& path, Contents contents);
+  [[nodiscard]] const SharedText* text_of(const std::filesystem::path& path, Contents contents);
   [[nodiscard]] Found find(const XmlElement& mention, const std::string& reference, Contents contents);
   void count_bytes(const XmlElement& mention, std::size_t bytes);
   /// Counts a file that is mentioned more than once only the first time.

@@ -149,10 +149,12 @@ Output::~Output() {
 
 void Output::write(std::string_view text) {
   constexpr std::size_t enough = 1U << 16U;
-  buffer_ += text;
-  if (buffer_.size() >= enough) {
-    flush();
+  if (buffer_.size() + text.size() < enough) {
+    buffer_ += text;
+    return;
   }
+  flush();
+  write_now(text);
 }
 
 void Output::finish() {
@@ -182,7 +184,11 @@ void Output::finish() {
 }
 
 void Output::flush() {
-  std::string_view rest = buffer_;
+  write_now(buffer_);
+  buffer_.clear();
+}
+
+void Output::write_now(std::string_view rest) {
   while (!rest.empty()) {
     const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
     if (written >= 0) {
@@ -193,7 +199,6 @@ void Output::flush() {
       fail(std::strerror(errno));
     }
   }
-  buffer_.clear();
 }
 
 void Output::fail(const std::string& what) const { throw FileError(path_, "cannot be written: " + what); }

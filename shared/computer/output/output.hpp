@@ -42,6 +42,7 @@ class Output {
  private:
   void open_new_file();
   void flush();
+  void write_now(std::string_view rest);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path path_;

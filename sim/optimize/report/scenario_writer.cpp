@@ -50,7 +50,7 @@ class Sources {
  public:
   explicit Sources(const std::vector<sim::SourceFile>& files) : top_(full(files.front().path)) {
     for (const sim::SourceFile& file : files) {
-      texts_.emplace(full(file.path), &file.text);
+      texts_.emplace(full(file.path), &file.text.str());
     }
   }
 

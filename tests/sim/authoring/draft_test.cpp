@@ -37,7 +37,7 @@ TEST_F(DraftTest, AFileThatNobodyChangesKeepsItsBytes) {
   const std::vector<Draft::ChangedFile> changed = draft_.changed_files();
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].name, "environment.xml");
-  EXPECT_EQ(changed[0].saved, world_text);
+  EXPECT_EQ(changed[0].saved, SharedText(world_text));
   EXPECT_EQ(changed[0].text, text());
   draft_.mark_saved();
   EXPECT_TRUE(draft_.changed_files().empty());
@@ -117,13 +117,13 @@ TEST_F(DraftTest, ANewFileComesAndGoesWithItsChange) {
             std::string::npos);
 }
 
-// Files of 15 MiB, until the memory that a draft may have is full.
+// Files of 5 MiB, until the memory that a draft may have is full.
 TEST_F(DraftTest, FilesMayNotFillTheMemory) {
   const auto add = [this](int number) {
     const std::string name = "large" + std::to_string(number) + ".xml";
     draft_.change("add a large file", {}, [&](DraftChange& change) {
       change.add_file(name,
-                      "<KinBody><!--" + std::string(std::size_t{15} << 20U, 'x') +
+                      "<KinBody><!--" + std::string(std::size_t{5} << 20U, 'x') +
                           "--><Body type='static'><Geom type='sphere'><radius>0.1</radius></Geom></Body></KinBody>");
       change.apply(
           "environment.xml",
@@ -134,7 +134,7 @@ TEST_F(DraftTest, FilesMayNotFillTheMemory) {
     add(number);
   }
   const std::size_t objects = draft_.scenario().environment.objects.size();
-  EXPECT_NE(message_of<InputError>([&] { add(4); }).find("at most 64 MiB"), std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { add(4); }).find("at most 24 MiB"), std::string::npos);
   EXPECT_EQ(draft_.scenario().environment.objects.size(), objects);
   move_ball(2);
 }

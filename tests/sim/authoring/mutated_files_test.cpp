@@ -85,7 +85,7 @@ std::vector<Scenario> all_scenarios() {
 SourceTexts with_mutations(const Scenario& original, const std::string& file, std::mt19937& random) {
   SourceTexts texts;
   for (const SourceFile& source : original.sources) {
-    texts.add(source.path, source.path == file ? mutated(source.text, random) : source.text);
+    texts.add(source.path, source.path == file ? SharedText(mutated(source.text, random)) : source.text);
   }
   return texts;
 }

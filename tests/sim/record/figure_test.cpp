@@ -250,10 +250,11 @@ TEST_F(Figure, ShowsARobotThatGoesSidewaysFromAbove) {
 
 TEST_F(Figure, ShowsARobotWithYawJointsFromAboveAndTheirAnglesApart) {
   Scenario scenario = shipped("travelling_wave/uniform");
-  std::string& robot = std::ranges::find_if(scenario.sources, [](const SourceFile& file) {
-                         return file.path.ends_with("caterpillar.robot.xml");
-                       })->text;
+  SourceFile& file = *std::ranges::find_if(
+      scenario.sources, [](const SourceFile& its) { return its.path.ends_with("caterpillar.robot.xml"); });
+  std::string robot = file.text;
   robot.replace(robot.find("<axis>1 0 0"), 11, "<axis>0 0 1");
+  file.text = std::move(robot);
   Picture picture = draw(scenario, 400);
   EXPECT_TRUE(picture.has_text("A stride from above"));
   EXPECT_TRUE(picture.has_text("Angles of the pitch joints (deg)"));

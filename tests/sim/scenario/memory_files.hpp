@@ -16,7 +16,7 @@ class MemoryFiles final : public FileSource {
  public:
   std::map<std::string, std::string> texts;
 
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+  [[nodiscard]] std::optional<SharedText> read(const std::filesystem::path& path) override {
     const auto file = texts.find(path.lexically_normal().string());
     return file == texts.end() ? std::nullopt : std::optional(file->second);
   }

@@ -121,7 +121,7 @@ TEST(ThesisFiles, EveryFileIsKeptOnceForTheRecording) {
   // Top, robot, four module files (two of them named twice), actuation, environment.
   ASSERT_EQ(scenario.sources.size(), 8U);
   EXPECT_TRUE(scenario.sources.front().path.ends_with("MFIdemo.simulation.xml"));
-  EXPECT_TRUE(scenario.sources.front().text.starts_with("<simulation>"));
+  EXPECT_TRUE(scenario.sources.front().text.str().starts_with("<simulation>"));
 }
 
 TEST(ThesisFiles, TagsWithoutEffectGetARemark) {

@@ -1,7 +1,10 @@
 #include "tools/proleg/document/robot_document.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -10,6 +13,7 @@
 #include <span>
 #include <utility>
 
+#include "shared/computer/deflate/deflate.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/robot/bounds.hpp"
 #include "sim/scenario/names.hpp"
@@ -21,9 +25,6 @@ namespace proleg::tools {
 namespace {
 
 using nlohmann::json;
-
-/// A length in m, rounded to whole micrometres.
-double to_micrometres(double metres) { return std::round(metres * 1e6) / 1e6; }
 
 /// The meshes of a document. Shapes name a mesh, which they may share, by its number.
 class Meshes {
@@ -56,29 +57,39 @@ class Meshes {
   std::map<const sim::TriangleMesh*, std::size_t> numbers_;
 };
 
+/// Numbers as base64 of their bytes, little-endian: as text in decimals they take twice the place, and as values of
+/// JSON ten times.
+template <typename Number>
+std::string in_base64(const std::vector<Number>& numbers) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto bytes = std::as_bytes(std::span(numbers));
+  return base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 /// Vertices are about the middle of the box around the mesh.
 json mesh_json(const sim::TriangleMesh& mesh) {
   const sim::Bounds bounds = sim::bounds_of(mesh, {});
   const Eigen::Vector3d middle = (bounds.lowest + bounds.highest) / 2.0;
-  json vertices = json::array();
+  std::vector<float> vertices;
+  vertices.reserve(3 * mesh.vertices.size());
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
     for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
-      vertices.push_back(to_micrometres(coordinate));
+      vertices.push_back(static_cast<float>(coordinate));
     }
   }
-  json triangles = json::array();
+  std::vector<std::uint32_t> corners;
+  corners.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle) {
-      triangles.push_back(corner);
-    }
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
   }
-  json colours = json::array();
+  std::vector<std::uint8_t> colours;
+  colours.reserve(3 * mesh.colours.size());
   for (const Eigen::Vector3f& colour : mesh.colours) {
     for (const float part : colour) {
-      colours.push_back(std::lround(part * 255.0F));
+      colours.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(part * 255.0F), 0L, 255L)));
     }
   }
-  return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
+  return {{"vertices", in_base64(vertices)}, {"triangles", in_base64(corners)}, {"colours", in_base64(colours)}};
 }
 
 json shapes_json(std::span<const sim::Geometry> geometries, std::span<const sim::Look> looks, Meshes& meshes) {

@@ -163,7 +163,7 @@ struct ReceiptOptions : ScenarioOptions {
 std::string hash_of_files(const sim::Scenario& scenario) {
   std::string text;
   for (const sim::SourceFile& source : scenario.sources) {
-    text += std::to_string(source.text.size()) + '\n' + source.text;
+    text += std::to_string(source.text.size()) + '\n' + source.text.str();
   }
   return sha256_hex(text);
 }

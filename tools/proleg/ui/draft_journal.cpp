@@ -24,7 +24,8 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr int journal_format = 1;
-constexpr std::size_t most_bytes = std::size_t{96} << 20U;  // meshes of 64 MiB in base64, and their files
+constexpr std::size_t most_bytes = std::size_t{48}
+                                   << 20U;  // more than a draft has, with files that undo would bring back
 
 std::int64_t now_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -75,6 +76,12 @@ KeptChanges changes_of(const json& document, const sim::Draft& draft) {
     changes.texts.emplace(name, file.at("text").get<std::string>());
   }
   return changes;
+}
+
+/// A JSON object to which further members come.
+std::string without_end(std::string object) {
+  object.pop_back();
+  return object;
 }
 
 }  // namespace
@@ -153,21 +160,30 @@ void DraftJournal::write(const sim::Draft& draft) {
     discard();
     return;
   }
-  json files = json::object();
   std::size_t bytes = 0;
   for (const sim::Draft::ChangedFile& file : changed) {
     bytes += file.text.size();
-    files[file.name] = {{"base", file.saved ? json(sha256_hex(*file.saved)) : json()}, {"text", file.text}};
   }
   try {
     if (bytes > most_bytes) {
       throw FileError(path_, "cannot keep unsaved changes of " + std::to_string(bytes >> 20U) + " MiB");
     }
-    write_file(path_, json{{"format", journal_format},
-                           {"process", process_identity(getpid())},
-                           {"time_ms", now_ms()},
-                           {"files", files}}
-                          .dump());
+    Output journal(path_);
+    const json head{{"format", journal_format}, {"process", process_identity(getpid())}, {"time_ms", now_ms()}};
+    journal.write(without_end(head.dump()));
+    // One file after the other: meshes have megabytes.
+    std::string_view before = R"(,"files":{)";
+    for (const sim::Draft::ChangedFile& file : changed) {
+      journal.write(before);
+      journal.write(json(file.name).dump() + ":");
+      journal.write(without_end(json{{"base", file.saved ? json(sha256_hex(*file.saved)) : json()}}.dump()));
+      journal.write(R"(,"text":)");
+      journal.write(json(file.text.str()).dump());
+      journal.write("}");
+      before = ",";
+    }
+    journal.write("}}\n");
+    journal.finish();
     exists_ = true;
     has_failed_ = false;
   } catch (const FileError&) {

@@ -251,7 +251,8 @@ void DraftSession::publish() {
   for (const sim::Draft::ChangedFile& file : draft.changed_files()) {
     changed.push_back(file.name);
   }
-  present_.set({std::make_shared<const sim::Scenario>(scenario), draft.revision(), options_.has_file && changed.empty()});
+  present_.set(
+      {std::make_shared<const sim::Scenario>(scenario), draft.revision(), options_.has_file && changed.empty()});
   output_.publish("draft", {{"file", one_line(scenario.path)},
                             {"revision", draft.revision()},
                             {"undo", draft.undo_label() ? json(*draft.undo_label()) : json()},
@@ -470,12 +471,12 @@ json DraftSession::diff(const json& /*arguments*/) {
   json files = json::array();
   for (const sim::Draft::ChangedFile& file : draft().changed_files()) {
     const bool is_shown = !is_binary(file) && !sim::is_mesh_file_name(file.name) &&
-                          file.text.size() + file.saved.value_or("").size() <= most_text;
+                          file.text.size() + (file.saved ? file.saved->size() : 0) <= most_text;
     files.push_back({{"name", one_line(file.name)},
                      {"is_shipped", is_shipped(file.name)},
                      {"bytes", sim::size_of_source(file.text)},
-                     {"old", is_shown && file.saved ? json(*file.saved) : json()},
-                     {"new", is_shown ? json(file.text) : json()}});
+                     {"old", is_shown && file.saved ? json(file.saved->str()) : json()},
+                     {"new", is_shown ? json(file.text.str()) : json()}});
   }
   return {{"files", std::move(files)}};
 }

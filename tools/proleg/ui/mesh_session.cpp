@@ -1,5 +1,7 @@
 #include "tools/proleg/ui/mesh_session.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -249,6 +251,7 @@ const sim::OwnMesh& MeshSession::read(std::map<std::uint64_t, Sent>::iterator fo
       forget(found);
       throw;
     }
+    malloc_trim(0);  // the check of a mesh has small parts for each edge
     meshes_.set(found->first, sent.read);
     sent.last_use = Clock::now();
   }

@@ -45,7 +45,7 @@ class MeshSession final : private SessionThread {
   static constexpr std::size_t most_meshes = 2;
   static constexpr std::size_t most_files = 8;                               ///< of a mesh
   static constexpr std::size_t most_bytes_of_mesh = std::size_t{20} << 20U;  ///< of all files of a mesh
-  static constexpr std::size_t most_bytes = std::size_t{32} << 20U;          ///< of all meshes
+  static constexpr std::size_t most_bytes = std::size_t{20} << 20U;          ///< of all meshes
 
   /// All must outlive the session.
   MeshSession(SentMeshes& meshes, SessionRequests& requests, host::SessionOutput& output,

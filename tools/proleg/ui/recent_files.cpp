@@ -60,7 +60,7 @@ std::optional<fs::path> folder_of(const char* variable) {
 std::vector<std::string> paths_in(const fs::path& file) {
   std::vector<std::string> paths;
   sim::DiskFiles disk;
-  const json document = json::parse(disk.read(file).value_or(""), nullptr, false);
+  const json document = json::parse(disk.read(file).value_or("").str(), nullptr, false);
   if (!document.is_object() || document.value("format", json()) != list_format) {
     return paths;
   }

@@ -1,5 +1,7 @@
 // proleg ui: a page in the browser that shows and drives a simulated robot, and shows recordings.
 
+#include <malloc.h>
+
 #include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <filesystem>
@@ -67,7 +69,7 @@ struct UiOptions {
 /// The files of a robot with five joints, for those who give none.
 class NewRobot final : public sim::FileSource {
  public:
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+  [[nodiscard]] std::optional<sim::SharedText> read(const std::filesystem::path& path) override {
     for (const sim::SourceFile& file : files_) {
       if (path.lexically_normal() == std::filesystem::path(file.path)) {
         return file.text;
@@ -257,6 +259,9 @@ AlgorithmSessionOptions code_options(const UiOptions& options, const std::filesy
 }
 
 int serve(UiOptions& options) {
+  // By itself the C library keeps the place of large texts, such as meshes, after their use (mallopt(3)).
+  constexpr int large = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, large);
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   RecordedSessionOptions recordings = recordings_of(options);

@@ -1,4 +1,5 @@
 // A block of ticks as `proleg export --html` writes it (docs/page-interface.md): columns of differences, little-endian.
+import { decodeBase64 } from '../wire/base64.js';
 
 // Decodes the rows, one behind the other. Throws an Error if the bytes are not whole rows.
 export function rowsOfColumns(bytes: Uint8Array, width: number): Int32Array {
@@ -20,7 +21,6 @@ export function rowsOfColumns(bytes: Uint8Array, width: number): Int32Array {
 
 // Decodes base64 text in zlib format. Throws an Error if the text is damaged.
 export async function inflate(text: string): Promise<Uint8Array> {
-  const compressed = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
-  const stream = new Blob([compressed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  const stream = new Blob([decodeBase64(text)]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }

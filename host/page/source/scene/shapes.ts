@@ -1,6 +1,7 @@
 // Geometries of shapes.
 import * as THREE from 'three';
 import type { Vector } from '../geometry/quaternion.js';
+import { decodeBase64 } from '../wire/base64.js';
 import type { Mesh, Shape } from '../wire/messages.js';
 
 export const primitives = ['box', 'sphere', 'cylinder'] as const;
@@ -30,10 +31,12 @@ export function scaleOf(shape: Shape): Vector {
 // The geometry has a normal for each triangle, not for each vertex, so that edges are visible.
 export function geometryOf(mesh: Mesh): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
-  const count = mesh.vertices.length / 3;
-  geometry.setAttribute('position', new THREE.Float32BufferAttribute(mesh.vertices, 3));
+  const vertices = new Float32Array(decodeBase64(mesh.vertices).buffer);
+  const count = vertices.length / 3;
+  geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
   if (mesh.colours.length > 0) {
-    const colours = mesh.colours.length === 3 * count ? mesh.colours : [];
+    const given = decodeBase64(mesh.colours);
+    const colours = given.length === 3 * count ? given : [];
     const linear = new THREE.Color();
     const parts = new Float32Array(3 * count);
     for (let i = 0; i < count; i += 1) {
@@ -42,7 +45,7 @@ export function geometryOf(mesh: Mesh): THREE.BufferGeometry {
     }
     geometry.setAttribute('color', new THREE.BufferAttribute(parts, 3));
   }
-  geometry.setIndex(mesh.triangles);
+  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(decodeBase64(mesh.triangles).buffer), 1));
   const apart = geometry.toNonIndexed();
   geometry.dispose();
   apart.computeVertexNormals();

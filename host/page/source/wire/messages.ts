@@ -52,9 +52,9 @@ export interface Shape {
 
 // A surface of triangles, about the middle of the box around it.
 export interface Mesh {
-  vertices: number[]; // x, y, z of each, metres
-  triangles: number[]; // three numbers of vertices of each
-  colours: number[]; // red, green, blue of each vertex, 0 to 255; empty: none
+  vertices: string; // base64 of float32: x, y, z of each, metres
+  triangles: string; // base64 of uint32: three numbers of vertices of each
+  colours: string; // base64 of uint8: red, green, blue of each vertex; empty: none
 }
 
 // A scale on the ground: segments whose colours alternate.

@@ -132,7 +132,9 @@ TEST_F(StoreFile, OfAnotherExperimentIsNotResumedAndTheMessageNamesTheDifference
   EXPECT_EQ(differs([](Experiment& other) { other.objectives[0].terms[0].weight = 2.0; }), "fitness");
   EXPECT_EQ(differs([](Experiment& other) { other.method = GeneticSettings{}; }), "method");
   EXPECT_EQ(differs([](Experiment& other) { std::get<GreatDelugeSettings>(other.method).rain = 0.02; }), "method");
-  EXPECT_EQ(differs([](Experiment& other) { other.scenario.sources.back().text += " "; }),
+  EXPECT_EQ(differs([](Experiment& other) {
+              other.scenario.sources.back().text = other.scenario.sources.back().text.str() + " ";
+            }),
             "file " + std::filesystem::path(experiment_.scenario.sources.back().path).filename().string());
 }
 

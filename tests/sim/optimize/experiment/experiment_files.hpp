@@ -17,9 +17,9 @@ class FilesOverDisk final : public sim::FileSource {
  public:
   std::map<std::string, std::string> texts;
 
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+  [[nodiscard]] std::optional<sim::SharedText> read(const std::filesystem::path& path) override {
     const auto file = texts.find(path.lexically_normal().string());
-    return file == texts.end() ? disk_.read(path) : std::optional(file->second);
+    return file == texts.end() ? disk_.read(path) : std::optional<sim::SharedText>(file->second);
   }
 
  private:

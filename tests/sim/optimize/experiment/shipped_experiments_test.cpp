@@ -150,7 +150,7 @@ TEST(ShippedExperiments, KeepEveryFileThatWasReadTheirOwnFirst) {
   const Experiment experiment = shipped("great_deluge");
   ASSERT_EQ(experiment.sources.size(), experiment.scenario.sources.size() + 1);
   EXPECT_TRUE(experiment.sources[0].path.ends_with("great_deluge.optimise.xml"));
-  EXPECT_NE(experiment.sources[0].text.find("<greatDeluge>"), std::string::npos);
+  EXPECT_NE(experiment.sources[0].text.str().find("<greatDeluge>"), std::string::npos);
   EXPECT_TRUE(experiment.sources[1].path.ends_with("uniform.simulation.xml"));
 }
 

@@ -164,7 +164,7 @@ sim::Scenario expect_round_trip(const Experiment& experiment, const Candidate& c
   EXPECT_EQ(description_of(scenario), description_of(expected));
   for (const sim::SourceFile& source : scenario.sources) {
     EXPECT_TRUE(source.path.starts_with(folder.path().string())) << source.path;
-    EXPECT_EQ(source.text.find(".part"), std::string::npos);
+    EXPECT_EQ(source.text.str().find(".part"), std::string::npos);
   }
   for (const std::string& remark : scenario.remarks) {
     EXPECT_EQ(remark.find("was made for robot"), std::string::npos) << remark;

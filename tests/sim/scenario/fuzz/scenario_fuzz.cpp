@@ -53,7 +53,7 @@ class InputFiles final : public FileSource {
     }
   }
 
-  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+  [[nodiscard]] std::optional<SharedText> read(const std::filesystem::path& path) override {
     const auto file = texts.find(path.lexically_normal().string());
     return file == texts.end() ? std::nullopt : std::optional(file->second);
   }

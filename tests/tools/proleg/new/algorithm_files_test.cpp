@@ -12,7 +12,7 @@ const AlgorithmPlace place{"/home/me/my_wave", "/home/me/proleg"};
 std::string file_of(const AlgorithmForm& form, const std::string& name) {
   const std::vector<sim::SourceFile> files = algorithm_files(form, place);
   const auto file = std::ranges::find(files, name, &sim::SourceFile::path);
-  return file == files.end() ? "no file " + name : file->text;
+  return file == files.end() ? "no file " + name : file->text.str();
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -63,7 +63,7 @@ TEST(AlgorithmFiles, NothingOfTheTemplatesIsLeft) {
       form.parameters.resize(parameters);
       form.senses_touch = is_touching;
       for (const sim::SourceFile& file : algorithm_files(form, place)) {
-        EXPECT_EQ(file.text.find('@'), std::string::npos) << file.path << ":\n" << file.text;
+        EXPECT_EQ(file.text.str().find('@'), std::string::npos) << file.path << ":\n" << file.text.str();
       }
     }
   }

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "mesh_shapes.hpp"
@@ -403,6 +404,38 @@ TEST_F(DraftSessionTest, AWorldThatTheReducedEngineLacksIsForeseenByOde) {
   const json foresight = path_of_revision(1);
   EXPECT_EQ(foresight["engine"], "ode");
   EXPECT_EQ(foresight["failure"], json());
+}
+
+// A sheet of 60,000 triangles, and the same with another scale.
+TEST_F(DraftSessionTest, TheMeshesOfADraftHaveALimitTogether) {
+  constexpr std::uint32_t cells = 173;
+  const sim::TriangleMesh mesh = sim::sheet(cells, 1.0);
+  std::ostringstream off;
+  off << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    off << vertex.x() << ' ' << vertex.y() << ' ' << vertex.z() << '\n';
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    off << "3 " << a << ' ' << b << ' ' << c << '\n';
+  }
+  meshes_.set(2, std::make_shared<const sim::OwnMesh>(sim::read_own_mesh({{"sheet.off", std::move(off).str()}})));
+  const auto add = [this](double factor) {
+    return ask("world.add_mesh", {{"mesh", 2},
+                                  {"factor", factor},
+                                  {"quarters", {0, 0, 0}},
+                                  {"sheet", true},
+                                  {"colour", {0.6, 0.5, 0.4}},
+                                  {"position", {0, 2, 0}},
+                                  {"turn", 0}});
+  };
+  ASSERT_TRUE(add(1.0).is_done);
+  EXPECT_TRUE(add(1.0).is_done) << "both share the mesh";
+  const Viewers::Answer answer = add(0.5);
+  EXPECT_FALSE(answer.is_done);
+  EXPECT_NE(answer.text.find("meshes of 119716 triangles in all, expected at most 100000"), std::string::npos)
+      << answer.text;
+  EXPECT_EQ(must("draft.diff")["files"].size(), 2) << "the world and one mesh";
+  must("world.friction", {{"object", 0}, {"value", 0.3}});
 }
 
 TEST_F(DraftSessionTest, ItsSimulationIsTheOneOfItsFiles) {

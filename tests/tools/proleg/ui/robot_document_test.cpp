@@ -33,9 +33,10 @@ TEST(RobotDocument, ShapesThatShareAMeshNameItByItsNumber) {
   EXPECT_EQ(shape["size"], json({1.0, 2.0, 1.0})) << "half of the box around it";
   EXPECT_EQ(shape["pose"], json({2.0, 2.0, 11.0, 1.0, 0.0, 0.0, 0.0})) << "the middle of this box";
   EXPECT_EQ(document["links"][1]["shapes"].back()["mesh"], 0);
-  EXPECT_EQ(document["meshes"][0]["vertices"], json({-1.0, -2.0, -1.0, 1.0, -2.0, -1.0, -1.0, 2.0, 1.0}));
-  EXPECT_EQ(document["meshes"][0]["triangles"], json({0, 1, 2}));
-  EXPECT_EQ(document["meshes"][0]["colours"], json({255, 0, 0, 0, 255, 0, 0, 0, 128}));
+  // By Python: base64.b64encode(struct.pack("<9f", -1, -2, -1, 1, -2, -1, -1, 2, 1)), and so on.
+  EXPECT_EQ(document["meshes"][0]["vertices"], "AACAvwAAAMAAAIC/AACAPwAAAMAAAIC/AACAvwAAAEAAAIA/");
+  EXPECT_EQ(document["meshes"][0]["triangles"], "AAAAAAEAAAACAAAA");
+  EXPECT_EQ(document["meshes"][0]["colours"], "/wAAAP8AAACA");
 }
 
 TEST(RobotDocument, AShapeThatALookReplacesIsNotThere) {

@@ -16,9 +16,10 @@ namespace {
 constexpr std::size_t max_history_entries = 10'000;
 constexpr std::size_t max_history_bytes = std::size_t{16} << 20U;
 // Of all files of a draft, and of its meshes: large ones, added again and again, would fill the memory. A triangle
-// takes about 300 bytes, because the engine, the page and the path of the next half minute have forms of it.
+// takes about 600 bytes, because the readers, the engine, the page and the path of the next half minute have forms of
+// it.
 constexpr std::size_t max_draft_bytes = std::size_t{24} << 20U;
-constexpr std::size_t max_draft_triangles = 100'000;
+constexpr std::size_t max_draft_triangles = 60'000;
 
 std::size_t bytes_of(const TextPatch& patch) { return patch.removed.size() + patch.inserted.size(); }
 

@@ -117,9 +117,8 @@ KnownMeshes::Import& imported(const XmlElement& mention, const std::string& refe
                               SourceSet& sources) {
   std::map<std::string, KnownMeshes::Import>& imports = sources.meshes().imports();
   const std::string name = name_of(file.path);
-  // Reading a companion makes it a file of the scenario, and moves the texts.
   const auto is_as_it_was = [&](const KnownMeshes::Import& import) {
-    return import.source == *file.source &&
+    return import.source == file.source &&
            std::ranges::all_of(import.companions, [&](const KnownMeshes::Companion& companion) {
              return sources.companion(mention, companion.path) == companion.text;
            });
@@ -129,7 +128,7 @@ KnownMeshes::Import& imported(const XmlElement& mention, const std::string& refe
     return known->second;
   }
   KnownMeshes::Import import;
-  import.source = *file.source;
+  import.source = file.source;
   const auto beside = [&](const std::string& companion) {
     std::filesystem::path path = file.path.parent_path() / std::filesystem::path(companion).filename();
     std::optional<std::string> text = sources.companion(mention, path);
@@ -144,7 +143,7 @@ KnownMeshes::Import& imported(const XmlElement& mention, const std::string& refe
 NumberText numbers_of(const XmlElement& element) { return {element.text(), element.label()}; }
 
 NumberText numbers_of_file(const XmlElement& data, SourceSet& sources) {
-  const std::string bytes = bytes_of_source(*sources.find_bytes(data, data.text()).source);
+  const std::string bytes = bytes_of_source(sources.find_bytes(data, data.text()).source);
   return {std::string(without_byte_order_mark(bytes)), in_quotes(data.text()), true};
 }
 

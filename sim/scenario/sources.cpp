@@ -219,7 +219,7 @@ void SourceSet::count_once(const XmlElement& mention, const std::filesystem::pat
 SourceSet::Bytes SourceSet::find_bytes(const XmlElement& mention, const std::string& reference) {
   Found found = find(mention, reference, Contents::any);
   count_once(mention, found.path, found.text->size());
-  return {std::move(found.path), found.text};
+  return {std::move(found.path), *found.text};
 }
 
 std::optional<std::string> SourceSet::companion(const XmlElement& mention, const std::filesystem::path& path) {

@@ -133,7 +133,7 @@ class SourceSet {
   /// counts once towards the limits.
   struct Bytes {
     std::filesystem::path path;
-    const SharedText* source;  ///< valid until another file is read; bytes_of_source() gives its bytes
+    SharedText source;  ///< bytes_of_source() gives its bytes
   };
   [[nodiscard]] Bytes find_bytes(const XmlElement& mention, const std::string& reference);
   /// Whether find_bytes() would find a file.

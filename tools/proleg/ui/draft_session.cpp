@@ -1,5 +1,7 @@
 #include "tools/proleg/ui/draft_session.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -169,6 +171,7 @@ void DraftSession::open_journal() {
 }
 
 void DraftSession::write_journal() {
+  malloc_trim(0);  // the reader and the documents of large meshes have many parts
   try {
     journal_->write(*draft_);
   } catch (const std::exception& error) {

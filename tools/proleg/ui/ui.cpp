@@ -260,8 +260,9 @@ AlgorithmSessionOptions code_options(const UiOptions& options, const std::filesy
 
 int serve(UiOptions& options) {
   // By itself the C library keeps the place of large texts, such as meshes, after their use (mallopt(3)).
-  constexpr int large = 1 << 20;
+  constexpr int large = 1 << 18;
   mallopt(M_MMAP_THRESHOLD, large);
+  mallopt(M_ARENA_MAX, 2);
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   RecordedSessionOptions recordings = recordings_of(options);

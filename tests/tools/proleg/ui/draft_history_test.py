@@ -6,10 +6,7 @@ Usage: draft_history_test.py SOURCE PROGRAMS [SEED [OPERATIONS]]"""
 
 import json
 import random
-import re
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -17,62 +14,13 @@ from pathlib import Path
 SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 48
 OPERATIONS = int(sys.argv[4]) if len(sys.argv) > 4 else 500
-sys.path.insert(0, str(SOURCE / "tests/host/server"))
-from web_client import Viewer  # noqa: E402
+sys.path[:0] = [str(SOURCE / "tests/host/server"), str(SOURCE / "tests/tools/proleg/ui")]
+from ui_program import UiProgram  # noqa: E402
 
 MOST_OBJECTS, MOST_JOINTS, MOST_SENSORS = 25, 12, 8
 
 
-class Program:
-    """`proleg ui` with a scenario, and a page that has control."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        page = folder / "page"
-        page.mkdir()
-        (page / "index.html").write_text("<!doctype html><title>page</title>")
-        self.command = [PROGRAMS / "proleg", "ui", folder / "uniform.simulation.xml", "--page", page, "--no-browser", "--paused",
-                        "--recordings", folder]
-        self.start()
-
-    def start(self):
-        self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True)
-        self.port, self.token = re.search(r":(\d+)/#(\S+)", self.process.stdout.readline()).groups()
-        self.viewer = None
-        self.load_page()
-
-    def load_page(self):
-        if self.viewer is not None:
-            self.viewer.sock.close()
-        self.viewer = Viewer(int(self.port), self.token)
-        self.epoch = self.viewer.take_control()
-        self.viewer.until(lambda: self.viewer.documents.get("draft", {}).get("value") is not None)
-
-    def end(self):
-        self.process.send_signal(signal.SIGINT)
-        assert self.process.wait() == 0
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.kill()
-        self.process.wait()
-
-    @property
-    def draft(self):
-        return self.viewer.documents["draft"]["value"]
-
-    def ask(self, name, /, **arguments):
-        if name.split(".")[0] in ("world", "robot", "behaviour"):
-            arguments["layout"] = self.draft["layout"]
-        return self.viewer.do(name, self.epoch, **arguments)
-
-    def must(self, name, /, **arguments):
-        result = self.ask(name, **arguments)
-        assert result["ok"], (name, arguments, result)
-        return result["value"]
-
+class Program(UiProgram):
     def texts(self):
         """The files of the draft as they are now, by their names."""
         texts = {str(path.relative_to(self.folder)): path.read_text() for path in self.folder.rglob("*.xml")}
@@ -246,7 +194,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         shutil.copytree(SOURCE / "sim/scenarios/travelling_wave", folder, dirs_exist_ok=True)
-        with Program(folder) as program:
+        with Program(PROGRAMS, folder) as program:
             done, refused, missing = make_and_undo(program)
             program.end()
     print(json.dumps({"seed": SEED, "done": done, "refused": refused, "missing": missing}))

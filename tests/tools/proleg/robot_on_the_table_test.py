@@ -125,11 +125,14 @@ class CutLine:
             back = threading.Thread(target=self.copy, args=(bus, program), daemon=True)
             back.start()
             sent = b""
-            while sent.count(self.command) < self.count and (part := program.recv(4096)):
-                sent += part
-                bus.sendall(part)
-            program.shutdown(socket.SHUT_RDWR)
-            bus.shutdown(socket.SHUT_RDWR)
+            try:
+                while sent.count(self.command) < self.count and (part := program.recv(4096)):
+                    sent += part
+                    bus.sendall(part)
+                program.shutdown(socket.SHUT_RDWR)
+                bus.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass  # the program has ended
             back.join(LONGEST)
 
     @staticmethod
@@ -194,6 +197,17 @@ def wait_for_drives(bus, state):
 
 def simulated(*options):
     return proleg_json("simulate", SOURCE / SCENARIO, "--json", *options)
+
+
+def assign_over_cut_line(bus, cut, places):
+    """`proleg assign` over a line that is cut when it has stored so many node ids. On a busy computer the line passes the answers
+    to a scan too late: then nothing has changed, and it begins again."""
+    for _ in range(10):
+        with CutLine(bus.tcp, b"t7E5817", cut) as line:
+            assign = proleg("assign", SOURCE / SCENARIO, "--bus", line.address, "--places", places)
+        if "no node id was changed" not in assign.stderr:
+            break
+    return assign
 
 
 class RobotOnTheTable(unittest.TestCase):
@@ -445,11 +459,11 @@ class RobotOnTheTable(unittest.TestCase):
         with Bus() as bus:
             right = {node["serial"]: node["node"] for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
         for cut in (1, 2, 3):
-            with Bus("--shuffle", "7") as bus, CutLine(bus.tcp, b"t7E5817", cut) as line:
+            with Bus("--shuffle", "7") as bus:
                 before = {node["serial"]: node["node"]
                           for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
                 places = ",".join(f"{before[serial]}=J{6 - node}" for serial, node in right.items())
-                assign = proleg("assign", SOURCE / SCENARIO, "--bus", line.address, "--places", places)
+                assign = assign_over_cut_line(bus, cut, places)
                 self.assertEqual(assign.returncode, 1, assign.stdout)
                 for serial in right:
                     self.assertIn(f"the module with the serial number 0x{serial:08X} (J", assign.stderr)

@@ -19,7 +19,7 @@ constexpr std::size_t max_history_bytes = std::size_t{16} << 20U;
 // takes about 600 bytes, because the readers, the engine, the page and the path of the next half minute have forms of
 // it.
 constexpr std::size_t max_draft_bytes = std::size_t{24} << 20U;
-constexpr std::size_t max_draft_triangles = 60'000;
+constexpr std::size_t max_draft_triangles = 80'000;
 
 std::size_t bytes_of(const TextPatch& patch) { return patch.removed.size() + patch.inserted.size(); }
 

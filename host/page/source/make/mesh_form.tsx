@@ -260,7 +260,7 @@ export function WorldMeshForm({ app }: { app: MakeApp }) {
     <div class="item-form" role="form" aria-label="New mesh">
       <p class="hint">
         A shape of your own: an STL, OBJ (with its .mtl), COLLADA or OFF file, dropped anywhere on this page or chosen. It stands still and touches with all its
-        triangles. All meshes of a draft together have at most 60,000.
+        triangles. All meshes of a draft together have at most 80,000.
       </p>
       <div class="fields">
         <MeshFileButton app={app} purpose="world" />

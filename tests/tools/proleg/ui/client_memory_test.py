@@ -56,16 +56,10 @@ class Client(UiProgram):
             self.must("mesh.part", mesh=mesh, file=0, at=at, data=part)
         return mesh
 
-    def ask_newly(self, name, /, **arguments):
-        """After the draft of the change before has come."""
-        self.must("draft.refresh")
-        self.viewer.until(lambda: True)
-        return self.ask(name, **arguments)
-
 
 def main():
     random.seed(SEED)
-    large, largest = sphere(244), sphere(316)
+    large, largest = sphere(282), sphere(316)
     fit = {"factor": 0.001, "quarters": [0, 0, 0], "colour": [0.6, 0.5, 0.4]}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -87,17 +81,17 @@ def main():
                 mesh = program.send(f"m{number}.stl", struct.pack("<I", number) + large[4:])
                 program.must("mesh.look", mesh=mesh)
                 words = {"mesh": mesh, **fit, "sheet": False, "position": [0, 1 + number, 0], "turn": 0}
-                added += program.ask_newly("world.add_mesh", **words)["ok"]
+                added += program.ask("world.add_mesh", **words)["ok"]
             assert added == 1, f"{added} meshes of {len(large) // 50} triangles"
             note("meshes in the world")
             module = {"mesh": mesh, **fit, "name": "shell", "length": 0.07, "mass": 0.1}
-            assert not program.ask_newly("robot.own_module", **module)["ok"]
+            assert not program.ask("robot.own_module", **module)["ok"]
             for _ in range(4):
-                assert program.ask_newly("draft.undo")["ok"]
-                assert program.ask_newly("robot.own_module", **module)["ok"]
-                assert program.ask_newly("draft.undo")["ok"]
+                assert program.ask("draft.undo")["ok"]
+                assert program.ask("robot.own_module", **module)["ok"]
+                assert program.ask("draft.undo")["ok"]
                 words["factor"] = round(random.uniform(0.0005, 0.002), 6)
-                assert program.ask_newly("world.add_mesh", **words)["ok"]
+                assert program.ask("world.add_mesh", **words)["ok"]
             note("meshes taken back and added again")
             program.must("load_draft")
             program.must("step", ticks=20)
@@ -110,7 +104,7 @@ def main():
                 program.send("never.obj", bytes(16 << 20), share=0.9)
             note("transfers that never end")
             for number in range(200):
-                assert program.ask_newly("world.rename", object=0, name="x" * (number % 50 + 1))["ok"]
+                assert program.ask("world.rename", object=0, name="x" * (number % 50 + 1))["ok"]
             note("200 changes")
             program.must("step", ticks=20)
             print(f"seed {SEED}, MiB more than the {start:.0f} at the start: {figures}")

@@ -432,7 +432,7 @@ TEST_F(DraftSessionTest, TheMeshesOfADraftHaveALimitTogether) {
   EXPECT_TRUE(add(1.0).is_done) << "both share the mesh";
   const Viewers::Answer answer = add(0.5);
   EXPECT_FALSE(answer.is_done);
-  EXPECT_NE(answer.text.find("meshes of 119716 triangles in all, expected at most 60000"), std::string::npos)
+  EXPECT_NE(answer.text.find("meshes of 119716 triangles in all, expected at most 80000"), std::string::npos)
       << answer.text;
   EXPECT_EQ(must("draft.diff")["files"].size(), 2) << "the world and one mesh";
   must("world.friction", {{"object", 0}, {"value", 0.3}});

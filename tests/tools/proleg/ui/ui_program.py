@@ -50,7 +50,11 @@ class UiProgram:
     def ask(self, name, /, **arguments):
         if name.split(".")[0] in ("world", "robot", "behaviour"):
             arguments["layout"] = self.draft["layout"]
-        return self.viewer.do(name, self.epoch, **arguments)
+        result = self.viewer.do(name, self.epoch, **arguments)
+        # An answer may come before the documents.
+        if result["ok"] and isinstance(result.get("value"), dict) and "revision" in result["value"]:
+            self.viewer.until(lambda: self.draft["revision"] >= result["value"]["revision"])
+        return result
 
     def must(self, name, /, **arguments):
         result = self.ask(name, **arguments)

@@ -15,9 +15,9 @@ namespace {
 // What undo keeps at most; older entries are forgotten.
 constexpr std::size_t max_history_entries = 10'000;
 constexpr std::size_t max_history_bytes = std::size_t{16} << 20U;
-// Of all files of a draft, and of its meshes: large ones, added again and again, would fill the memory. A triangle
-// takes about 600 bytes, because the readers, the engine, the page and the path of the next half minute have forms of
-// it.
+// Of all files of a draft, and of its meshes: large ones, added again and again, would fill the memory. The
+// readers, the engine, the page and the path of the next half minute have forms of each triangle: with this limit, a
+// client cannot make proleg ui take more than 64 MiB (client_memory_test.py).
 constexpr std::size_t max_draft_bytes = std::size_t{24} << 20U;
 constexpr std::size_t max_draft_triangles = 80'000;
 

@@ -388,7 +388,7 @@ TEST_F(DraftSessionTest, ForesightIsThePathThatTheSimulationTakes) {
   EXPECT_EQ(foresight["distance"], simulation.measures()[sim::Measure::distance]);
 }
 
-// Many a robot is shown and driven, and nobody looks at its draft.
+// A path takes seconds of a core, and a robot that is only driven needs none.
 TEST_F(DraftSessionTest, NoPathIsComputedBeforeSomebodyAsksAboutTheDraft) {
   draft(0);
   for (int wait = 0; wait < 100; ++wait) {

@@ -129,7 +129,7 @@ class Editor {
       add_tag(slot, number, common, {}, anchor);
     } else {
       for (const unsigned joint : changed) {
-        add_tag(slot, number, JointMask::of(joint), " joint=\"" + escaped(file_.robot.joints[joint].name) + '"',
+        add_tag(slot, number, JointMask::of(joint), " joint=\"" + escaped_xml(file_.robot.joints[joint].name) + '"',
                 anchor);
       }
     }

@@ -82,7 +82,7 @@ void BehaviourChange::write_joints(ElementNumber module, JointMask joints) {
 
 void BehaviourChange::add(const std::string& algorithm, JointMask joints) {
   check_joints(joints);
-  const std::string lines = "<actuationModule name=\"" + escaped(declaration_of(algorithm).name) +
+  const std::string lines = "<actuationModule name=\"" + escaped_xml(declaration_of(algorithm).name) +
                             "\">\n  <jointConfiguration joints=\"" + joints_text(scenario_.robot, joints) +
                             "\"/>\n</actuationModule>";
   const std::vector<ElementNumber> modules = xml().children(0, "actuationModule");
@@ -131,24 +131,30 @@ void BehaviourChange::set_joints(unsigned slot, JointMask joints) {
   write_joints(module, joints);
 }
 
-void BehaviourChange::set_parameter(unsigned slot, const std::string& parameter, JointMask joints,
-                                    const std::string& value) {
-  static_cast<void>(module_of(slot));
-  const Slot& used = scenario_.kernel.slots[slot];
+void BehaviourChange::set_start_values(Scenario& wanted, const Value& value) {
+  static_cast<void>(module_of(value.slot));
+  const Slot& used = scenario_.kernel.slots[value.slot];
   const Declaration& declaration = used.algorithm->declaration();
-  const int number = find_parameter(declaration, parameter);
+  const int number = find_parameter(declaration, value.parameter);
   if (number < 0) {
-    throw InputError("parameter", 0, in_quotes(parameter), "one of " + listed(parameter_names(declaration)));
+    throw InputError("parameter", 0, in_quotes(value.parameter), "one of " + listed(parameter_names(declaration)));
   }
-  if (joints.empty() || !(joints - used.group).empty()) {
-    throw InputError("joints", 0, joints.empty() ? "no joint" : "a joint that the module does not move",
+  if (value.joints.empty() || !(value.joints - used.group).empty()) {
+    throw InputError("joints", 0, value.joints.empty() ? "no joint" : "a joint that the module does not move",
                      "joints of the module");
   }
-  const std::int32_t raw = parse_parameter(declaration.parameters[static_cast<unsigned>(number)], value, parameter, 0);
-  Scenario wanted = scenario_;
-  for (const unsigned joint : joints) {
-    set_start_value(wanted, {static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint),
+  const std::int32_t raw =
+      parse_parameter(declaration.parameters[static_cast<unsigned>(number)], value.text, value.parameter, 0);
+  for (const unsigned joint : value.joints) {
+    set_start_value(wanted, {static_cast<std::uint8_t>(value.slot), static_cast<std::uint8_t>(joint),
                              static_cast<std::uint8_t>(number), false, raw});
+  }
+}
+
+void BehaviourChange::set_values(const std::vector<Value>& values) {
+  Scenario wanted = scenario_;
+  for (const Value& value : values) {
+    set_start_values(wanted, value);
   }
   const std::vector<ActuationEdit> edits = actuation_edits(scenario_, wanted);
   for (const ActuationEdit* edit : from_the_end(edits)) {

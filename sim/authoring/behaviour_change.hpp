@@ -3,6 +3,7 @@
 // Changes of the behaviour of a draft: which actuation module moves which joints, with which parameters.
 
 #include <string>
+#include <vector>
 
 #include "shared/gait/joint_mask.hpp"
 #include "sim/authoring/draft.hpp"
@@ -27,13 +28,24 @@ class BehaviourChange {
   void set_algorithm(unsigned slot, const std::string& algorithm);
   /// Values of single joints that the module no longer moves are removed.
   void set_joints(unsigned slot, JointMask joints);
-  /// Sets the start value of a parameter for joints of the module. value: a decimal number in the declared unit.
-  void set_parameter(unsigned slot, const std::string& parameter, JointMask joints, const std::string& value);
+  /// The start value of a parameter for joints of a module.
+  struct Value {
+    unsigned slot = 0;
+    std::string parameter;
+    JointMask joints;
+    std::string text;  ///< a decimal number in the declared unit
+  };
+  /// Sets all of them. Of two for the same joint the later one holds.
+  void set_values(const std::vector<Value>& values);
+  void set_parameter(unsigned slot, const std::string& parameter, JointMask joints, const std::string& text) {
+    set_values({{slot, parameter, joints, text}});
+  }
 
  private:
   [[nodiscard]] const XmlText& xml() { return change_.xml(scenario_.actuation_file); }
   void apply(const TextPatch& patch) { change_.apply(scenario_.actuation_file, patch); }
   [[nodiscard]] ElementNumber module_of(unsigned slot);
+  void set_start_values(Scenario& wanted, const Value& value);
   void check_joints(JointMask joints) const;
   void write_joints(ElementNumber module, JointMask joints);
 

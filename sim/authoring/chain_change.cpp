@@ -477,7 +477,7 @@ void ChainChange::add_module(const State& state, const std::string& joint) {
   while (taken.contains(node)) {
     ++node;
   }
-  change_.apply(state.file(), xml.add_behind(modules.back(), "<module joint=\"" + escaped(joint) + "\" node=\"" +
+  change_.apply(state.file(), xml.add_behind(modules.back(), "<module joint=\"" + escaped_xml(joint) + "\" node=\"" +
                                                                  std::to_string(node) + "\"/>"));
 }
 

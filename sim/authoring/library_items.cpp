@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"
 #include "sim/authoring/scenario_text.hpp"
 
@@ -231,7 +232,7 @@ const LibraryDeclaration* find_library_item(std::string_view name) {
 
 std::string item_text(LibraryItem item, const std::map<std::string, double>& values, const std::string& name,
                       const Eigen::Vector3d& position, double turn_degrees) {
-  std::string text = "<KinBody name=\"" + escaped(name) + "\">\n";
+  std::string text = "<KinBody name=\"" + escaped_xml(name) + "\">\n";
   if (!position.isZero()) {
     text += "  " + element_text("Translation", vector_text(position)) + "\n";
   }

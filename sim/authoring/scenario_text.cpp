@@ -61,7 +61,7 @@ std::optional<std::string> rotation_text(const Eigen::Quaterniond& rotation) {
 }
 
 std::string element_text(std::string_view tag, std::string_view content) {
-  return "<" + std::string(tag) + ">" + escaped(content) + "</" + std::string(tag) + ">";
+  return "<" + std::string(tag) + ">" + escaped_xml(content) + "</" + std::string(tag) + ">";
 }
 
 std::string content_of(const XmlText& xml, ElementNumber element) {

@@ -99,7 +99,7 @@ void SensorChange::add(SensorKind kind, std::size_t part, SensorPlace place) {
     }
   }
   const std::string tag = kind == SensorKind::servo_current ? "joint" : "link";
-  const std::string start = "<AttachedSensor name=\"" + escaped(name) + "\">\n  " + element_text(tag, part_text) +
+  const std::string start = "<AttachedSensor name=\"" + escaped_xml(name) + "\">\n  " + element_text(tag, part_text) +
                             "\n" + pose + "  <sensor type=\"" + std::string(name_of(kind)) + "\"";
   const std::string end = properties.empty() ? "/>" : ">" + properties + "\n  </sensor>";
   const std::vector<ElementNumber> all = xml().children(0, "AttachedSensor");

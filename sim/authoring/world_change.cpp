@@ -180,7 +180,7 @@ void WorldChange::write_scale(const WorldShape& shape, const std::vector<double>
   if (parts[0] == parts[1] && parts[1] == parts[2]) {
     numbers = " " + std::string(parts[0]);
   }
-  apply(xml().set_content(element, escaped(std::string(split.path) + numbers)));
+  apply(xml().set_content(element, escaped_xml(std::string(split.path) + numbers)));
 }
 
 void WorldChange::write_size(const WorldShape& shape, const std::vector<double>& size) {
@@ -347,7 +347,7 @@ void WorldChange::add_mesh(const OwnMesh& mesh, const MeshFit& fit, bool is_shee
   const double turn = turn_degrees * std::numbers::pi / 180.0;
   const double half_depth = (box.highest - box.lowest).y() / 2.0;
   const Eigen::Vector3d place = position + half_depth * Eigen::Vector3d(-std::sin(turn), std::cos(turn), 0.0);
-  std::string text = "<KinBody name=\"" + escaped(free_name(shortened(name.substr(0, name.rfind('.'))))) + "\">\n";
+  std::string text = "<KinBody name=\"" + escaped_xml(free_name(shortened(name.substr(0, name.rfind('.'))))) + "\">\n";
   text += "  " + element_text("Translation", vector_text(place)) + "\n";
   if (turn_degrees != 0.0) {
     text += "  " + element_text("RotationAxis", "0 0 1 " + number_text_of(turn_degrees)) + "\n";

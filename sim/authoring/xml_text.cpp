@@ -34,29 +34,6 @@ void apply(const TextPatch& patch, std::string& text) {
 
 TextPatch inverse(const TextPatch& patch) { return {patch.position, patch.inserted, patch.removed}; }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char character : text) {
-    switch (character) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += character;
-    }
-  }
-  return result;
-}
-
 XmlText::XmlText(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
   const auto refuse = [this](const UnpairedTag& tag) { throw InputError(name_, tag.line, tag.found, tag.expected); };
   if (const auto comment = find_unclosed_comment(text_)) {
@@ -145,7 +122,7 @@ std::optional<TextRange> XmlText::comment_with(std::string_view word) const {
 TextPatch XmlText::set_attribute(ElementNumber element, std::string_view attribute, std::string_view value) const {
   const TextTag& tag = at(element).tag;
   if (const auto range = find_attribute(text_, tag, attribute)) {
-    std::string text = escaped(value);
+    std::string text = escaped_xml(value);
     if (text_[range->end] == '\'') {
       std::string quoted;
       for (const char character : text) {
@@ -158,7 +135,7 @@ TextPatch XmlText::set_attribute(ElementNumber element, std::string_view attribu
   // Behind the last attribute, or behind the name.
   const std::size_t closing = tag.end - (tag.kind == TextTag::Kind::empty ? 2 : 1);
   const std::size_t last = text_.find_last_not_of(" \t\r\n", closing - 1) + 1;
-  return insert(last, " " + std::string(attribute) + "=\"" + escaped(value) + '"');
+  return insert(last, " " + std::string(attribute) + "=\"" + escaped_xml(value) + '"');
 }
 
 TextPatch XmlText::set_content(ElementNumber element, std::string_view content) const {
@@ -167,12 +144,12 @@ TextPatch XmlText::set_content(ElementNumber element, std::string_view content) 
   if (tag.kind == TextTag::Kind::empty) {
     const std::size_t slash = tag.end - 2;
     const std::size_t begin = text_.find_last_not_of(" \t\r\n", slash - 1) + 1;
-    return replace({begin, tag.end}, ">" + escaped(content) + "</" + std::string(tag.name) + ">");
+    return replace({begin, tag.end}, ">" + escaped_xml(content) + "</" + std::string(tag.name) + ">");
   }
   const std::string_view inner = std::string_view(text_).substr(tag.end, found.end_tag - tag.end);
   const std::string_view kept = trimmed(inner);
   const std::size_t begin = kept.empty() ? tag.end : tag.end + static_cast<std::size_t>(kept.data() - inner.data());
-  return replace({begin, kept.empty() ? found.end_tag : begin + kept.size()}, escaped(content));
+  return replace({begin, kept.empty() ? found.end_tag : begin + kept.size()}, escaped_xml(content));
 }
 
 TextPatch XmlText::add_behind(ElementNumber element, std::string_view lines) const {

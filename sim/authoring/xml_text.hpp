@@ -25,9 +25,6 @@ void apply(const TextPatch& patch, std::string& text);
 /// The patch that takes another one back.
 [[nodiscard]] TextPatch inverse(const TextPatch& patch);
 
-/// The text as content of an element or as an attribute between double quotes.
-[[nodiscard]] std::string escaped(std::string_view text);
-
 /// Position of an element in the order of the start tags; 0 is the outermost one.
 using ElementNumber = std::size_t;
 

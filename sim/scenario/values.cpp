@@ -131,8 +131,12 @@ std::uint64_t read_whole_attribute(const XmlElement& element, std::string_view a
   return checked_whole(element, attribute_of(element, attribute), min, max);
 }
 
+std::size_t read_choice(const XmlElement& element, std::span<const std::string_view> words) {
+  return checked_choice(element, text_of(element), words);
+}
+
 std::size_t read_choice(const XmlElement& element, std::initializer_list<std::string_view> words) {
-  return checked_choice(element, text_of(element), std::span(words.begin(), words.size()));
+  return read_choice(element, std::span(words.begin(), words.size()));
 }
 
 std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,

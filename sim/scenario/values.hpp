@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,6 +58,7 @@ inline constexpr Range turns{-360.0, 360.0, "degrees"};
                                                  std::uint64_t min, std::uint64_t max);
 
 /// Position of the element's only word, in any case, among these words in lower case.
+[[nodiscard]] std::size_t read_choice(const XmlElement& element, std::span<const std::string_view> words);
 [[nodiscard]] std::size_t read_choice(const XmlElement& element, std::initializer_list<std::string_view> words);
 [[nodiscard]] std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
                                                 std::initializer_list<std::string_view> words);

@@ -6,9 +6,18 @@
 
 namespace proleg {
 
+namespace {
+
+std::string place(const std::string& file, int line) {
+  return one_line(file + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": ");
+}
+
+}  // namespace
+
 InputError::InputError(const std::string& file, int line, const std::string& found, const std::string& expected)
-    : std::runtime_error(one_line(file + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": found " + found +
-                                  ", expected " + expected)) {}
+    : std::runtime_error(place(file, line) + one_line("found " + found + ", expected " + expected)),
+      line_(line),
+      place_size_(place(file, line).size()) {}
 
 std::optional<std::string> found_instead_of_file(const std::filesystem::path& path) {
   if (path.empty()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,15 @@ class InputError : public std::runtime_error {
   InputError(const std::string& file, int line, const std::string& found, const std::string& expected);
   /// what(): that of another InputError, which was thrown in another process.
   explicit InputError(const std::string& what) : std::runtime_error(what) {}
+
+  /// 0: of none.
+  [[nodiscard]] int line() const { return line_; }
+  /// what() without file and line: "found ..., expected ...".
+  [[nodiscard]] const char* problem() const { return what() + place_size_; }
+
+ private:
+  int line_ = 0;
+  std::size_t place_size_ = 0;
 };
 
 /// The kind of thing that a path names instead of a file whose bytes can be read to an end, for messages with "found

@@ -199,6 +199,29 @@ std::optional<std::string_view> TextLines::next() {
   return line;
 }
 
+std::string escaped_xml(std::string_view text) {
+  std::string result;
+  for (const char character : text) {
+    switch (character) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += character;
+    }
+  }
+  return result;
+}
+
 std::vector<std::string_view> words(std::string_view text) {
   std::vector<std::string_view> result;
   for (text = trimmed(text); !text.empty(); text = trimmed(text)) {

@@ -45,6 +45,9 @@ namespace proleg {
 /// The text behind the byte order mark that some editors put in front of UTF-8.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
+/// The text as content of an XML element, or of an attribute between double quotes.
+[[nodiscard]] std::string escaped_xml(std::string_view text);
+
 /// The words of a text that blanks separate.
 [[nodiscard]] std::vector<std::string_view> words(std::string_view text);
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <map>
 #include <utility>
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
+#include "sim/scenario/overrides.hpp"
+#include "sim/scenario/sources.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -32,6 +35,10 @@ class Store::Implementation {
                  Opening opening)
       : path_(path), experiment_(experiment), result_key_(result_key), columns_(experiment) {
     guard([&] {
+      if (opening == Opening::look) {
+        look();
+        return;
+      }
       lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, result_key)
                                               : claim_store(path_));
       database_ = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE);
@@ -44,7 +51,24 @@ class Store::Implementation {
       database_->require_own_file();
       statements_ = std::make_unique<Statements>(*database_, columns_);
       read_last_numbers();
+      forget_stop_request(path_);
     });
+  }
+  ~Implementation() {
+    if (lock_) {
+      forget_stop_request(path_);
+    }
+  }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  bool is_stop_requested() {
+    constexpr std::chrono::milliseconds period{200};
+    if (const auto now = std::chrono::steady_clock::now(); !is_stop_requested_ && now >= next_look_) {
+      is_stop_requested_ = optimize::is_stop_requested(path_);
+      next_look_ = now + period;
+    }
+    return is_stop_requested_;
   }
 
   std::optional<TrialResult> find(const Task& task) {
@@ -75,12 +99,20 @@ class Store::Implementation {
     write([&] { save_evaluation_row(statements_->save_evaluation, experiment_, columns_, evaluation); });
   }
 
-  void save_search(std::uint64_t evaluations, const std::string& build_id) {
+  void save_search(std::uint64_t evaluations, const std::string& build_id, std::optional<std::uint32_t> trials) {
     const std::string text = std::to_string(evaluations);
+    Experiment search = experiment_;
+    search.evaluations = evaluations;
+    const std::string planned = std::to_string(planned_evaluations(search));
     write([&] {
       Statement entry(*database_, "REPLACE INTO experiment VALUES(?1, ?2)");
       entry.run(std::string_view("evaluations"), std::string_view(text));
+      entry.run(std::string_view("planned"), std::string_view(planned));
       entry.run(std::string_view("build_id"), std::string_view(build_id));
+      if (trials) {
+        const std::string count = std::to_string(*trials);
+        entry.run(std::string_view("trials"), std::string_view(count));
+      }
     });
   }
 
@@ -121,11 +153,12 @@ class Store::Implementation {
     });
   }
 
-  std::vector<Evaluation> evaluations(std::uint32_t run) {
+  std::vector<Evaluation> evaluations(std::uint32_t run, std::uint64_t from, std::size_t most) {
     return guard([&] {
       std::vector<Evaluation> evaluations;
-      Statement statement(*database_, "SELECT * FROM evaluation WHERE run = ?1 ORDER BY number");
-      statement.bind_all(run);
+      Statement statement(*database_,
+                          "SELECT * FROM evaluation WHERE run = ?1 AND number >= ?2 ORDER BY number LIMIT ?3");
+      statement.bind_all(run, from, most);
       while (statement.step()) {
         evaluations.push_back(read_evaluation(statement, experiment_, columns_));
       }
@@ -151,6 +184,12 @@ class Store::Implementation {
     Statement save_trial;
     Statement save_evaluation;
   };
+
+  void look() {
+    require_store_file(path_);
+    database_ = std::make_unique<Database>(path_, SQLITE_OPEN_READONLY);
+    require_store(path_, *database_);
+  }
 
   void read_last_numbers() {
     Statement last(*database_, "SELECT run, max(number) FROM trial GROUP BY run");
@@ -192,10 +231,12 @@ class Store::Implementation {
   std::unique_ptr<Database> database_;
   std::unique_ptr<Statements> statements_;
   std::map<std::uint32_t, std::uint64_t> last_numbers_;  ///< largest number that has a trial, by run
+  bool is_stop_requested_ = false;
+  std::chrono::steady_clock::time_point next_look_;
 };
 
-void Store::save_search(std::uint64_t evaluations, const std::string& build_id) {
-  implementation_->save_search(evaluations, build_id);
+void Store::save_search(std::uint64_t evaluations, const std::string& build_id, std::optional<std::uint32_t> trials) {
+  implementation_->save_search(evaluations, build_id, trials);
 }
 
 StoredExperiment read_stored_experiment(const std::filesystem::path& path) {
@@ -203,6 +244,37 @@ StoredExperiment read_stored_experiment(const std::filesystem::path& path) {
     require_store_file(path);
     Database database(path, SQLITE_OPEN_READONLY);
     return read_description(path, database);
+  } catch (const SqliteError& error) {
+    throw StoreError(path.string() + ": " + reason(error, 0));
+  }
+}
+
+Experiment read_experiment_of(const std::filesystem::path& store) {
+  const StoredExperiment stored = read_stored_experiment(store);
+  sim::SourceTexts files;
+  for (const sim::SourceFile& source : stored.sources) {
+    files.add(source.path, source.text);
+  }
+  Experiment experiment = read_experiment(stored.path, files, stored.scenario);
+  experiment.seed = stored.seed;
+  experiment.evaluations = stored.evaluations;
+  if (sim::name_of(experiment.scenario.environment.engine) != stored.engine) {
+    sim::OverrideWords words;
+    words.engine = stored.engine;
+    experiment.scenario.overrides = sim::read_overrides(words);
+    sim::apply_overrides(experiment.scenario.overrides, experiment.scenario.environment);
+  }
+  if (stored.trials) {
+    set_trials(experiment, *stored.trials);
+  }
+  return experiment;
+}
+
+StoreSummary read_store_summary(const std::filesystem::path& path, const StoreSummary* before) {
+  try {
+    require_store_file(path);
+    Database database(path, SQLITE_OPEN_READONLY);
+    return read_summary(path, database, before);
   } catch (const SqliteError& error) {
     throw StoreError(path.string() + ": " + reason(error, 0));
   }
@@ -217,13 +289,16 @@ void Store::save(const Task& task, std::uint64_t seed, const TrialResult& result
   implementation_->save(task, seed, result, worker);
 }
 void Store::save(const Evaluation& evaluation) { implementation_->save(evaluation); }
+bool Store::is_stop_requested() { return implementation_->is_stop_requested(); }
 void Store::start_run(std::uint32_t run) { implementation_->start_run(run); }
 void Store::finish_run(std::uint32_t run, const std::string& reason) { implementation_->finish_run(run, reason); }
 void Store::add(const std::filesystem::path& other, std::optional<std::uint32_t> run) {
   implementation_->add(other, run);
 }
 std::uint64_t Store::evaluation_count(std::uint32_t run) { return implementation_->evaluation_count(run); }
-std::vector<Evaluation> Store::evaluations(std::uint32_t run) { return implementation_->evaluations(run); }
+std::vector<Evaluation> Store::evaluations(std::uint32_t run, std::uint64_t from, std::size_t most) {
+  return implementation_->evaluations(run, from, most);
+}
 std::optional<std::string> Store::ending(std::uint32_t run) { return implementation_->ending(run); }
 
 }  // namespace proleg::optimize

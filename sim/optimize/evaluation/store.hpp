@@ -15,6 +15,32 @@ namespace proleg::optimize {
 /// Reads the description of a store's experiment, and nothing else. Throws StoreError.
 [[nodiscard]] StoredExperiment read_stored_experiment(const std::filesystem::path& path);
 
+/// The experiment of a store, from the files and options that the store keeps. Throws StoreError, and InputError for
+/// files that this program does not read, for example because it lacks an algorithm.
+[[nodiscard]] Experiment read_experiment_of(const std::filesystem::path& store);
+
+/// What a list of searches shows of a store.
+struct StoreSummary {
+  std::string method;         ///< its short name
+  std::string scenario;       ///< path of its top-level file
+  std::string started;        ///< Universal Time, "2026-11-27T23:40:00Z"; empty: not known
+  std::uint64_t planned = 0;  ///< evaluations at most; 0: until the method ends
+  std::uint64_t made = 0;     ///< evaluations of all runs
+  std::uint32_t runs = 1;     ///< repetitions
+  std::string objective;      ///< name of the first one
+  std::string unit;           ///< of its score; empty: none
+  bool maximises = true;
+  /// The evaluation with the best score, of those that neither failed nor were given up.
+  std::optional<std::uint64_t> best;
+  double best_score = 0.0;
+  std::optional<std::string> ending;  ///< why the last run ended; nothing: it did not
+};
+
+/// Reads that, and no more: the experiment's files may be of any kind. Another program may write the store. before:
+/// what was read of this store before; then only the evaluations since are looked at, if it has one run. Throws
+/// StoreError.
+[[nodiscard]] StoreSummary read_store_summary(const std::filesystem::path& path, const StoreSummary* before = nullptr);
+
 /// Every trial and evaluation of an experiment in an SQLite file, each committed when it is known: a killed process
 /// loses only the tasks that its workers had not finished. Other programs may read the file at the same time. `.schema`
 /// in the sqlite3 shell explains the tables.
@@ -23,6 +49,8 @@ class Store {
   enum class Opening : std::uint8_t {
     fresh,   ///< the file must not exist
     resume,  ///< the file must exist, with the same experiment and result key
+    look,    ///< the file must exist, and the experiment be that of read_experiment_of(); it is read only, and
+             ///< another program may write it
   };
   /// Throws StoreError: the file does (not) exist, is no store, or is of another experiment or result
   /// key (tools/proleg/common/build_id.hpp).
@@ -39,8 +67,13 @@ class Store {
   void save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker);
   /// Saves what the optimiser used, in the order of number. Saving one again changes nothing.
   void save(const Evaluation& evaluation);
-  /// Saves the number of evaluations of this search, for read_stored_experiment(), and the build of the program.
-  void save_search(std::uint64_t evaluations, const std::string& build_id);
+  /// Saves the number of evaluations of this search, for read_stored_experiment() and read_store_summary(), and the
+  /// build of the program. trials: of each candidate, if an option gave them.
+  void save_search(std::uint64_t evaluations, const std::string& build_id,
+                   std::optional<std::uint32_t> trials = std::nullopt);
+  /// Whether another program has asked this one to stop (request_stop()) since the store was opened. Looks at most five
+  /// times a second, so it may be called often.
+  [[nodiscard]] bool is_stop_requested();
   /// Marks a run as running: it has no ending.
   void start_run(std::uint32_t run);
   /// Saves why a run ended ("converged", "no credit left", ...).
@@ -53,8 +86,9 @@ class Store {
 
   /// Number of the last evaluation of a run that was saved, plus 1.
   [[nodiscard]] std::uint64_t evaluation_count(std::uint32_t run);
-  /// All saved evaluations of a run, by number.
-  [[nodiscard]] std::vector<Evaluation> evaluations(std::uint32_t run);
+  /// The saved evaluations of a run from a number on, by number, at most `most`.
+  [[nodiscard]] std::vector<Evaluation> evaluations(std::uint32_t run, std::uint64_t from = 0,
+                                                    std::size_t most = 1'000'000'000);
   /// Why a run ended; nothing if it did not.
   [[nodiscard]] std::optional<std::string> ending(std::uint32_t run);
 

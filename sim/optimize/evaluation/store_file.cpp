@@ -6,14 +6,18 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <ctime>
 #include <random>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
@@ -94,6 +98,7 @@ void write_experiment(Database& database, const Experiment& experiment, const St
 }
 
 std::filesystem::path unfinished_path(const std::filesystem::path& path) { return path.string() + ".new"; }
+std::filesystem::path stop_path(const std::filesystem::path& store) { return store.string() + ".stop"; }
 
 /// Names of what differs between the experiment of a store and this one.
 std::vector<std::string> differences(Database& database, const Experiment& experiment) {
@@ -119,16 +124,6 @@ std::vector<std::string> differences(Database& database, const Experiment& exper
   return names;
 }
 
-void require_format(const std::filesystem::path& path, Database& database) {
-  if (pragma(database, "PRAGMA application_id") != std::int64_t{store_application_id}) {
-    throw StoreError(path.string() + ": is not the store of an experiment");
-  }
-  if (const std::int64_t format = pragma(database, "PRAGMA user_version"); format != std::int64_t{store_format}) {
-    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program reads format " +
-                     std::to_string(store_format));
-  }
-}
-
 }  // namespace
 
 StoreLock::StoreLock(const std::filesystem::path& store, const std::string& failure)
@@ -136,8 +131,16 @@ StoreLock::StoreLock(const std::filesystem::path& store, const std::string& fail
   if (descriptor_ < 0) {
     throw StoreError(store.string() + ": " + failure + ": " + std::strerror(errno));
   }
-  // On a file system without such locks the store is not locked.
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  // On a file system without such locks the store is not locked. A program that looks whether the store is locked has
+  // the lock for a moment.
+  constexpr int attempts = 10;
+  constexpr std::chrono::milliseconds pause{20};
+  bool is_locked = flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  for (int i = 1; i < attempts && is_locked; ++i) {
+    std::this_thread::sleep_for(pause);
+    is_locked = flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  }
+  if (is_locked) {
     close(descriptor_);
     throw StoreError(store.string() + ": another program is writing to it; wait until it ends, or stop it");
   }
@@ -150,6 +153,37 @@ StoreLock::~StoreLock() {
 }
 
 StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+bool is_being_written(const std::filesystem::path& store) {
+  const int descriptor = open((store.string() + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    return false;
+  }
+  const bool is_locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(descriptor);  // releases the lock
+  return is_locked;
+}
+
+void request_stop(const std::filesystem::path& store) {
+  if (!is_being_written(store)) {
+    throw StoreError(store.string() + ": no program is writing to it, so there is nothing to stop");
+  }
+  const int descriptor = open(stop_path(store).c_str(), O_WRONLY | O_CLOEXEC | O_CREAT, 0666);
+  if (descriptor < 0) {
+    throw StoreError(stop_path(store).string() + ": cannot be created: " + std::strerror(errno));
+  }
+  close(descriptor);
+}
+
+bool is_stop_requested(const std::filesystem::path& store) {
+  std::error_code error;
+  return std::filesystem::exists(stop_path(store), error);
+}
+
+void forget_stop_request(const std::filesystem::path& store) {
+  std::error_code ignored;
+  std::filesystem::remove(stop_path(store), ignored);
+}
 
 /// Writes under another name first, so that a killed process never leaves half a store under this name.
 StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment, const StoreColumns& columns,
@@ -194,13 +228,26 @@ StoreLock claim_store(const std::filesystem::path& path) {
   return {path, "cannot be opened for writing"};
 }
 
+void require_store(const std::filesystem::path& path, Database& database) {
+  if (pragma(database, "PRAGMA application_id") != std::int64_t{store_application_id}) {
+    throw StoreError(path.string() + ": is not the store of an experiment");
+  }
+  if (const std::int64_t format = pragma(database, "PRAGMA user_version"); format != std::int64_t{store_format}) {
+    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program reads format " +
+                     std::to_string(store_format));
+  }
+}
+
 StoredExperiment read_description(const std::filesystem::path& path, Database& database) {
-  require_format(path, database);
+  require_store(path, database);
   StoredExperiment stored;
   stored.path = value_of(database, "path");
   stored.scenario = value_of(database, "scenario");
   stored.seed = parse_whole<std::uint64_t>(value_of(database, "seed")).value_or(0);
   stored.evaluations = parse_whole<std::uint64_t>(value_of(database, "evaluations")).value_or(0);
+  stored.trials = parse_whole<std::uint32_t>(value_of(database, "trials"));
+  Statement engine(database, "SELECT text FROM part WHERE name = 'engine'");
+  stored.engine = engine.step() ? engine.text(0) : std::string();
   Statement source(database, "SELECT path, text FROM source ORDER BY position");
   while (source.step()) {
     stored.sources.push_back({source.text(0), source.text(1)});
@@ -208,9 +255,63 @@ StoredExperiment read_description(const std::filesystem::path& path, Database& d
   return stored;
 }
 
+StoreSummary read_summary(const std::filesystem::path& path, Database& database, const StoreSummary* before) {
+  require_store(path, database);
+  StoreSummary summary;
+  summary.method = value_of(database, "method");
+  summary.scenario = value_of(database, "scenario");
+  summary.started = value_of(database, "started");
+  const std::string planned = value_of(database, "planned");  // stores of earlier programs do not have it
+  summary.planned =
+      parse_whole<std::uint64_t>(planned.empty() ? value_of(database, "evaluations") : planned).value_or(0);
+  Statement objective(database, "SELECT name, column_name, goal, terms FROM objective ORDER BY position LIMIT 1");
+  if (!objective.step()) {
+    throw StoreError(path.string() + ": has no objective");
+  }
+  summary.objective = objective.text(0);
+  const std::string column = objective.text(1);
+  summary.maximises = objective.text(2) == "maximise";
+  Statement unit(database, "SELECT unit FROM measure WHERE name = ?1");
+  constexpr std::string_view once = "1 * ";  // terms_text() of a single measure
+  const std::string terms = objective.text(3);
+  const std::string_view measure = terms.starts_with(once) ? std::string_view(terms).substr(once.size()) : "";
+  unit.bind_all(measure);
+  summary.unit = unit.step() ? unit.text(0) : std::string();
+  Statement last_run(database, "SELECT coalesce(max(run), 0) + 1 FROM evaluation");
+  summary.runs = last_run.step() ? static_cast<std::uint32_t>(last_run.integer(0)) : 1;
+  Statement count(database, "SELECT coalesce(max(number) + 1, 0) FROM evaluation WHERE run = ?1");
+  for (std::uint32_t run = 0; run < summary.runs; ++run) {
+    count.bind_all(run);
+    summary.made += count.step() ? static_cast<std::uint64_t>(count.integer(0)) : 0;
+  }
+  const bool is_known = before != nullptr && before->runs == 1 && summary.runs == 1 && before->made <= summary.made;
+  if (is_known) {
+    summary.best = before->best;
+    summary.best_score = before->best_score;
+  }
+  const std::string score = sql_name(column);
+  Statement best(database, "SELECT number, " + score +
+                               " FROM evaluation WHERE number >= ?1 AND given_up = 0 AND failure = '' ORDER BY " +
+                               score + (summary.maximises ? " DESC" : " ASC") + ", run, number LIMIT 1");
+  best.bind_all(is_known ? before->made : std::uint64_t{0});
+  if (best.step() && !best.is_null(1)) {
+    const double found = best.real(1);
+    if (!summary.best || (summary.maximises ? found > summary.best_score : found < summary.best_score)) {
+      summary.best = static_cast<std::uint64_t>(best.integer(0));
+      summary.best_score = found;
+    }
+  }
+  Statement ending(database, "SELECT ending FROM run WHERE run = ?1");
+  ending.bind_all(summary.runs - 1);
+  if (ending.step()) {
+    summary.ending = ending.text(0);
+  }
+  return summary;
+}
+
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
                              const std::string& result_key) {
-  require_format(path, database);
+  require_store(path, database);
   const std::string fingerprint = value_of(database, "fingerprint");
   if (fingerprint != experiment.fingerprint()) {
     const std::vector<std::string> names = differences(database, experiment);

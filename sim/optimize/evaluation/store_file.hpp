@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ class Database;
 namespace proleg::optimize {
 
 struct StoreColumns;
+struct StoreSummary;
 
 /// A store cannot be used. what() is one line: file, what was found, what was expected.
 class StoreError : public std::runtime_error {
@@ -30,6 +32,8 @@ struct StoredExperiment {
   std::string scenario;  ///< path of its top-level file
   std::uint64_t seed = 0;
   std::uint64_t evaluations = 0;         ///< of the latest search; 0: until the method ends
+  std::string engine;                    ///< its name, which may be another one than that of the files
+  std::optional<std::uint32_t> trials;   ///< of each candidate, if not the files said so
   std::vector<sim::SourceFile> sources;  ///< every file that was read
 };
 
@@ -48,6 +52,17 @@ class StoreLock {
   int descriptor_;
 };
 
+/// Whether a program writes to the store now. False for a store on a file system without such locks.
+[[nodiscard]] bool is_being_written(const std::filesystem::path& store);
+
+/// Asks the program that writes to a store to stop, as Ctrl-C does, on whatever computer it runs: by a file beside the
+/// store. Throws StoreError if no program writes to it, or if the file cannot be made.
+void request_stop(const std::filesystem::path& store);
+/// Whether a stop of the program that writes to the store was requested and has not been carried out.
+[[nodiscard]] bool is_stop_requested(const std::filesystem::path& store);
+/// What request_stop() asked for is done, or was for a program that has ended.
+void forget_stop_request(const std::filesystem::path& store);
+
 /// Makes a store with its tables and the description of the experiment. The path must not exist.
 [[nodiscard]] StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment,
                                      const StoreColumns& columns, const std::string& result_key);
@@ -60,6 +75,13 @@ void require_store_file(const std::filesystem::path& path);
 
 /// Locks an existing store for writing.
 [[nodiscard]] StoreLock claim_store(const std::filesystem::path& path);
+
+/// Throws StoreError unless it is a store of this format.
+void require_store(const std::filesystem::path& path, Database& database);
+
+/// As read_store_summary().
+[[nodiscard]] StoreSummary read_summary(const std::filesystem::path& path, Database& database,
+                                        const StoreSummary* before);
 
 /// Throws StoreError unless it is a store of this format, experiment and result key.
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,

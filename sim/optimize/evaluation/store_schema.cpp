@@ -77,14 +77,6 @@ CREATE TABLE run(
 ) STRICT;
 )sql";
 
-std::string sql_name(std::string_view name) {
-  std::string text = "\"";
-  for (const char character : name) {
-    text += character == '"' ? "\"\"" : std::string(1, character);
-  }
-  return text + "\"";
-}
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) {
@@ -154,6 +146,14 @@ class Row {
 };
 
 }  // namespace
+
+std::string sql_name(std::string_view name) {
+  std::string text = "\"";
+  for (const char character : name) {
+    text += character == '"' ? "\"\"" : std::string(1, character);
+  }
+  return text + "\"";
+}
 
 StoreColumns::StoreColumns(const Experiment& experiment) {
   std::set<std::string> taken(before_scores.begin(), before_scores.end());

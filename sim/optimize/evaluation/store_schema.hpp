@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shared/computer/sqlite/sqlite.hpp"
@@ -31,6 +32,9 @@ struct StoreColumns {
 
 /// SQL that makes all tables.
 [[nodiscard]] std::string store_schema(const Experiment& experiment, const StoreColumns& columns);
+
+/// A name as SQL has it: between double quotes.
+[[nodiscard]] std::string sql_name(std::string_view name);
 
 /// SQL that inserts or replaces a row: "table(a, b) VALUES(?1, ?2)".
 [[nodiscard]] std::string replace_row(const std::string& table, const std::vector<std::string>& columns);

@@ -240,6 +240,24 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
           {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
 }
 
+void set_trials(Experiment& experiment, std::uint32_t count) {
+  Trials& trials = experiment.trials;
+  trials.count = count;
+  if (count > 1 && !depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
+    trials.spread = usual_spread();
+  }
+}
+
+std::uint64_t planned_evaluations(const Experiment& experiment) {
+  const auto* const settings = std::get_if<PagmoSettings>(&experiment.method);
+  if (settings == nullptr) {
+    return experiment.evaluations;
+  }
+  const std::uint64_t all =
+      (std::uint64_t{settings->generations} + 1) * settings->population + (experiment.has_baseline ? 1 : 0);
+  return experiment.evaluations == 0 ? all : std::min(all, experiment.evaluations);
+}
+
 std::string Experiment::fingerprint() const {
   CanonicalText text;
   for (const ExperimentPart& part : parts_of(*this)) {

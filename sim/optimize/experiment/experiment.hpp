@@ -3,6 +3,7 @@
 // An optimisation experiment, as its *.optimise.xml file describes it: its objectives, the settings of its method
 // section, and all else; and its parts as text, of which its fingerprint is made.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -125,6 +126,9 @@ struct ConfirmationSettings {
   std::uint32_t runs = 10;       ///< runs of each candidate, 0 to 1000; 0: the best score of the search wins
 };
 
+/// Objectives of an experiment.
+inline constexpr std::size_t max_objectives = 8;
+
 /// A search for the parameters of a gait, as a *.optimise.xml file describes it.
 struct Experiment {
   std::string path;
@@ -154,6 +158,18 @@ struct Experiment {
 /// that it names. simulation: a scenario to use instead (files of the thesis name none). Throws InputError.
 [[nodiscard]] Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
                                          const std::optional<std::filesystem::path>& simulation = std::nullopt);
+
+/// The same of a scenario that was read before; <simulation> has no effect then.
+[[nodiscard]] Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
+                                         sim::Scenario scenario);
+
+/// Gives each candidate so many worlds, 1 to max_trials. If nothing lets them differ, they differ as usual_spread()
+/// says.
+void set_trials(Experiment& experiment, std::uint32_t count);
+
+/// Number of evaluations that a search makes if it does not end earlier: its budget, or that of its generations if it
+/// is lower. 0: unknown.
+[[nodiscard]] std::uint64_t planned_evaluations(const Experiment& experiment);
 
 /// Short name of a method: great-deluge, genetic, or pagmo's name.
 [[nodiscard]] std::string method_name(const MethodSettings& method);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/method_declaration.hpp"
 #include "sim/optimize/experiment/section_readers.hpp"
 #include "sim/scenario/sources.hpp"
 #include "sim/scenario/values.hpp"
@@ -22,7 +24,6 @@ using sim::XmlElement;
 
 using sim::XmlElement;
 
-constexpr std::size_t max_objectives = 8;
 constexpr sim::Range weights{-1e9, 1e9, ""};
 constexpr sim::Range scores{-1e12, 1e12, ""};
 constexpr double worst_cost = 1e6;
@@ -264,8 +265,11 @@ std::string Experiment::title() const {
   return name.substr(0, name.find('.'));
 }
 
-Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
-                           const std::optional<std::filesystem::path>& simulation) {
+namespace {
+
+/// read_named: gives the scenario, for the section.
+Experiment read(const std::filesystem::path& path, sim::FileSource& files,
+                const std::function<sim::Scenario(const XmlElement& section)>& read_named) {
   Experiment experiment;
   experiment.path = path.string();
   experiment.has_baseline = true;
@@ -275,7 +279,7 @@ Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& f
   constexpr std::array<std::string_view, 5> tags{"simulation", "properties", "genome", "fitness", "evaluation"};
   section.allow(std::span(pagmo_attributes).first(section.is("pagmo") ? 1 : 0), tags);
 
-  experiment.scenario = read_named_scenario(section, path, files, simulation);
+  experiment.scenario = read_named(section);
   experiment.sources.insert(experiment.sources.end(), experiment.scenario.sources.begin(),
                             experiment.scenario.sources.end());
   const XmlElement properties = section.required_child("properties");
@@ -295,6 +299,18 @@ Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& f
     require_trials_to_differ(*evaluation, experiment);
   }
   return experiment;
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
+                           const std::optional<std::filesystem::path>& simulation) {
+  return read(path, files,
+              [&](const XmlElement& section) { return read_named_scenario(section, path, files, simulation); });
+}
+
+Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files, sim::Scenario scenario) {
+  return read(path, files, [&](const XmlElement& /*section*/) { return std::move(scenario); });
 }
 
 }  // namespace proleg::optimize

@@ -2,9 +2,7 @@
 
 // Read the sections of an experiment file: the method, and the search space.
 
-#include <array>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "sim/optimize/experiment/experiment.hpp"
@@ -13,10 +11,6 @@
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::optimize {
-
-/// The tags of the method sections: an experiment file has one as its outermost tag.
-inline constexpr std::array<std::string_view, 6> method_tags{"geneticAlgorithm",      "greatDeluge", "cmaEs",
-                                                             "differentialEvolution", "nsga2",       "pagmo"};
 
 /// Reads the method that a section's tag names, with its settings from `properties`. The registered parameters there
 /// are read elsewhere.

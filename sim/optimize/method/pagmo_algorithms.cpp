@@ -30,7 +30,6 @@ namespace proleg::optimize {
 namespace {
 
 using pagmo::algorithm;
-using enum PagmoAlgorithm::Objectives;
 
 /// pagmo's criteria of convergence are absolute numbers, which fit no scale of scores and steps: they are off.
 constexpr double never = 0.0;
@@ -142,31 +141,35 @@ algorithm make_xnes(const PagmoSetup& setup) {
 }
 
 constexpr std::array<PagmoAlgorithm, 19> table = {{
-    // Columns: name, objectives, min_population, population_multiple, evolves_by_generation, stagnates.
-    {"bee_colony", one, 2, 1, false, false, make_bee_colony},
-    {"cmaes", one, 5, 1, true, true, make_cmaes},
-    {"compass_search", one, 1, 1, false, false, make_compass_search},
-    {"de", one, 5, 1, true, true, make_de},
-    {"de1220", one, 7, 1, true, true, make_de1220},
-    {"gaco", one, 2, 1, true, true, make_gaco},
-    {"gwo", one, 3, 1, false, true, make_gwo},
-    {"ihs", any, 1, 1, false, false, make_ihs},
-    {"maco", several, 2, 1, true, false, make_maco},
-    {"moead", several, 3, 1, true, false, make_moead},
-    {"nsga2", several, 8, 4, true, false, make_nsga2},
-    {"nspso", several, 2, 1, true, false, make_nspso},
-    {"pso", one, 2, 1, false, true, make_pso},
-    {"pso_gen", one, 2, 1, false, true, make_pso_gen},
-    {"sade", one, 7, 1, true, true, make_sade},
-    {"sea", one, 1, 1, true, false, make_sea},
-    {"sga", one, 2, 1, true, false, make_sga},
-    {"simulated_annealing", one, 1, 1, false, false, make_simulated_annealing},
-    {"xnes", one, 4, 1, true, true, make_xnes},
+    // Columns: name, evolves_by_generation, stagnates.
+    {"bee_colony", false, false, make_bee_colony},
+    {"cmaes", true, true, make_cmaes},
+    {"compass_search", false, false, make_compass_search},
+    {"de", true, true, make_de},
+    {"de1220", true, true, make_de1220},
+    {"gaco", true, true, make_gaco},
+    {"gwo", false, true, make_gwo},
+    {"ihs", false, false, make_ihs},
+    {"maco", true, false, make_maco},
+    {"moead", true, false, make_moead},
+    {"nsga2", true, false, make_nsga2},
+    {"nspso", true, false, make_nspso},
+    {"pso", false, true, make_pso},
+    {"pso_gen", false, true, make_pso_gen},
+    {"sade", true, true, make_sade},
+    {"sea", true, false, make_sea},
+    {"sga", true, false, make_sga},
+    {"simulated_annealing", false, false, make_simulated_annealing},
+    {"xnes", true, true, make_xnes},
 }};
 
 }  // namespace
 
 std::span<const PagmoAlgorithm> pagmo_algorithms() { return table; }
+
+const PagmoDeclaration& PagmoAlgorithm::declaration() const {
+  return *std::ranges::find(pagmo_declarations(), name, &PagmoDeclaration::name);
+}
 
 const PagmoAlgorithm* find_pagmo_algorithm(std::string_view name) {
   const auto* const found = std::ranges::find(table, name, &PagmoAlgorithm::name);

@@ -9,6 +9,7 @@
 
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/method_declaration.hpp"
 
 namespace pagmo {
 class algorithm;
@@ -27,18 +28,15 @@ struct PagmoSetup {
 };
 
 struct PagmoAlgorithm {
-  enum class Objectives : std::uint8_t { one, several, any };
-
-  std::string_view name;              ///< pagmo's name
-  Objectives objectives;              ///< numbers of objectives that the algorithm can handle
-  std::uint32_t min_population;       ///< below it pagmo throws or crashes
-  std::uint32_t population_multiple;  ///< the population must be a multiple of this
+  std::string_view name;  ///< as in its declaration
   /// Whether one evolve() for each generation has the result of one for all, because the algorithm keeps its state or
   /// has none. Other algorithms (with a cooling schedule, for example) are made for all generations and evolve once.
   bool evolves_by_generation;
   /// Whether the algorithm can find nothing new when its candidates no longer differ.
   bool stagnates;
   pagmo::algorithm (*make)(const PagmoSetup& setup);
+
+  [[nodiscard]] const PagmoDeclaration& declaration() const;
 };
 
 /// All algorithms, sorted by name.

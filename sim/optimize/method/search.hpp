@@ -14,11 +14,4 @@ namespace proleg::optimize {
 /// objectives for a method with one).
 [[nodiscard]] std::string search(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
-/// Number of evaluations that a search makes if it does not end earlier: its budget, or that of its generations if it
-/// is lower. 0: unknown.
-[[nodiscard]] std::uint64_t planned_evaluations(const Experiment& experiment);
-
-/// Throws the InputError that search() would throw, without an evaluation.
-void check_method(const Experiment& experiment);
-
 }  // namespace proleg::optimize

@@ -185,6 +185,10 @@ class Viewer:
         if opcode == PING:
             self.send_bytes(frame(PONG, payload))
             return self.next()
+        if opcode == BINARY and payload[:4] == bytes(4):  # an answer in bytes
+            number = struct.unpack("<Q", payload[8:16])[0]
+            self.results[number] = {"ok": True, "value": payload[16:]}
+            return {"type": "bytes", "id": number}
         if opcode == BINARY:
             message = {"type": "rows", **decode_rows(payload)}
             self.rows.append(message)

@@ -1,8 +1,6 @@
 #include "tools/proleg/common/child_program.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,75 +9,14 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
-#include <string_view>
 #include <thread>
+
+#include "tools/proleg/common/program_start.hpp"
 
 namespace proleg::tools {
 namespace {
 
 constexpr std::chrono::seconds time_to_end{3};
-constexpr int lower_priority = 10;
-
-/// This program's environment, with English messages: other programs read them.
-std::vector<std::string> english_environment() {
-  std::vector<std::string> words;
-  for (char** word = environ; *word != nullptr; ++word) {
-    const std::string_view text(*word);
-    if (!text.starts_with("LC_") && !text.starts_with("LANG=") && !text.starts_with("LANGUAGE=") &&
-        !text.starts_with("NINJA_STATUS=")) {
-      words.emplace_back(text);
-    }
-  }
-  words.emplace_back("LC_ALL=C");
-  words.emplace_back("NINJA_STATUS=[%f/%t] ");
-  return words;
-}
-
-std::vector<char*> pointers_to(std::vector<std::string>& words) {
-  std::vector<char*> pointers;
-  pointers.reserve(words.size() + 1);
-  for (std::string& word : words) {
-    pointers.push_back(word.data());
-  }
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
-/// How the child differs from its parent.
-class Setup {
- public:
-  Setup(const std::string& folder, int output, int errors) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
-    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
-    posix_spawnattr_init(&attributes_);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
-    sigset_t all;
-    sigfillset(&all);
-    posix_spawnattr_setsigdefault(&attributes_, &all);
-    // A group of its own: all that it starts can be ended, and Ctrl-C at the terminal goes to this program alone.
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  }
-  ~Setup() {
-    posix_spawn_file_actions_destroy(&actions_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  Setup(const Setup&) = delete;
-  Setup& operator=(const Setup&) = delete;
-
-  [[nodiscard]] const posix_spawn_file_actions_t* actions() const { return &actions_; }
-  [[nodiscard]] const posix_spawnattr_t* attributes() const { return &attributes_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
-};
 
 }  // namespace
 
@@ -106,22 +43,11 @@ void ChildProgram::Pipe::close_other_end() {
 }
 
 ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors) {
-  std::vector<std::string> words = command;
-  const std::vector<char*> arguments = pointers_to(words);
-  std::vector<std::string> environment = english_environment();
-  const std::vector<char*> variables = pointers_to(environment);
   if (errors == Errors::apart) {
     errors_.emplace();
   }
-  const Setup setup(folder, output_.other_end, errors_ ? errors_->other_end : output_.other_end);
-  const int error = posix_spawnp(&process_, arguments.front(), setup.actions(), setup.attributes(), arguments.data(),
-                                 variables.data());
-  if (error != 0) {
-    throw std::runtime_error(error == ENOENT
-                                 ? "found no program " + command.front() + ", expected it in a folder of PATH"
-                                 : "cannot start " + command.front() + ": " + std::strerror(error));
-  }
-  setpriority(PRIO_PROCESS, static_cast<id_t>(process_), lower_priority);
+  process_ = start_program(command, {folder, output_.other_end, errors_ ? errors_->other_end : output_.other_end,
+                                     ProgramStart::Life::as_this_one});
   output_.close_other_end();
   if (errors_) {
     errors_->close_other_end();
@@ -167,7 +93,7 @@ std::optional<int> ChildProgram::status() {
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }
-  status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  status_ = exit_status_of(status);
   return status_;
 }
 

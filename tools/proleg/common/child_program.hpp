@@ -10,8 +10,8 @@
 
 namespace proleg::tools {
 
-/// Another program that runs beside this one: its output is read as it comes, and it can be ended. It gets no input, no
-/// open files of this program, and English messages; it gives way to other programs. It runs without a shell.
+/// Another program that runs beside this one (program_start.hpp) and ends with it: its output is read as it comes, and
+/// it can be ended.
 class ChildProgram {
  public:
   enum class Errors : std::uint8_t {

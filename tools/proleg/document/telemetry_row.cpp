@@ -29,6 +29,13 @@ constexpr std::size_t pose_values = 7;
 constexpr double sensor_step = 1e-3;
 constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
 
+}  // namespace
+
+double value_of_step(Unit unit) {
+  const UnitScale scale = scale_of(unit);
+  return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
+}
+
 void append_pose(const sim::Pose& pose, std::vector<std::int32_t>& row) {
   for (const double metres : {pose.position.x(), pose.position.y(), pose.position.z()}) {
     row.push_back(rounded(metres * 1e6));
@@ -37,13 +44,6 @@ void append_pose(const sim::Pose& pose, std::vector<std::int32_t>& row) {
   for (const double part : {turn.w(), turn.x(), turn.y(), turn.z()}) {
     row.push_back(rounded(part * unit_quaternion));
   }
-}
-
-}  // namespace
-
-double value_of_step(Unit unit) {
-  const UnitScale scale = scale_of(unit);
-  return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
 }
 
 std::int32_t raw_angle(double angle) { return rounded(angle * raw_per_radian); }

@@ -9,6 +9,7 @@
 #include "shared/fixed/unit.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/record/recording.hpp"
+#include "sim/robot/pose.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {
@@ -18,6 +19,9 @@ namespace proleg::tools {
 
 /// An angle in rad as a raw value of the unit degree; no_value if it is not finite.
 [[nodiscard]] std::int32_t raw_angle(double angle);
+
+/// Appends a pose as the signal `head` has it: seven values.
+void append_pose(const sim::Pose& pose, std::vector<std::int32_t>& row);
 
 /// The signals of a robot, in the order of their values in a row.
 [[nodiscard]] std::vector<host::Signal> signals_of(const sim::Scenario& scenario);

@@ -12,6 +12,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/experiment/method_declaration.hpp"
 #include "sim/optimize/method/search.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "tools/proleg/common/build_id.hpp"
@@ -58,11 +59,7 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
       throw InputError("--trials", 0, in_quotes(*options.trials),
                        "a whole number from 1 to " + std::to_string(optimize::max_trials));
     }
-    optimize::Trials& trials = experiment.trials;
-    trials.count = *count;
-    if (*count > 1 && !optimize::depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
-      trials.spread = optimize::usual_spread();
-    }
+    optimize::set_trials(experiment, *count);
   }
   if (options.evaluations) {
     const std::optional<std::uint64_t> count = parse_whole<std::uint64_t>(*options.evaluations);
@@ -113,7 +110,7 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   };
   const auto stop = [&] {
     print_messages();  // also while no evaluation ends
-    return interrupted();
+    return interrupted() || store.is_stop_requested();
   };
   optimize::Evaluator evaluator(experiment, run, workers, &store, observe, stop);
   store.start_run(run);
@@ -161,7 +158,7 @@ std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& exp
     std::vector<optimize::Confirmation> confirmations =
         optimize::confirm(experiment, finalists, workers, &store, [&](std::size_t done, std::size_t /*all*/) {
           progress.show(done);
-          return interrupted();
+          return interrupted() || store.is_stop_requested();
         });
     outcome.confirmation_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return confirmations;

@@ -3,12 +3,15 @@
 #include "tools/proleg/search/optimise.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <thread>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/method/search.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -21,6 +24,8 @@
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/search/search_estimate.hpp"
 #include "tools/proleg/search/search_result.hpp"
 
 namespace proleg::tools {
@@ -28,8 +33,9 @@ namespace {
 
 using optimize::Experiment;
 
-void print_json(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
-                const std::filesystem::path& folder, std::uint32_t workers) {
+/// What --json prints.
+Json result_object(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+                   const std::filesystem::path& folder, std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
   Json object{
       {"experiment", experiment.path},
@@ -55,7 +61,7 @@ void print_json(const Experiment& experiment, const SearchOutcome& outcome, cons
   object.add("out", folder.string());
   object.add("fingerprint", experiment.fingerprint());
   object.add("build_id", build_id);
-  std::cout << object.text() << '\n';
+  return object;
 }
 
 void print_text(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
@@ -92,14 +98,15 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
 }
 
 /// A resumed search keeps all evaluations that its store has.
-void keep_stored_evaluations(optimize::Store& store, Experiment& experiment) {
+void keep_stored_evaluations(const OptimiseOptions& options, optimize::Store& store, Experiment& experiment) {
   const std::uint64_t stored = store.evaluation_count(0);
   if (experiment.evaluations > 0 && experiment.evaluations < stored) {
     print_warning("proleg optimise", "the store has " + std::to_string(stored) + " evaluations, more than " +
                                          std::to_string(experiment.evaluations) + "; all of them are kept");
     experiment.evaluations = stored;
   }
-  store.save_search(experiment.evaluations, build_id);
+  store.save_search(experiment.evaluations, build_id,
+                    options.trials ? std::optional(experiment.trials.count) : std::nullopt);
 }
 
 Experiment read_stored(const OptimiseOptions& options) {
@@ -113,15 +120,7 @@ Experiment read_stored(const OptimiseOptions& options) {
     throw BadInput("found --simulation without FILE, expected FILE: the store has a scenario of its own");
   }
   try {
-    const optimize::StoredExperiment stored = optimize::read_stored_experiment(store_path(*options.resume));
-    sim::SourceTexts files;
-    for (const sim::SourceFile& source : stored.sources) {
-      files.add(source.path, source.text);
-    }
-    Experiment experiment = optimize::read_experiment(stored.path, files, stored.scenario);
-    experiment.seed = stored.seed;
-    experiment.evaluations = stored.evaluations;
-    return experiment;
+    return optimize::read_experiment_of(store_path(*options.resume));
   } catch (const optimize::StoreError& error) {
     throw BadInput(error.what());
   }
@@ -161,9 +160,12 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
   } else {
     std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, workers, store, outcome);
     const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
-    const std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
+    std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
+    const std::string object = result_object(experiment, outcome, result, folder, workers.count()).text() + '\n';
+    files.push_back(folder / "result.json");
+    write_file(files.back(), object);
     if (options.json) {
-      print_json(experiment, outcome, result, folder, workers.count());
+      std::cout << object;
     } else {
       print_text(experiment, outcome, result, files, workers.count());
     }
@@ -176,7 +178,60 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
   return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
 }
 
+/// Waits until the search in the folder has stopped.
+int stop(const OptimiseOptions& options) {
+  const std::filesystem::path store = store_path(*options.stop);
+  try {
+    optimize::request_stop(store);
+  } catch (const optimize::StoreError& error) {
+    throw BadInput(error.what());
+  }
+  catch_interrupts();
+  constexpr std::chrono::milliseconds period{50};
+  constexpr std::chrono::minutes longest{2};
+  const auto end = std::chrono::steady_clock::now() + longest;
+  while (optimize::is_being_written(store) && !interrupted()) {
+    if (std::chrono::steady_clock::now() >= end) {
+      std::cerr << "proleg optimise: " << store.string() << ": the program that writes to it has not stopped in "
+                << longest.count() << " minutes; it may be suspended, or be another program\n";
+      return exit_failed;
+    }
+    std::this_thread::sleep_for(period);
+  }
+  return interrupted() ? exit_failed : exit_success;
+}
+
+int estimate(const OptimiseOptions& options, const WorkersMaker& make_workers) {
+  const Experiment experiment = read_experiment(options);
+  catch_interrupts();
+  const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
+  const SearchEstimate estimate = estimate_search(experiment, *workers);
+  if (interrupted()) {
+    return exit_failed;
+  }
+  if (options.json) {
+    const Json object{{"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+                      {"workers", workers->count()},
+                      {"evaluation_s", estimate.evaluation_s},
+                      {"confirmation_s", estimate.confirmation_s},
+                      {"planned", estimate.planned},
+                      {"seconds", estimate.seconds()}};
+    std::cout << object.text() << '\n';
+  } else if (estimate.seconds()) {
+    std::printf("%-24s %s\n", "time", duration_text(*estimate.seconds()).c_str());
+  } else {
+    std::printf("%-24s %.3g s each; the method decides how many\n", "evaluations", estimate.evaluation_s);
+  }
+  return exit_success;
+}
+
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
+  if (options.stop) {
+    return stop(options);
+  }
+  if (options.estimate) {
+    return estimate(options, make_workers);
+  }
   Experiment experiment = read_experiment(options);
   const std::filesystem::path folder = chosen_folder(options.out, options.resume, experiment.title(), "search");
   print_warnings("proleg optimise", experiment.scenario);
@@ -198,7 +253,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
   const std::string continuation = command_to_continue(options, folder);
   try {
-    keep_stored_evaluations(*store, experiment);
+    keep_stored_evaluations(options, *store, experiment);
     return search_and_write(options, experiment, folder, *workers, *store, continuation);
   } catch (const optimize::StoreError& error) {
     throw std::runtime_error(std::string(error.what()) + "; continue with: " + continuation);
@@ -246,6 +301,12 @@ void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
   command_line.add_option("--out", options.out,
                           "folder for store, tables and figures; default: the name of FILE up to its first dot");
   command_line.add_option("--resume", options.resume, "continue the search whose store is in this folder");
+  command_line
+      .add_option("--stop", options.stop,
+                  "stop the search whose store is in this folder, as Ctrl-C does, wherever it runs; then end")
+      .value_name("FOLDER");
+  command_line.add_flag("--estimate", options.estimate,
+                        "simulate for some seconds, print how long the search will take, and write nothing");
   command_line.add_flag("--verbose", options.verbose, "print remarks on the files and the size of the search space");
   command_line.add_flag("--json", options.json, "print one JSON object");
 }

@@ -19,6 +19,8 @@ struct OptimiseOptions : ExperimentOptions {
   std::optional<std::string> workers;
   std::optional<std::string> out;
   std::optional<std::string> resume;
+  std::optional<std::string> stop;
+  bool estimate = false;
   bool verbose = false;
   bool json = false;
 };

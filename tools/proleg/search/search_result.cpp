@@ -265,7 +265,7 @@ SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcom
 void refuse_overwriting(const Experiment& experiment, const std::filesystem::path& folder) {
   const auto is_written = [](const std::filesystem::path& inside) {
     const std::string name = inside.empty() ? std::string() : inside.begin()->string();
-    return name == "store.sqlite" || name == "store.sqlite.lock" || std::ranges::count(search_result_files, name) > 0;
+    return name.starts_with("store.sqlite") || std::ranges::count(search_result_files, name) > 0;
   };
   for (const sim::SourceFile& source : experiment.sources) {
     const std::filesystem::path path = std::filesystem::weakly_canonical(source.path);

@@ -1,12 +1,15 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/behaviour_change.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tools/proleg/ui/draft_arguments.hpp"
 #include "tools/proleg/ui/draft_operations.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -69,13 +72,36 @@ DraftOperation set(const json& words, const sim::Draft& draft) {
                        BehaviourChange& changed) { changed.set_parameter(module, name, joints, value); });
 }
 
+/// Words as for `set`: "amplitude:J5=35".
+DraftOperation set_values(const json& words, const sim::Draft& draft) {
+  constexpr std::size_t most_label = 60;
+  const auto all = argument<std::vector<std::string>>(words, "words", "words such as \"amplitude:J5=35\"");
+  if (!all || all->empty()) {
+    throw InputError("words", 0, "none", "words such as \"amplitude:J5=35\"");
+  }
+  std::vector<BehaviourChange::Value> values;
+  for (const std::string& word : *all) {
+    const sim::SettingTarget target = sim::find_target(draft.scenario(), word);
+    if (target.internal || target.in_flight) {
+      throw InputError(word, 0, target.internal ? "an internal value" : "a tick", "a parameter and its start value");
+    }
+    const Declaration& declaration = draft.scenario().kernel.slots[target.slot].algorithm->declaration();
+    values.push_back({target.slot, std::string(declaration.parameters[target.number].name), target.joints,
+                      word.substr(word.find('=') + 1)});
+  }
+  const std::string label = text(words, "label");
+  return behaviour(label.empty() ? "values of parameters" : one_line(shortened(label, most_label)), draft, false,
+                   [values = std::move(values)](BehaviourChange& changed) { changed.set_values(values); });
+}
+
 }  // namespace
 
 DraftOperation behaviour_operation(const std::string& name, const json& arguments, const sim::Draft& draft) {
   using Reader = DraftOperation (*)(const json&, const sim::Draft&);
   static const std::map<std::string_view, Reader> readers{
       {"behaviour.add", add_module},      {"behaviour.duplicate", copy_module}, {"behaviour.remove", remove_module},
-      {"behaviour.algorithm", algorithm}, {"behaviour.joints", set_joints},     {"behaviour.set", set}};
+      {"behaviour.algorithm", algorithm}, {"behaviour.joints", set_joints},     {"behaviour.set", set},
+      {"behaviour.values", set_values}};
   return handler_of(readers, name)(arguments, draft);
 }
 

@@ -3,6 +3,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <ctime>
+
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -11,6 +13,12 @@ namespace proleg::tools {
 void lower_thread_priority() {
   constexpr int lower_priority = 10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), lower_priority);  // of this thread only (setpriority(2))
+}
+
+std::chrono::nanoseconds thread_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
 std::unique_ptr<sim::Simulation> make_fast_simulation(sim::Scenario& scenario) {

@@ -2,6 +2,7 @@
 
 // Simulations beside everything else: what a page shows before anybody asks for it.
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,9 @@ namespace proleg::tools {
 
 /// Gives the calling thread a low priority: the live robot and the server come first.
 void lower_thread_priority();
+
+/// Processor time that the calling thread has used: what is limited by it does not depend on other programs.
+[[nodiscard]] std::chrono::nanoseconds thread_time();
 
 /// A simulation without hashes with the fastest engine that has such a scenario: the reduced one, else ODE. Sets the
 /// engine of the scenario, which must outlive the simulation. Throws as Simulation.

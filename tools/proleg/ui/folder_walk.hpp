@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 namespace proleg::tools {
@@ -28,5 +29,14 @@ void for_each_path(const std::filesystem::path& folder, const Use& use, const En
     use(entry->path());
   }
 }
+
+/// Whether a path is below a folder. Both without symbolic links.
+[[nodiscard]] bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& path);
+
+/// What a name means that a viewer has sent: a path below the folder, which has no symbolic links in it. Nothing
+/// outside can be reached, also not by symbolic links. Throws InputError for `argument` if there is no such thing.
+/// expected: for the message.
+[[nodiscard]] std::filesystem::path find_inside(const std::filesystem::path& folder, const std::string& name,
+                                                const char* argument, const std::string& expected);
 
 }  // namespace proleg::tools

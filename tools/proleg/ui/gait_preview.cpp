@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -21,13 +20,6 @@ namespace {
 constexpr double sample_period_s = 0.01;
 constexpr std::size_t samples_of_point = 10;
 constexpr std::size_t moments_of_stride = 4;
-
-/// Processor time of this thread: other programs do not make a picture worse.
-std::chrono::nanoseconds thread_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
 
 std::vector<sim::Pose> copy_of(std::span<const sim::Pose> poses) { return {poses.begin(), poses.end()}; }
 

@@ -23,11 +23,13 @@ bool is_entered(const fs::path& folder) {
   return !name.starts_with('.') && name != "build";
 }
 
-bool is_scenario(const fs::path& path) {
+bool is_file_with(const char* extension, const fs::path& path) {
   std::error_code error;
-  return path.string().ends_with(scenario_extension) && !find_invalid_utf8(path.string()) &&
-         fs::is_regular_file(path, error) && !error;
+  return path.string().ends_with(extension) && !find_invalid_utf8(path.string()) && fs::is_regular_file(path, error) &&
+         !error;
 }
+
+bool is_scenario(const fs::path& path) { return is_file_with(scenario_extension, path); }
 
 /// The path without symbolic links; empty if it cannot be followed.
 fs::path real_path(const fs::path& path) {
@@ -54,6 +56,20 @@ bool is_below(const fs::path& file, const fs::path& folder) {
   return depth <= max_folder_depth;
 }
 
+/// The files in a folder and the folders in it, by name; each with the name of the folder.
+std::vector<std::string> files_in(const fs::path& folder, const char* extension) {
+  std::vector<std::string> files;
+  const fs::path real = real_path(folder);
+  const auto add = [&](const fs::path& path) {
+    if (files.size() < ProjectFiles::max_files && is_file_with(extension, path) && is_below(real_path(path), real)) {
+      files.push_back(path.lexically_normal().string());
+    }
+  };
+  for_each_path(folder, add, is_entered);
+  std::ranges::sort(files);
+  return files;
+}
+
 std::int64_t time_of(const fs::path& path) {
   std::error_code error;
   const fs::file_time_type time = fs::last_write_time(path, error);
@@ -61,9 +77,9 @@ std::int64_t time_of(const fs::path& path) {
 }
 
 /// "wave/uniform" for a scenario in a folder.
-std::string title_of(const fs::path& file, const fs::path& folder) {
+std::string title_of(const fs::path& file, const fs::path& folder, std::string_view extension = scenario_extension) {
   std::string title = file.lexically_relative(folder).string();
-  title.resize(title.size() - std::string_view(scenario_extension).size());
+  title.resize(title.size() - extension.size());
   return one_line(title);
 }
 
@@ -101,16 +117,29 @@ ProjectFiles::ProjectFiles(fs::path project, std::optional<fs::path> shipped, Re
     : project_(std::move(project)), shipped_(std::move(shipped)), recent_(std::move(recent)) {}
 
 std::vector<std::string> ProjectFiles::scenarios_in(const fs::path& folder) {
-  std::vector<std::string> scenarios;
-  const fs::path real = real_path(folder);
-  const auto add = [&](const fs::path& path) {
-    if (scenarios.size() < max_files && is_scenario(path) && is_below(real_path(path), real)) {
-      scenarios.push_back(path.lexically_normal().string());
+  return files_in(folder, scenario_extension);
+}
+
+std::vector<ProjectFile> ProjectFiles::experiments() const {
+  std::vector<ProjectFile> experiments;
+  const auto add = [&](const fs::path& folder, bool is_shipped) {
+    for (const std::string& file : files_in(folder, experiment_extension)) {
+      experiments.push_back({file, {}, title_of(file, folder, experiment_extension), {}, is_shipped, 0});
     }
   };
-  for_each_path(folder, add, is_entered);
-  std::ranges::sort(scenarios);
-  return scenarios;
+  add(project_, false);
+  if (shipped_) {
+    add(*shipped_, true);
+  }
+  return experiments;
+}
+
+bool ProjectFiles::has_experiment(const std::string& file) const {
+  if (file.find('\0') != std::string::npos || !is_file_with(experiment_extension, file)) {
+    return false;
+  }
+  const fs::path real = real_path(file);
+  return is_below(real, real_path(project_)) || (shipped_ && is_below(real, real_path(*shipped_)));
 }
 
 std::vector<ProjectFile> ProjectFiles::list() const {

@@ -14,6 +14,8 @@ namespace proleg::tools {
 
 /// The end of the names of scenarios.
 inline constexpr const char* scenario_extension = ".simulation.xml";
+/// And of experiments.
+inline constexpr const char* experiment_extension = ".optimise.xml";
 
 struct ProjectFile {
   std::string file;   ///< path, in normal form
@@ -36,6 +38,11 @@ class ProjectFiles {
   /// What is there now: first the project's, the newest first; then what was opened before; then what ships with
   /// Proleg. No file is listed twice.
   [[nodiscard]] std::vector<ProjectFile> list() const;
+
+  /// The experiments below the project, and below the shipped scenarios.
+  [[nodiscard]] std::vector<ProjectFile> experiments() const;
+  /// Whether a path names one that experiments() may have.
+  [[nodiscard]] bool has_experiment(const std::string& file) const;
 
   /// Whether a path names a scenario that list() may have: a regular file below the project, below a project that was
   /// opened before or below the shipped scenarios, or a scenario that was opened before. Symbolic links that lead out

@@ -66,18 +66,13 @@ RecordingFolder::Version RecordingFolder::version_of(const fs::path& path) {
   return version;
 }
 
-bool RecordingFolder::is_inside(const fs::path& path) const {
-  const auto [end, other] = std::mismatch(folder_.begin(), folder_.end(), path.begin(), path.end());
-  return end == folder_.end() && other != path.end();
-}
-
 json RecordingFolder::list() {
   std::map<std::string, Entry> found;
   const auto enters_all = [](const fs::path& /*folder*/) { return true; };
   const auto note = [&](const fs::path& path) {
     std::error_code ignored;
     if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, ignored)) ||
-        !is_inside(fs::canonical(path, ignored)) || ignored) {
+        !is_inside(folder_, fs::canonical(path, ignored)) || ignored) {
       return;
     }
     const std::string name = path.lexically_relative(folder_).string();
@@ -124,21 +119,10 @@ bool RecordingFolder::describe_some() {
 
 fs::path RecordingFolder::find(const std::string& name) const {
   const std::string expected = "the name of a recording in " + folder_.filename().string();
-  const fs::path path(name);
-  const bool has_dots = std::ranges::find(path, fs::path("..")) != path.end();
-  if (name.empty() || name.find('\0') != std::string::npos || path.is_absolute() || has_dots ||
-      path.extension() != ".proleg") {
+  if (fs::path(name).extension() != ".proleg") {
     throw InputError("file", 0, in_quotes(one_line(shortened(name))), expected);
   }
-  std::error_code error;
-  const fs::path real = fs::canonical(folder_ / path, error);
-  if (error) {
-    throw InputError("file", 0, in_quotes(one_line(shortened(name))) + ": " + error.message(), expected);
-  }
-  if (!is_inside(real)) {
-    throw InputError("file", 0, in_quotes(one_line(shortened(name))) + ", which leads out of the folder", expected);
-  }
-  return real;
+  return find_inside(folder_, name, "file", expected);
 }
 
 std::filesystem::path new_recording(const std::filesystem::path& folder, const std::string& name) {

@@ -40,7 +40,6 @@ class RecordingFolder {
   };
 
   [[nodiscard]] static Version version_of(const std::filesystem::path& path);
-  [[nodiscard]] bool is_inside(const std::filesystem::path& path) const;
 
   std::filesystem::path folder_;  ///< without symbolic links
   std::map<std::string, Entry> entries_;

@@ -27,6 +27,8 @@ void SessionRouter::operate(const host::OperationRequest& request) {
     gallery_.operate(request);
   } else if (request.name.starts_with(algorithm_operations)) {
     algorithms_.operate(request);
+  } else if (request.name.starts_with(search_operations)) {
+    searches_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {
     remote_.operate(request);
   } else {
@@ -184,7 +186,9 @@ bool SessionThread::take_operations() {
   while (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
     is_any = true;
     try {
-      output_.answer(operation->request, carry_out(*operation));
+      if (const nlohmann::json value = carry_out(*operation); !value.is_discarded()) {
+        output_.answer(operation->request, value);
+      }
     } catch (const std::exception& error) {
       output_.refuse(operation->request, one_line(error.what()));
     }

@@ -109,21 +109,23 @@ inline constexpr std::string_view draft_robot_operations = "robot.";
 inline constexpr std::string_view behaviour_operations = "behaviour.";
 inline constexpr std::string_view gallery_operations = "gallery.";
 inline constexpr std::string_view mesh_operations = "mesh.";
+inline constexpr std::string_view search_operations = "search.";
 
 /// The sessions behind one page: a robot, its remote control, recordings, a draft, meshes for it, the list of what can
-/// be opened, and algorithms. The name of an operation says which of them it is for; STOP and the holder of control go
-/// to the robot, then to the remote control.
+/// be opened, algorithms, and searches. The name of an operation says which of them it is for; STOP and the holder of
+/// control go to the robot, then to the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.
   SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& meshes,
-                host::RobotSession& gallery, host::RobotSession& algorithms, host::RobotSession& remote,
-                host::RobotSession& robot)
+                host::RobotSession& gallery, host::RobotSession& algorithms, host::RobotSession& searches,
+                host::RobotSession& remote, host::RobotSession& robot)
       : recordings_(recordings),
         draft_(draft),
         meshes_(meshes),
         gallery_(gallery),
         algorithms_(algorithms),
+        searches_(searches),
         remote_(remote),
         robot_(robot) {}
 
@@ -137,6 +139,7 @@ class SessionRouter final : public host::RobotSession {
   host::RobotSession& meshes_;
   host::RobotSession& gallery_;
   host::RobotSession& algorithms_;
+  host::RobotSession& searches_;
   host::RobotSession& remote_;
   host::RobotSession& robot_;
 };
@@ -222,8 +225,11 @@ class SessionThread {
   virtual void fail(const std::string& why) = 0;
   /// The session ends.
   virtual void close() {}
-  /// Returns the value of the answer, or throws the refusal.
+  /// Returns the value of the answer, or answered_later(), or throws the refusal.
   [[nodiscard]] virtual nlohmann::json carry_out(const host::OperationRequest& operation) = 0;
+
+  /// The session gives the answer, or the refusal, later by itself.
+  [[nodiscard]] static nlohmann::json answered_later() { return nlohmann::json(nlohmann::json::value_t::discarded); }
 
   /// All STOPs that wait. What was asked for before one of them is refused.
   [[nodiscard]] Stops take_stops();

@@ -44,6 +44,7 @@
 #include "tools/proleg/ui/recent_files.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
+#include "tools/proleg/ui/search_session.hpp"
 #include "tools/proleg/ui/shipped_scenarios.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
@@ -292,7 +293,7 @@ int serve(UiOptions& options) {
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
-        AlgorithmSession::free_operations(), RemoteSession::free_operations()}) {
+        AlgorithmSession::free_operations(), SearchSession::free_operations(), RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -307,11 +308,12 @@ int serve(UiOptions& options) {
   SessionRequests mesh_requests;
   SessionRequests gallery_requests;
   SessionRequests algorithm_requests;
+  SessionRequests search_requests;
   SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
-  SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests, remote,
-                       requests);
+  SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests,
+                       search_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RecentFiles recent(recent_list_path());
@@ -327,6 +329,7 @@ int serve(UiOptions& options) {
        [&recent](const std::string& file) { note_as_recent(recent, file); }, &sent_meshes, missing},
       draft_requests, present_draft, page);
   const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
+  const SearchSession searches({recordings.folder}, project_files, present_draft, search_requests, page);
   const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;

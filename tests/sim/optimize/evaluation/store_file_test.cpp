@@ -5,12 +5,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
+#include <optional>
+#include <random>
+#include <thread>
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/optimize/evaluation/store.hpp"
+#include "sim/scenario/overrides.hpp"
+#include "sim/scenario/sources.hpp"
 #include "small_experiment.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -92,6 +99,126 @@ TEST_F(StoreFile, OfAProgramWithOtherResultsIsNotResumed) {
   open(Store::Opening::fresh, experiment_)->save_search(7, "of a day");
   const std::string what = refused(Store::Opening::resume, experiment_, "key 2");
   EXPECT_NE(what.find("other sources, compiler or libraries (build of a day)"), std::string::npos) << what;
+}
+
+TEST_F(StoreFile, GivesItsExperimentAgainWithTheOptionsOfTheCommandLine) {
+  const auto same = [&](const Experiment& made) {
+    const Experiment read = read_experiment_of(path_);
+    EXPECT_EQ(read.fingerprint(), made.fingerprint());
+    EXPECT_EQ(read.evaluations, made.evaluations);
+    std::filesystem::remove(path_);
+  };
+  sim::DiskFiles files;
+  const std::filesystem::path file = source_path("/sim/scenarios/travelling_wave/cma_es.optimise.xml");
+  Experiment made = read_experiment(file, files);
+  open(Store::Opening::fresh, made);
+  same(made);
+  made.seed = 5;
+  sim::OverrideWords words;
+  words.engine = "reduced";
+  made.scenario.overrides = sim::read_overrides(words);
+  sim::apply_overrides(made.scenario.overrides, made.scenario.environment);
+  set_trials(made, 3);
+  open(Store::Opening::fresh, made)->save_search(made.evaluations, "a build", 3);
+  same(made);
+}
+
+TEST_F(StoreFile, IsLookedAtWhileAnotherProgramWritesIt) {
+  const std::unique_ptr<Store> writer = open(Store::Opening::fresh, experiment_);
+  std::mt19937 random(3);
+  std::vector<Evaluation> made;
+  const auto add = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Candidate candidate = random_candidate(experiment_, random);
+      const TrialResult result = made_up_trial(experiment_, {0, made.size(), 0, candidate, {}});
+      made.push_back(rate(experiment_, 0, made.size(), candidate, {&result, 1}));
+      writer->save(made.back());
+    }
+  };
+  add(20);
+  const std::unique_ptr<Store> reader = open(Store::Opening::look, experiment_);
+  EXPECT_EQ(reader->evaluation_count(0), 20U);
+  add(5);
+  const std::vector<Evaluation> newest = reader->evaluations(0, 20, 3);
+  ASSERT_EQ(newest.size(), 3U);
+  EXPECT_EQ(newest.front().number, 20U);
+  EXPECT_EQ(newest.front().candidate, made[20].candidate);
+  EXPECT_EQ(newest.back().scores, made[22].scores);
+  EXPECT_EQ(reader->evaluations(0, 25).size(), 0U);
+  EXPECT_FALSE(reader->ending(0));
+  EXPECT_THROW(reader->save(made.front()), StoreError) << "it only looks";
+  EXPECT_EQ(refused(Store::Opening::look, experiment_, "another key"), "nothing");
+}
+
+TEST_F(StoreFile, SaysWhatAListOfSearchesShows) {
+  experiment_.evaluations = 60;
+  const std::unique_ptr<Store> writer = open(Store::Opening::fresh, experiment_);
+  writer->save_search(60, "a build");
+  StoreSummary before = read_store_summary(path_);
+  EXPECT_EQ(before.made, 0U);
+  EXPECT_EQ(before.planned, 60U);
+  EXPECT_EQ(before.runs, 1U);
+  EXPECT_EQ(before.objective, "distance");
+  EXPECT_EQ(before.unit, "m");
+  EXPECT_TRUE(before.maximises);
+  EXPECT_FALSE(before.best);
+  EXPECT_FALSE(before.ending);
+  EXPECT_EQ(before.started.size(), std::string("2026-11-27T23:40:00Z").size());
+  std::mt19937 random(4);
+  std::optional<Evaluation> best;
+  for (std::uint64_t number = 0; number < 60; ++number) {
+    const Candidate candidate = random_candidate(experiment_, random);
+    const TrialResult result = made_up_trial(experiment_, {0, number, 0, candidate, {}});
+    const Evaluation evaluation = rate(experiment_, 0, number, candidate, {&result, 1});
+    writer->save(evaluation);
+    if (is_better(experiment_, evaluation, best ? &*best : nullptr)) {
+      best = evaluation;
+    }
+    const StoreSummary now = read_store_summary(path_, number % 7 == 0 ? &before : nullptr);
+    EXPECT_EQ(now.made, number + 1);
+    EXPECT_EQ(now.best.has_value(), best.has_value());
+    if (best) {
+      EXPECT_EQ(now.best, best->number) << "with and without what was read before";
+      EXPECT_EQ(now.best_score, best->scores.front());
+    }
+    before = now;
+  }
+  writer->finish_run(0, "converged");
+  EXPECT_EQ(read_store_summary(path_, &before).ending, "converged");
+  EXPECT_THROW(static_cast<void>(read_store_summary(path_ / "nothing")), StoreError);
+}
+
+TEST_F(StoreFile, ItsWriterIsAskedToStop) {
+  EXPECT_FALSE(is_being_written(path_));
+  EXPECT_THROW(request_stop(path_), StoreError) << "there is none";
+  {
+    const std::unique_ptr<Store> writer = open(Store::Opening::fresh, experiment_);
+    EXPECT_TRUE(is_being_written(path_));
+    EXPECT_FALSE(writer->is_stop_requested());
+    request_stop(path_);
+    EXPECT_TRUE(is_stop_requested(path_));
+    while (!writer->is_stop_requested()) {  // it looks five times a second
+    }
+  }
+  EXPECT_FALSE(is_being_written(path_));
+  EXPECT_FALSE(is_stop_requested(path_)) << "it is done";
+  std::ofstream(path_.string() + ".stop").close();  // the writer was killed before it had stopped
+  EXPECT_FALSE(open(Store::Opening::resume, experiment_)->is_stop_requested());
+}
+
+TEST_F(StoreFile, CanBeOpenedWhileOthersLookWhetherItIsWritten) {
+  make();
+  std::atomic<bool> ends = false;
+  std::thread looker([&] {
+    while (!ends) {
+      static_cast<void>(is_being_written(path_));
+    }
+  });
+  for (int i = 0; i < 200; ++i) {
+    EXPECT_EQ(not_resumed(), "nothing");
+  }
+  ends = true;
+  looker.join();
 }
 
 TEST_F(StoreFile, HasAllThatIsNeededToReadItsExperimentAgain) {

@@ -15,7 +15,7 @@ namespace proleg::optimize {
 namespace {
 
 std::size_t objectives_for(const PagmoAlgorithm& algorithm) {
-  return algorithm.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
+  return algorithm.declaration().objectives == ObjectiveCount::several ? 2 : 1;
 }
 
 Experiment experiment_for(const PagmoAlgorithm& algorithm, const std::vector<std::uint32_t>& sizes,
@@ -51,7 +51,8 @@ TEST_P(EachAlgorithm, RunsWithEveryPopulationThatIsNotRejected) {
   for (std::uint32_t population = 0; population <= 24; ++population) {
     const Experiment experiment = experiment_for(algorithm, {31, 2, 161}, population, 2, objectives);
     FakeSource source(spheres(objectives), 8);
-    if (population < algorithm.min_population || population % algorithm.population_multiple != 0) {
+    if (population < algorithm.declaration().min_population ||
+        population % algorithm.declaration().population_multiple != 0) {
       EXPECT_THROW(check_method(experiment), InputError) << population;
       continue;
     }
@@ -80,7 +81,7 @@ TEST_P(EachAlgorithm, StaysInsideSpacesOfOneParameterAndOfMany) {
 TEST_P(EachAlgorithm, SearchesForThreeObjectivesOrRejectsThemBeforeItEvaluates) {
   FakeSource source(spheres(3), 8);
   const Experiment experiment = experiment_for(algorithm, {31, 31}, 20, 5, 3);
-  if (algorithm.objectives == PagmoAlgorithm::Objectives::one) {
+  if (algorithm.declaration().objectives == ObjectiveCount::one) {
     EXPECT_THROW(static_cast<void>(search(experiment, 0, source)), InputError);
     EXPECT_TRUE(source.asked.empty());
   } else {
@@ -123,7 +124,7 @@ TEST_P(EachAlgorithm, FindsBetterCandidatesThanAsManyRandomOnesAre) {
 TEST(PagmoAlgorithms, ForSeveralObjectivesAreThoseThatTheMessageForTheOthersNames) {
   std::set<std::string_view> several;
   for (const PagmoAlgorithm& each : pagmo_algorithms()) {
-    if (each.objectives != PagmoAlgorithm::Objectives::one) {
+    if (each.declaration().objectives != ObjectiveCount::one) {
       several.insert(each.name);
     }
   }

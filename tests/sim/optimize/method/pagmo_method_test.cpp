@@ -104,7 +104,7 @@ TEST(PagmoSearch, RestartsFromAnotherPopulationAndFindsTheOtherSummit) {
 
 TEST(PagmoSearch, WithRestartsEndsEvenIfNothingIsGained) {
   for (const PagmoAlgorithm& each : pagmo_algorithms()) {
-    const std::size_t objectives = each.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
+    const std::size_t objectives = each.declaration().objectives == ObjectiveCount::several ? 2 : 1;
     PagmoSettings settings = settings_of(std::string(each.name), 12, 9);
     settings.restart_after = 2;
     FakeSource source([objectives](const Candidate&) { return std::vector<double>(objectives, 1.0); });
@@ -160,7 +160,7 @@ struct PlainProblem {
 
 TEST(PagmoSearch, AsksWhatPagmoAsksWithoutPredictions) {
   for (const PagmoAlgorithm& each : pagmo_algorithms()) {
-    const std::size_t objectives = each.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
+    const std::size_t objectives = each.declaration().objectives == ObjectiveCount::several ? 2 : 1;
     const PagmoSettings settings = settings_of(std::string(each.name), 12, 6);
     Experiment experiment = make_experiment({41, 41, 41}, settings, Goal::minimise, objectives);
     experiment.seed = 5;

@@ -142,7 +142,7 @@ std::vector<MethodSettings> methods_that_start_at(Start start) {
   genetic.start = start;
   std::vector<MethodSettings> methods{deluge, genetic};
   for (const PagmoAlgorithm& algorithm : pagmo_algorithms()) {
-    if (algorithm.objectives != PagmoAlgorithm::Objectives::several) {
+    if (algorithm.declaration().objectives != ObjectiveCount::several) {
       PagmoSettings settings = pagmo_method(std::string(algorithm.name));
       settings.start = start;
       methods.emplace_back(settings);

@@ -13,9 +13,10 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   SessionRequests meshes;
   SessionRequests gallery;
   SessionRequests algorithms;
+  SessionRequests searches;
   SessionRequests remote;
   SessionRequests robot;
-  SessionRouter router(recordings, draft, meshes, gallery, algorithms, remote, robot);
+  SessionRouter router(recordings, draft, meshes, gallery, algorithms, searches, remote, robot);
   router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
   router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
   router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
@@ -24,7 +25,9 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   router.operate({6, "gallery.look", nlohmann::json::object(), 1, "a test"});
   router.operate({7, "algorithm.build", nlohmann::json::object(), 1, "a test"});
   router.operate({8, "mesh.begin", nlohmann::json::object(), 1, "a test"});
+  router.operate({9, "search.open", nlohmann::json::object(), 1, "a test"});
   router.holder_changed(true, false);
+  EXPECT_EQ(searches.take_operation()->request, 9U);
   EXPECT_EQ(meshes.take_operation()->request, 8U);
   EXPECT_EQ(algorithms.take_operation()->request, 7U);
   EXPECT_EQ(recordings.take_operation()->request, 1U);

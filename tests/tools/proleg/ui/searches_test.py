@@ -1,0 +1,247 @@
+"""Searches through `proleg ui`, as a page makes them: from a form to a better gait, over the end of the program, and searches
+that others have started.
+
+Usage: searches_test.py SOURCE PROGRAMS"""
+
+import contextlib
+import json
+import shutil
+import signal
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
+sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/tools/proleg/ui", "tests/support")]
+from ui_program import UiProgram  # noqa: E402
+from waiting import wait_until  # noqa: E402
+
+SECONDS = 1  # of a run
+
+
+class Program(UiProgram):
+    def __init__(self, programs, folder):
+        super().__init__(programs, folder)
+        self.must("draft.run", name="duration", value=SECONDS)
+
+    def searches(self):
+        """The searches by their names, as they are now."""
+        self.must("search.refresh")
+        self.viewer.until(lambda: "searches" in self.viewer.documents)
+        return {search["name"]: search for search in self.document()["searches"]}
+
+    def document(self):
+        return self.viewer.documents["searches"]["value"]
+
+    def when(self, name, is_so):
+        """The search, when it is as it is waited for."""
+        return wait_until(lambda: (found := self.searches().get(name)) and is_so(found) and found,
+                          lambda: f"{name}: {self.searches().get(name)}")
+
+    def refused(self, name, /, **arguments):
+        result = self.ask(name, **arguments)
+        assert not result["ok"], (name, arguments, result)
+        assert "\n" not in result["error"], result
+        return result["error"]
+
+
+def experiment(**changes):
+    """CMA-ES for the amplitudes of the caterpillar."""
+    return {"method": "cmaEs", "settings": {"popsize": "8", "sigma0": "0.5"},
+            "parameters": [{"module": 0, "parameter": "amplitude", "joints": None, "same": False, "lower": "0", "upper": "60",
+                            "step": "0.5", "with_lower": True, "with_upper": True, "set": None}],
+            "objectives": [{"terms": [{"measure": "distance", "weight": ""}]}], "evaluations": "40", "seed": "7", **changes}
+
+
+def rows_of(folder):
+    """What a search has found, without what depends on time."""
+    with contextlib.closing(sqlite3.connect(f"file:{folder}/store.sqlite?mode=ro", uri=True)) as store:
+        return store.execute("SELECT number, candidate, seed, distance, smoothness FROM evaluation ORDER BY number").fetchall()
+
+
+def simulate(file):
+    output = subprocess.run([PROGRAMS / "proleg", "simulate", file, "--json"], check=True, capture_output=True, text=True).stdout
+    return json.loads(output)
+
+
+def a_form_becomes_a_better_gait(program):
+    methods = program.viewer.documents["search_methods"]["value"]
+    assert {"cmaEs", "geneticAlgorithm", "greatDeluge", "nsga2"} <= {method["tag"] for method in methods["methods"]}
+    assert any(measure["name"] == "distance" for measure in methods["measures"])
+    form = experiment()
+    checked = program.must("search.check", experiment=form)
+    assert checked["names"] == [f"amplitude:J{number}" for number in (5, 4, 3, 2, 1)], checked
+    assert checked["candidates"] == 121.0**5 and checked["planned"] == 40, checked
+    assert checked["engine"] == "ode" and checked["reduced"] is None, checked
+    estimate = program.must("search.estimate", experiment=form, workers=2)
+    assert estimate["planned"] == 40 and estimate["seconds"] >= 40 * estimate["evaluation_s"] > 0, estimate
+
+    name = program.must("search.start", name="wave", experiment=form, workers=2)["name"]
+    assert name == "searches/wave"
+    assert "exists" in program.refused("search.start", name="wave", experiment=form)
+    search = program.when(name, lambda found: found["state"] == "ended")
+    assert (search["made"], search["planned"], search["method"]) == (40, 40, "cmaes"), search
+    assert search["ending"] == "all 40 evaluations made" and search["problem"] is None, search
+
+    described = program.must("search.open", name=name)
+    assert [dimension["name"] for dimension in described["dimensions"]] == checked["names"], described
+    assert described["dimensions"][0] == {"name": "amplitude:J5", "unit": "deg", "count": 121, "lowest": 0, "highest": 60}
+    assert described["objectives"] == [{"name": "distance", "unit": "m", "maximise": True}] and described["has_baseline"]
+    rows = program.must("search.rows", name=name, **{"from": 0})
+    assert rows["made"] == len(rows["scores"]) == len(rows["values"]) == len(rows["flags"]) == 40
+    assert rows["values"][0] == [40] * 5, "evaluation 0 has the scenario's own values"
+    assert program.must("search.rows", name=name, **{"from": 30})["scores"] == rows["scores"][30:]
+    assert program.must("search.rows", name=name, **{"from": 40})["scores"] == []
+    best = max(range(40), key=lambda number: (rows["scores"][number], -number))
+    assert search["best"] == best and search["score"] == rows["scores"][best][0] == described["result"]["best_score"]
+    assert best > 0, "the search has found no better gait"
+
+    # The gait of the draft and that of the candidate, as they move: both to the head's way that the program measures.
+    for arguments, distance in (({}, rows["scores"][0][0]), ({"name": name, "number": best}, search["score"])):
+        data = program.must("search.motion", **arguments)
+        tick_us, stride, count, joints = struct.unpack("<4i", data[:16])
+        assert (tick_us, stride, joints) == (10000, 2, 5) and count == SECONDS * 50 + 1, (tick_us, stride, count, joints)
+        values = struct.unpack(f"<{count * 12}i", data[16:])
+        first, last = (values[12 * row + 5:12 * row + 7] for row in (0, count - 1))
+        way = sum((b - a) ** 2 for a, b in zip(first, last)) ** 0.5 / 1e6
+        assert abs(way - distance) < 0.05, (way, distance)
+
+    # Applied, it is one change of the draft, and what is saved has the score of the search to the last bit.
+    candidate = program.must("search.candidate", name=name, number=best)
+    assert candidate["scores"] == rows["scores"][best] and candidate["measures"]["distance"] == search["score"]
+    assert [float(word.split("=")[1]) for word in candidate["words"]] == rows["values"][best], candidate
+    before = program.draft["behaviour"]["modules"]
+    program.must("behaviour.values", words=candidate["words"], label=f"candidate {best} of wave")
+    assert program.draft["undo"] == f"candidate {best} of wave" and program.draft["behaviour"]["modules"] != before
+    program.must("draft.undo")
+    program.viewer.until(lambda: program.draft["behaviour"]["modules"] == before)
+    program.must("draft.redo")
+    program.must("draft.save")
+    result = simulate(program.folder / "uniform.simulation.xml")
+    assert result["measures"]["distance"] == search["score"], (result["measures"]["distance"], search["score"])
+    program.must("draft.undo")
+    program.must("draft.save")
+
+
+def a_search_outlives_the_program(program):
+    undisturbed = program.must("search.start", name="undisturbed", experiment=experiment(evaluations="300"), workers=2)["name"]
+    program.when(undisturbed, lambda found: found["state"] == "ended")
+    name = program.must("search.start", name="long", experiment=experiment(evaluations="300"), workers=2)["name"]
+    assert "running" in program.refused("search.resume", name=name)
+    program.process.kill()
+    program.process.wait()
+    program.start()
+    program.when(name, lambda found: found["made"] >= 10 and found["state"] in ("running", "ended"))
+    program.ask("search.stop", name=name)
+    search = program.when(name, lambda found: found["state"] not in ("running", "stopping"))
+    if search["state"] != "ended":  # a computer that was too slow to stop it before
+        assert search["state"] == "interrupted" and search["problem"] is None and search["made"] < 300, search
+        assert "nothing to stop" in program.refused("search.stop", name=name)
+        assert program.must("search.resume", name=name, workers=1)["name"] == name
+        program.when(name, lambda found: found["state"] == "ended")
+    assert rows_of(program.folder / name) == rows_of(program.folder / undisturbed)
+    assert len(rows_of(program.folder / name)) == 300
+    assert program.must("search.resume", name=name, evaluations="320")["name"] == name
+    program.when(name, lambda found: found["state"] == "ended" and found["made"] == 320)
+
+
+def searches_of_others_are_found(program):
+    file = SOURCE / "sim/scenarios/travelling_wave/cma_es.optimise.xml"
+    command = [PROGRAMS / "proleg", "optimise", file, "--simulation", program.folder / "uniform.simulation.xml"]
+    with open(program.folder / "others.log", "w") as log:
+        subprocess.run([*command, "--engine", "reduced", "--evaluations", "40", "--out", program.folder / "shell"], check=True,
+                       stdout=log, stderr=log)
+        search = program.when("shell", lambda found: found["state"] == "ended")
+        assert search["made"] == 40 and search["method"] == "cmaes", search
+        assert program.must("search.open", name="shell")["engine"] == "reduced", "an option of the command line"
+        assert len(program.must("search.rows", name="shell", **{"from": 0})["scores"]) == 40
+        if shutil.which("mpirun") and (PROGRAMS / "proleg-optimise-mpi").exists():
+            mpirun = ["mpirun", "--oversubscribe", "--allow-run-as-root", "-n", "2"]
+            process = subprocess.Popen([*mpirun, *command, "--out", program.folder / "cluster"], stdout=log, stderr=log)
+            program.when("cluster", lambda found: found["state"] == "running" and found["made"] > 0)
+            program.must("search.stop", name="cluster")
+            program.when("cluster", lambda found: found["state"] == "interrupted")
+            process.wait()
+    store = sqlite3.connect(program.folder / "shell/store.sqlite")
+    store.execute("PRAGMA user_version = 99")
+    store.close()
+    assert "format 99" in program.when("shell", lambda found: found["state"] == "unreadable")["problem"]
+    assert "format 99" in program.refused("search.open", name="shell")
+
+
+def bad_input_is_one_line_and_leaves_nothing(program):
+    def problem(**changes):
+        return program.must("search.check", experiment=experiment(**changes))["problem"]
+
+    parameter = experiment()["parameters"][0]
+    assert problem(parameters=[])["field"] == "parameters"
+    assert problem(parameters=[{**parameter, "lower": "50", "upper": "10"}])["field"].startswith("parameters.0.")
+    assert problem(parameters=[{**parameter, "upper": "1e99"}])["field"] == "parameters.0.upper"
+    assert problem(parameters=[{**parameter, "step": "0"}])["field"] == "parameters.0.step"
+    assert problem(parameters=[{**parameter, "set": ""}])["field"] == "parameters.0.set"
+    assert problem(parameters=[{**parameter, "joints": [9]}])["field"] == "parameters.0.joints"
+    assert problem(method="none")["field"] == "method"
+    assert problem(settings={"popsize": "1"})["field"] == "settings.popsize"
+    assert problem(objectives=[{"terms": []}])["field"] == "objectives.0"
+    assert problem(method="nsga2", settings={})["text"].startswith("found 1 objective")
+    for changes in ({"parameters": "x"}, {"settings": []}, {"seed": 1}, {"parameters": [{"joints": [400]}]}, {"trials": 1}):
+        program.refused("search.check", experiment=experiment(**changes))
+    before = sorted(str(path) for path in program.folder.rglob("*"))
+    for name in ("", "..", "a/b", ".hidden", "x" * 10_000, "a\nb", "\0"):
+        program.refused("search.start", name=name, experiment=experiment())
+    program.refused("search.start", name="good", experiment=experiment(evaluations="x"))
+    program.refused("search.start", name="good", experiment=experiment(), workers=0)
+    assert "mujocoo" in program.refused("search.start", name="good", experiment=experiment(), engine="mujocoo")
+    for file in ("/etc/passwd", "../x.optimise.xml", str(program.folder / "none.optimise.xml")):
+        program.refused("search.start", name="good", file=file)
+        program.refused("search.read", file=file)
+    for name in ("", "..", "/etc", "none", "searches", "searches/none"):
+        for operation in ("open", "rows", "candidate", "stop", "resume"):
+            program.refused(f"search.{operation}", name=name)
+    program.refused("search.candidate", name="searches/wave", number=4000)
+    program.refused("search.motion", name="searches/wave")
+    program.refused("behaviour.values", words=[], label="")
+    program.refused("behaviour.values", words=["amplitude:J9=1"], label="")
+    program.refused("behaviour.values", words=["amplitude=1@5"], label="")
+    program.refused("search.none")
+    assert sorted(str(path) for path in program.folder.rglob("*")) == before, "a refusal has left a file"
+    readonly = program.folder / "searches"
+    readonly.rename(program.folder / "kept")
+    readonly.write_text("not a folder")
+    program.refused("search.start", name="good", experiment=experiment())
+    readonly.unlink()
+    (program.folder / "kept").rename(readonly)
+
+
+def files_of_experiments_are_offered(program):
+    program.searches()
+    titles = {entry["title"]: entry["file"] for entry in program.document()["experiments"]}
+    form = program.must("search.read", file=titles["cma_es"])["experiment"]
+    assert form["method"] == "cmaEs" and form["settings"]["popsize"] == "32" and form["evaluations"] == "2000", form
+    assert "problem" not in program.must("search.check", experiment=form)
+    name = program.must("search.start", name="from a file", file=titles["great_deluge"], workers=2)["name"]
+    program.when(name, lambda found: found["made"] > 0)
+    program.must("search.stop", name=name)
+    search = program.when(name, lambda found: found["state"] == "interrupted")
+    assert search["method"] == "great-deluge", search
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        shutil.copytree(SOURCE / "sim/scenarios/travelling_wave", folder, dirs_exist_ok=True)
+        with Program(PROGRAMS, folder) as program:
+            program.must("draft.save")  # the duration
+            a_form_becomes_a_better_gait(program)
+            bad_input_is_one_line_and_leaves_nothing(program)
+            a_search_outlives_the_program(program)
+            searches_of_others_are_found(program)
+            files_of_experiments_are_offered(program)
+            program.process.send_signal(signal.SIGINT)
+            assert program.process.wait() == 0
+
+
+main()

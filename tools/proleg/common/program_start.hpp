@@ -1,0 +1,32 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace proleg::tools {
+
+/// How another program starts. It gets no input, no open files of this program, and English messages; it gives way to
+/// other programs. It runs without a shell.
+struct ProgramStart {
+  enum class Life : std::uint8_t {
+    as_this_one,  ///< in a process group of its own: Ctrl-C at the terminal goes to this program alone
+    its_own,      ///< in a session of its own, without a terminal: it goes on when this program ends, in any way
+  };
+
+  std::string folder;  ///< where it runs
+  int output = -1;     ///< descriptor of its standard output
+  int errors = -1;     ///< and of its standard error
+  Life life = Life::as_this_one;
+};
+
+/// Starts it. command: the program, which is searched for as in a shell, and its arguments. Returns its process. Throws
+/// std::runtime_error if it cannot be started.
+[[nodiscard]] pid_t start_program(const std::vector<std::string>& command, const ProgramStart& start);
+
+/// The exit status that a shell would report for a status of waitpid(2): 128 + the number of a signal.
+[[nodiscard]] int exit_status_of(int wait_status);
+
+}  // namespace proleg::tools

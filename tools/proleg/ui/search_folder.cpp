@@ -1,0 +1,196 @@
+#include "tools/proleg/ui/search_folder.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/ui/folder_walk.hpp"
+#include "tools/proleg/ui/session_base.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* store_name = "store.sqlite";
+
+}  // namespace
+
+void SearchSpeed::note(std::uint64_t made, Clock::time_point now) {
+  constexpr std::chrono::minutes memory{1};
+  if (!seen_.empty() && made < seen_.back().second) {
+    seen_.clear();
+  }
+  while (seen_.size() > 2 && now - seen_[1].first > memory) {
+    seen_.pop_front();
+  }
+  seen_.emplace_back(now, made);
+}
+
+std::optional<double> SearchSpeed::time_of(std::uint64_t evaluations) const {
+  if (seen_.size() < 2 || seen_.back().second <= seen_.front().second) {
+    return std::nullopt;
+  }
+  const double seconds = std::chrono::duration<double>(seen_.back().first - seen_.front().first).count();
+  return static_cast<double>(evaluations) * seconds / static_cast<double>(seen_.back().second - seen_.front().second);
+}
+
+SearchFolder::SearchFolder(const fs::path& folder) {
+  std::error_code error;
+  folder_ = fs::canonical(folder, error);
+  if (error || !fs::is_directory(folder_, error)) {
+    throw InputError(folder.string(), 0, error ? error.message() : "no folder", "a folder with searches");
+  }
+}
+
+fs::path SearchFolder::store_of(const fs::path& search) { return search / store_name; }
+fs::path SearchFolder::log_of(const fs::path& search) { return search / "search.log"; }
+
+std::string SearchFolder::failure_of(const fs::path& search) {
+  constexpr std::size_t most = 64 * 1024;
+  std::error_code error;
+  if (!fs::is_regular_file(log_of(search), error) || fs::file_size(log_of(search), error) > most) {
+    return {};
+  }
+  const std::string text = first_bytes(log_of(search), most);
+  std::string last;
+  TextLines lines(text);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    if (!trimmed(*line).empty()) {
+      last = one_line(trimmed(*line));
+    }
+  }
+  constexpr std::string_view program = "proleg optimise: ";
+  if (!last.starts_with(program) || last.find(": interrupted ") != std::string::npos) {
+    return {};
+  }
+  return last.substr(program.size());
+}
+
+/// Of a store that is written the newest part is in a file beside it.
+SearchFolder::Version SearchFolder::version_of(const fs::path& store) {
+  Version version;
+  for (const char* suffix : {"-wal", ""}) {
+    struct stat status {};
+    if (::stat((store.string() + suffix).c_str(), &status) == 0) {
+      constexpr std::int64_t second = 1'000'000'000;
+      version.inode = status.st_ino;
+      version.size += static_cast<std::uint64_t>(status.st_size);
+      version.time_ns = std::max(version.time_ns, status.st_mtim.tv_sec * second + status.st_mtim.tv_nsec);
+    }
+  }
+  return version;
+}
+
+void SearchFolder::walk() {
+  std::map<std::string, Entry> found;
+  const auto enters = [](const fs::path& path) { return !path.filename().string().starts_with('.'); };
+  const auto note = [&](const fs::path& path) {
+    std::error_code error;
+    if (path.filename() != store_name || !fs::is_regular_file(path, error) ||
+        !is_inside(folder_, fs::canonical(path, error)) || error || path.parent_path() == folder_ ||
+        find_invalid_utf8(path.string())) {
+      return;
+    }
+    const std::string name = path.parent_path().lexically_relative(folder_).string();
+    const auto before = entries_.find(name);
+    found[name] = before == entries_.end() ? Entry{} : std::move(before->second);
+  };
+  for_each_path(folder_, note, enters);
+  entries_ = std::move(found);
+}
+
+void SearchFolder::read(const fs::path& store, Entry& entry) {
+  const Version version = version_of(store);
+  if (entry.is_read && entry.version == version) {
+    return;
+  }
+  const bool is_same_store = entry.is_read && entry.problem.empty() && entry.version.inode == version.inode;
+  try {
+    entry.summary = optimize::read_store_summary(store, is_same_store ? &entry.summary : nullptr);
+    entry.problem.clear();
+  } catch (const std::exception& error) {
+    entry.problem = one_line(error.what());
+  }
+  entry.version = version;
+  entry.is_read = true;
+}
+
+json SearchFolder::object_of(const std::string& name, const fs::path& search, const Entry& entry, bool is_running) {
+  const optimize::StoreSummary& summary = entry.summary;
+  json object{{"name", name}, {"problem", text_or_null(entry.problem)}};
+  if (!entry.problem.empty()) {
+    object["state"] = "unreadable";
+    return object;
+  }
+  const bool has_all = summary.planned > 0 && summary.made >= summary.planned;
+  object["state"] = is_running       ? optimize::is_stop_requested(store_of(search)) ? "stopping" : "running"
+                    : summary.ending ? "ended"
+                                     : "interrupted";
+  object["method"] = one_line(summary.method);
+  object["scenario"] = one_line(fs::path(summary.scenario).filename().string());
+  object["started"] = one_line(summary.started);
+  object["made"] = summary.made;
+  object["planned"] = summary.planned > 0 ? json(summary.planned * summary.runs) : json();
+  object["best"] = summary.best ? json(*summary.best) : json();
+  object["score"] = summary.best ? json(summary.best_score) : json();
+  object["objective"] = one_line(summary.objective);
+  object["unit"] = one_line(summary.unit);
+  object["ending"] = summary.ending && !is_running ? json(one_line(*summary.ending)) : json();
+  std::optional<double> left;
+  if (is_running && summary.runs == 1 && summary.planned > 0) {
+    left = has_all ? 0.0 : entry.speed.time_of(summary.planned - summary.made);
+  }
+  object["left_s"] = left ? json(*left) : json();
+  if (object["state"] == "interrupted") {
+    object["problem"] = text_or_null(failure_of(search));
+  }
+  return object;
+}
+
+json SearchFolder::list(Clock::time_point now) {
+  if (now >= next_walk_) {
+    const auto begin = Clock::now();
+    walk();
+    next_walk_ = now + 50 * (Clock::now() - begin);  // at most 2 % of the time
+  }
+  std::vector<std::pair<std::int64_t, json>> all;
+  for (auto& [name, entry] : entries_) {
+    const fs::path search = folder_ / name;
+    const bool is_running = optimize::is_being_written(store_of(search));
+    read(store_of(search), entry);
+    if (is_running) {
+      entry.speed.note(entry.summary.made, now);
+    } else {
+      entry.speed.forget();
+    }
+    all.emplace_back(-entry.version.time_ns, object_of(name, search, entry, is_running));
+  }
+  std::ranges::stable_sort(all, {}, &std::pair<std::int64_t, json>::first);
+  json searches = json::array();
+  for (std::size_t i = 0; i < std::min(all.size(), max_searches); ++i) {
+    searches.push_back(std::move(all[i].second));
+  }
+  return searches;
+}
+
+fs::path SearchFolder::find(const std::string& name) const {
+  const std::string expected = "the name of a search in " + folder_.filename().string();
+  fs::path path = find_inside(folder_, name, "name", expected);
+  std::error_code error;
+  const fs::path store = fs::canonical(store_of(path), error);
+  if (error || !fs::is_regular_file(store, error) || !is_inside(folder_, store)) {
+    throw InputError("name", 0, in_quotes(one_line(shortened(name))), expected);
+  }
+  return path;
+}
+
+}  // namespace proleg::tools

@@ -189,6 +189,7 @@ class Store::Implementation {
     require_store_file(path_);
     database_ = std::make_unique<Database>(path_, SQLITE_OPEN_READONLY);
     require_store(path_, *database_);
+    statements_ = std::make_unique<Statements>(*database_, columns_);
   }
 
   void read_last_numbers() {

@@ -131,6 +131,33 @@ TEST_F(Optimise, InterruptedAndResumedGivesTheSame) {
   }
 }
 
+TEST_F(Optimise, IsStoppedFromElsewhere) {
+  const pid_t search = start_proleg(words("great_deluge", "out", {"--evaluations", endless}));
+  wait_for("out", 5);
+  const Finished stop = proleg({"optimise", "--stop", file("out").string()});
+  EXPECT_EQ(stop.status, 0) << stop.err;
+  const Finished stopped = finish(search);
+  EXPECT_EQ(stopped.status, 1) << "as Ctrl-C";
+  EXPECT_NE(stopped.err.find("continue with: "), std::string::npos) << stopped.err;
+  EXPECT_FALSE(fs::exists(file("out/store.sqlite.stop")));
+  expect_refused({"optimise", "--stop", file("out").string()}, {"nothing to stop"});
+  expect_refused({"optimise", "--stop", file("none").string()}, {"nothing to stop"});
+}
+
+TEST_F(Optimise, EstimatesItsTimeAndWritesNothing) {
+  const Json object = json_of(proleg(words("cma_es", "out", {"--estimate", "--evaluations", "1000"})));
+  EXPECT_EQ(object["planned"], 1000);
+  EXPECT_GT(object["evaluation_s"].number(), 0.0);
+  EXPECT_GE(object["seconds"].number(), 1000 * object["evaluation_s"].number());
+  EXPECT_FALSE(fs::exists(file("out")));
+}
+
+TEST_F(Optimise, LeavesItsResultAsAFile) {
+  const Finished finished = proleg(words("cma_es", "out", {"--evaluations", "30"}));
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(read_file(file("out/result.json")), finished.out);
+}
+
 TEST_F(Optimise, PrintsTheCommandThatContinues) {
   const pid_t search = start_proleg(words("great_deluge", "the parts", {"--evaluations", endless, "--seed", "9"}));
   wait_for("the parts", 3);

@@ -13,22 +13,6 @@
 #include "sim/scenario/sources.hpp"
 
 namespace proleg::optimize {
-namespace {
-
-/// What went wrong, as a message for a person. system: errno after the error.
-std::string reason(const SqliteError& error, int system) {
-  const bool refused = error.code() == SQLITE_IOERR && (system == ENOSPC || system == EDQUOT || system == EFBIG);
-  if (error.code() == SQLITE_FULL || refused) {
-    return "no space left on the disk; all evaluations until now are kept";
-  }
-  if (error.code() == SQLITE_NOTADB) {
-    return "is not the store of an experiment";
-  }
-  return error.what();
-}
-
-}  // namespace
-
 class Store::Implementation {
  public:
   Implementation(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,
@@ -207,7 +191,7 @@ class Store::Implementation {
       return action();
     } catch (const SqliteError& error) {
       const int system = errno;
-      throw StoreError(path_.string() + ": " + reason(error, system));
+      throw StoreError(path_.string() + ": " + reason_of(error, system));
     } catch (const std::filesystem::filesystem_error& error) {
       throw StoreError(path_.string() + ": " + error.code().message());
     }
@@ -246,7 +230,7 @@ StoredExperiment read_stored_experiment(const std::filesystem::path& path) {
     Database database(path, SQLITE_OPEN_READONLY);
     return read_description(path, database);
   } catch (const SqliteError& error) {
-    throw StoreError(path.string() + ": " + reason(error, 0));
+    throw StoreError(path.string() + ": " + reason_of(error, 0));
   }
 }
 
@@ -269,16 +253,6 @@ Experiment read_experiment_of(const std::filesystem::path& store) {
     set_trials(experiment, *stored.trials);
   }
   return experiment;
-}
-
-StoreSummary read_store_summary(const std::filesystem::path& path, const StoreSummary* before) {
-  try {
-    require_store_file(path);
-    Database database(path, SQLITE_OPEN_READONLY);
-    return read_summary(path, database, before);
-  } catch (const SqliteError& error) {
-    throw StoreError(path.string() + ": " + reason(error, 0));
-  }
 }
 
 Store::Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,

@@ -17,7 +17,6 @@
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
@@ -41,12 +40,6 @@ std::uint32_t random_schema_version() {
 std::int64_t pragma(Database& database, const char* sql) {
   Statement statement(database, sql);
   return statement.step() ? statement.integer(0) : 0;
-}
-
-std::string value_of(Database& database, std::string_view key) {
-  Statement statement(database, "SELECT value FROM experiment WHERE key = ?1");
-  statement.bind_all(key);
-  return statement.step() ? statement.text(0) : "";
 }
 
 void write_experiment(Database& database, const Experiment& experiment, const StoreColumns& columns,
@@ -228,6 +221,23 @@ StoreLock claim_store(const std::filesystem::path& path) {
   return {path, "cannot be opened for writing"};
 }
 
+std::string described_value(Database& database, std::string_view key) {
+  Statement statement(database, "SELECT value FROM experiment WHERE key = ?1");
+  statement.bind_all(key);
+  return statement.step() ? statement.text(0) : "";
+}
+
+std::string reason_of(const SqliteError& error, int system) {
+  const bool refused = error.code() == SQLITE_IOERR && (system == ENOSPC || system == EDQUOT || system == EFBIG);
+  if (error.code() == SQLITE_FULL || refused) {
+    return "no space left on the disk; all evaluations until now are kept";
+  }
+  if (error.code() == SQLITE_NOTADB) {
+    return "is not the store of an experiment";
+  }
+  return error.what();
+}
+
 void require_store(const std::filesystem::path& path, Database& database) {
   if (pragma(database, "PRAGMA application_id") != std::int64_t{store_application_id}) {
     throw StoreError(path.string() + ": is not the store of an experiment");
@@ -241,11 +251,11 @@ void require_store(const std::filesystem::path& path, Database& database) {
 StoredExperiment read_description(const std::filesystem::path& path, Database& database) {
   require_store(path, database);
   StoredExperiment stored;
-  stored.path = value_of(database, "path");
-  stored.scenario = value_of(database, "scenario");
-  stored.seed = parse_whole<std::uint64_t>(value_of(database, "seed")).value_or(0);
-  stored.evaluations = parse_whole<std::uint64_t>(value_of(database, "evaluations")).value_or(0);
-  stored.trials = parse_whole<std::uint32_t>(value_of(database, "trials"));
+  stored.path = described_value(database, "path");
+  stored.scenario = described_value(database, "scenario");
+  stored.seed = parse_whole<std::uint64_t>(described_value(database, "seed")).value_or(0);
+  stored.evaluations = parse_whole<std::uint64_t>(described_value(database, "evaluations")).value_or(0);
+  stored.trials = parse_whole<std::uint32_t>(described_value(database, "trials"));
   Statement engine(database, "SELECT text FROM part WHERE name = 'engine'");
   stored.engine = engine.step() ? engine.text(0) : std::string();
   Statement source(database, "SELECT path, text FROM source ORDER BY position");
@@ -255,72 +265,18 @@ StoredExperiment read_description(const std::filesystem::path& path, Database& d
   return stored;
 }
 
-StoreSummary read_summary(const std::filesystem::path& path, Database& database, const StoreSummary* before) {
-  require_store(path, database);
-  StoreSummary summary;
-  summary.method = value_of(database, "method");
-  summary.scenario = value_of(database, "scenario");
-  summary.started = value_of(database, "started");
-  const std::string planned = value_of(database, "planned");  // stores of earlier programs do not have it
-  summary.planned =
-      parse_whole<std::uint64_t>(planned.empty() ? value_of(database, "evaluations") : planned).value_or(0);
-  Statement objective(database, "SELECT name, column_name, goal, terms FROM objective ORDER BY position LIMIT 1");
-  if (!objective.step()) {
-    throw StoreError(path.string() + ": has no objective");
-  }
-  summary.objective = objective.text(0);
-  const std::string column = objective.text(1);
-  summary.maximises = objective.text(2) == "maximise";
-  Statement unit(database, "SELECT unit FROM measure WHERE name = ?1");
-  constexpr std::string_view once = "1 * ";  // terms_text() of a single measure
-  const std::string terms = objective.text(3);
-  const std::string_view measure = terms.starts_with(once) ? std::string_view(terms).substr(once.size()) : "";
-  unit.bind_all(measure);
-  summary.unit = unit.step() ? unit.text(0) : std::string();
-  Statement last_run(database, "SELECT coalesce(max(run), 0) + 1 FROM evaluation");
-  summary.runs = last_run.step() ? static_cast<std::uint32_t>(last_run.integer(0)) : 1;
-  Statement count(database, "SELECT coalesce(max(number) + 1, 0) FROM evaluation WHERE run = ?1");
-  for (std::uint32_t run = 0; run < summary.runs; ++run) {
-    count.bind_all(run);
-    summary.made += count.step() ? static_cast<std::uint64_t>(count.integer(0)) : 0;
-  }
-  const bool is_known = before != nullptr && before->runs == 1 && summary.runs == 1 && before->made <= summary.made;
-  if (is_known) {
-    summary.best = before->best;
-    summary.best_score = before->best_score;
-  }
-  const std::string score = sql_name(column);
-  Statement best(database, "SELECT number, " + score +
-                               " FROM evaluation WHERE number >= ?1 AND given_up = 0 AND failure = '' ORDER BY " +
-                               score + (summary.maximises ? " DESC" : " ASC") + ", run, number LIMIT 1");
-  best.bind_all(is_known ? before->made : std::uint64_t{0});
-  if (best.step() && !best.is_null(1)) {
-    const double found = best.real(1);
-    if (!summary.best || (summary.maximises ? found > summary.best_score : found < summary.best_score)) {
-      summary.best = static_cast<std::uint64_t>(best.integer(0));
-      summary.best_score = found;
-    }
-  }
-  Statement ending(database, "SELECT ending FROM run WHERE run = ?1");
-  ending.bind_all(summary.runs - 1);
-  if (ending.step()) {
-    summary.ending = ending.text(0);
-  }
-  return summary;
-}
-
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
                              const std::string& result_key) {
   require_store(path, database);
-  const std::string fingerprint = value_of(database, "fingerprint");
+  const std::string fingerprint = described_value(database, "fingerprint");
   if (fingerprint != experiment.fingerprint()) {
     const std::vector<std::string> names = differences(database, experiment);
     throw StoreError(path.string() + ": is the store of another experiment, with fingerprint " +
                      fingerprint.substr(0, 12) + ", expected " + experiment.fingerprint().substr(0, 12) +
                      (names.empty() ? "" : "; differences: " + listed(names)));
   }
-  const std::string build_id = value_of(database, "build_id");
-  if (value_of(database, "result_key") != result_key) {
+  const std::string build_id = described_value(database, "build_id");
+  if (described_value(database, "result_key") != result_key) {
     throw StoreError(path.string() + ": was made by a program with other sources, compiler or libraries" +
                      (build_id.empty() ? "" : " (build " + build_id + ")") +
                      "; its results may differ, so this program cannot resume it");

@@ -7,18 +7,19 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg {
 class Database;
-}
+class SqliteError;
+}  // namespace proleg
 
 namespace proleg::optimize {
 
 struct StoreColumns;
-struct StoreSummary;
 
 /// A store cannot be used. what() is one line: file, what was found, what was expected.
 class StoreError : public std::runtime_error {
@@ -79,9 +80,11 @@ void require_store_file(const std::filesystem::path& path);
 /// Throws StoreError unless it is a store of this format.
 void require_store(const std::filesystem::path& path, Database& database);
 
-/// As read_store_summary().
-[[nodiscard]] StoreSummary read_summary(const std::filesystem::path& path, Database& database,
-                                        const StoreSummary* before);
+/// A value of the table `experiment`; empty if there is none.
+[[nodiscard]] std::string described_value(Database& database, std::string_view key);
+
+/// What went wrong, as a message for a person. system: errno after the error.
+[[nodiscard]] std::string reason_of(const SqliteError& error, int system);
 
 /// Throws StoreError unless it is a store of this format, experiment and result key.
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,

@@ -38,7 +38,7 @@ std::vector<ExperimentMethod> all_methods(const optimize::ThesisExperiment& thes
   }
   for (const optimize::PagmoAlgorithm& algorithm : optimize::pagmo_algorithms()) {
     const std::string name(algorithm.name);
-    if (algorithm.objectives != optimize::PagmoAlgorithm::Objectives::several && name != "cmaes") {
+    if (algorithm.declaration().objectives != optimize::ObjectiveCount::several && name != "cmaes") {
       methods.push_back({name, "cma_es.optimise.xml", "table_" + name + ".tsv", "figure_" + name + "_runs.svg",
                          "figure_" + name + "_spread.svg", false});
     }

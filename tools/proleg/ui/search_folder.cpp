@@ -11,6 +11,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/store_file.hpp"
 #include "tools/proleg/ui/folder_walk.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/store_summary.hpp"
 
 namespace proleg::tools {
 

@@ -1,12 +1,9 @@
 #include "tools/proleg/ui/search_session.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -16,7 +13,7 @@
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -32,22 +29,26 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using optimize::Evaluation;
 using optimize::Experiment;
 
 constexpr const char* searches_folder = "searches";
 constexpr std::chrono::milliseconds look_period{50};
 constexpr std::chrono::milliseconds reap_period{500};
 
-json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
-
-std::uint64_t inode_of(const fs::path& file) {
-  struct stat status {};
-  return ::stat(file.c_str(), &status) == 0 ? status.st_ino : 0;
-}
-
 std::string name_in(const json& arguments) {
   return argument<std::string>(arguments, "name", "the name of a search").value_or("");
+}
+
+std::uint32_t run_in(const json& arguments) {
+  return argument<std::uint32_t>(arguments, "run", "the number of a run").value_or(0);
+}
+
+std::uint64_t number_in(const json& arguments) {
+  const auto number = argument<std::uint64_t>(arguments, "number", "the number of an evaluation");
+  if (!number) {
+    throw InputError("number", 0, "nothing", "the number of an evaluation");
+  }
+  return *number;
 }
 
 optimize::ExperimentForm form_in(const json& arguments) {
@@ -95,40 +96,12 @@ std::string last_line_of(const std::string& output) {
   return last.starts_with(program) ? last.substr(program.size()) : last;
 }
 
-/// What `proleg optimise` has left of its result; null: nothing that is an object.
-json result_of(const fs::path& search) {
-  constexpr std::uintmax_t most = 1 << 20;
-  std::error_code error;
-  const fs::path file = search / "result.json";
-  if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > most) {
-    return json();
-  }
-  std::ifstream stream(file);
-  json result = json::parse(stream, nullptr, false);
-  return result.is_object() ? result : json();
-}
-
 json names_of(const optimize::SearchSpace& space) {
   json names = json::array();
   for (const optimize::Dimension& dimension : space.dimensions) {
     names.push_back(dimension.name);
   }
   return names;
-}
-
-json dimensions_json(const optimize::SearchSpace& space) {
-  json dimensions = json::array();
-  for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
-    optimize::Candidate corner(space.dimensions.size(), 0);
-    const double lowest = space.value(corner, i);
-    corner[i] = static_cast<std::uint32_t>(space.dimensions[i].values.size() - 1);
-    dimensions.push_back({{"name", space.dimensions[i].name},
-                          {"unit", std::string(scale_of(space.dimensions[i].unit).symbol)},
-                          {"count", space.dimensions[i].values.size()},
-                          {"lowest", lowest},
-                          {"highest", space.value(corner, i)}});
-  }
-  return dimensions;
 }
 
 /// Why the reduced engine cannot make the search; null: it can.
@@ -215,136 +188,21 @@ std::shared_ptr<const sim::Scenario> SearchSession::draft() const {
   return scenario;
 }
 
-const Experiment& SearchSession::experiment_of(const fs::path& search) {
-  constexpr std::size_t most = 4;
-  const fs::path store = SearchFolder::store_of(search);
-  const std::uint64_t inode = inode_of(store);
-  const auto found =
-      std::ranges::find_if(open_, [&](const Open& open) { return open.folder == search && open.inode == inode; });
-  if (found != open_.end()) {
-    open_.splice(open_.begin(), open_, found);
-    return *open_.front().experiment;
-  }
-  open_.remove_if([&](const Open& open) { return open.folder == search; });
-  open_.push_front({search, inode, std::make_unique<const Experiment>(optimize::read_experiment_of(store))});
-  if (open_.size() > most) {
-    open_.pop_back();
-  }
-  return *open_.front().experiment;
-}
-
 json SearchSession::open(const host::OperationRequest& request) {
   const std::string name = name_in(request.arguments);
-  const fs::path search = folder_.find(name);
-  const optimize::StoreSummary summary = optimize::read_store_summary(SearchFolder::store_of(search));
-  const Experiment& experiment = experiment_of(search);
-  json objectives = json::array();
-  for (const optimize::Objective& objective : experiment.objectives) {
-    objectives.push_back({{"name", objective.name},
-                          {"unit", objective.unit()},
-                          {"maximise", objective.goal == optimize::Goal::maximise}});
-  }
-  json measures = json::array();
-  for (const sim::MeasureDeclaration& measure : sim::measures()) {
-    measures.push_back(measure.name);
-  }
-  const bool has_ended = summary.ending && !optimize::is_being_written(SearchFolder::store_of(search));
-  return {{"name", name},
-          {"experiment", one_line(fs::path(experiment.path).filename().string())},
-          {"method", optimize::method_name(experiment.method)},
-          {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
-          {"seed", std::to_string(experiment.seed)},
-          {"trials", experiment.trials.count},
-          {"planned", summary.planned > 0 ? json(summary.planned) : json()},
-          {"runs", summary.runs},
-          {"joints", experiment.scenario.robot.joints.size()},
-          {"objectives", std::move(objectives)},
-          {"dimensions", dimensions_json(experiment.space)},
-          {"measures", std::move(measures)},
-          {"has_baseline", experiment.has_baseline},
-          {"result", has_ended ? result_of(search) : json()}};
+  json description = results_.describe(folder_.find(name));
+  description["name"] = name;
+  return description;
 }
 
 json SearchSession::rows(const host::OperationRequest& request) {
-  constexpr std::size_t most_rows = 1000;
-  constexpr std::size_t most_numbers = 20'000;
-  const fs::path search = folder_.find(name_in(request.arguments));
-  const auto run = argument<std::uint32_t>(request.arguments, "run", "the number of a run").value_or(0);
   const auto from = argument<std::uint64_t>(request.arguments, "from", "the number of an evaluation").value_or(0);
-  const Experiment& experiment = experiment_of(search);
-  const std::size_t width = experiment.objectives.size() + experiment.space.dimensions.size();
-  const std::size_t most = std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(width, 1), 1, most_rows);
-  optimize::Store store(SearchFolder::store_of(search), experiment, {}, optimize::Store::Opening::look);
-  json scores = json::array();
-  json values = json::array();
-  json flags = json::array();
-  for (const Evaluation& evaluation : store.evaluations(run, from, most)) {
-    json its_scores = json::array();
-    for (const double score : evaluation.scores) {
-      its_scores.push_back(number_or_null(score));
-    }
-    json its_values = json::array();
-    for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
-      its_values.push_back(experiment.space.value(evaluation.candidate, i));
-    }
-    scores.push_back(std::move(its_scores));
-    values.push_back(std::move(its_values));
-    flags.push_back((optimize::has_own_score(experiment, evaluation, 0) ? 0 : 1) + (evaluation.given_up ? 2 : 0) +
-                    (evaluation.reused ? 4 : 0));
-  }
-  return {{"from", from},
-          {"made", store.evaluation_count(run)},
-          {"scores", std::move(scores)},
-          {"values", std::move(values)},
-          {"flags", std::move(flags)}};
-}
-
-Evaluation SearchSession::evaluation_of(const json& arguments, const Experiment& experiment,
-                                        const fs::path& search) const {
-  const auto run = argument<std::uint32_t>(arguments, "run", "the number of a run").value_or(0);
-  const auto number = argument<std::uint64_t>(arguments, "number", "the number of an evaluation");
-  optimize::Store store(SearchFolder::store_of(search), experiment, {}, optimize::Store::Opening::look);
-  std::vector<Evaluation> found = store.evaluations(run, number.value_or(0), 1);
-  if (!number || found.empty() || found.front().number != *number) {
-    throw InputError("number", 0, number ? std::to_string(*number) : "nothing", "the number of an evaluation");
-  }
-  return std::move(found.front());
+  return results_.rows(folder_.find(name_in(request.arguments)), run_in(request.arguments), from);
 }
 
 json SearchSession::candidate(const host::OperationRequest& request) {
-  const fs::path search = folder_.find(name_in(request.arguments));
-  const Experiment& experiment = experiment_of(search);
-  const Evaluation evaluation = evaluation_of(request.arguments, experiment, search);
-  json scores = json::array();
-  for (const double score : evaluation.scores) {
-    scores.push_back(number_or_null(score));
-  }
-  json words = json::array();
-  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
-    // `--set` takes one joint or all of them, a dimension also some.
-    const std::string value = experiment.space.value_text(evaluation.candidate, i);
-    const std::string& name = experiment.space.dimensions[i].name;
-    const std::size_t colon = name.find(':');
-    const std::string joints = colon == std::string::npos ? std::string() : name.substr(colon + 1);
-    if (joints.find(',') == std::string::npos) {
-      words.push_back(name + "=" + value);
-      continue;
-    }
-    for (const Setting& target : experiment.space.dimensions[i].targets) {
-      words.push_back(name.substr(0, colon) + ":" + experiment.scenario.robot.joints[target.joint].name + "=" + value);
-    }
-  }
-  json measures = json::object();
-  for (const sim::MeasureDeclaration& measure : sim::measures()) {
-    measures[std::string(measure.name)] = number_or_null(evaluation.measures[measure.measure]);
-  }
-  return {{"number", evaluation.number},
-          {"scores", std::move(scores)},
-          {"words", std::move(words)},
-          {"measures", std::move(measures)},
-          {"failure", text_or_null(one_line(evaluation.failure))},
-          {"given_up", evaluation.given_up},
-          {"reused", evaluation.reused}};
+  return results_.candidate(folder_.find(name_in(request.arguments)), run_in(request.arguments),
+                            number_in(request.arguments));
 }
 
 json SearchSession::motion(const host::OperationRequest& request) {
@@ -354,10 +212,9 @@ json SearchSession::motion(const host::OperationRequest& request) {
   if (!name) {
     return json::binary(gait_motion(*draft(), longest, is_outdated));
   }
-  const fs::path search = folder_.find(*name);
-  const Experiment& experiment = experiment_of(search);
-  const Evaluation evaluation = evaluation_of(request.arguments, experiment, search);
-  return json::binary(gait_motion(optimize::own_world(experiment, evaluation), longest, is_outdated));
+  const sim::Scenario scenario =
+      results_.scenario_of(folder_.find(*name), run_in(request.arguments), number_in(request.arguments));
+  return json::binary(gait_motion(scenario, longest, is_outdated));
 }
 
 json SearchSession::check(const host::OperationRequest& request) {
@@ -371,7 +228,7 @@ json SearchSession::check(const host::OperationRequest& request) {
   const std::uint64_t planned = optimize::planned_evaluations(experiment);
   const std::string simulation = fs::path(scenario->path).filename().string();
   return {{"names", names_of(experiment.space)},
-          {"candidates", number_or_null(experiment.space.size())},
+          {"candidates", std::isfinite(experiment.space.size()) ? json(experiment.space.size()) : json()},
           {"planned", planned > 0 ? json(planned) : json()},
           {"text", optimize::experiment_text(form, *scenario, simulation).text},
           {"engine", std::string(sim::name_of(scenario->environment.engine))},

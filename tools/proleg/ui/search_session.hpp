@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "sim/optimize/experiment/experiment.hpp"
 #include "tools/proleg/common/detached_program.hpp"
 #include "tools/proleg/ui/command_sequence.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/search_folder.hpp"
+#include "tools/proleg/ui/search_results.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
 namespace proleg::tools {
@@ -61,13 +61,6 @@ class SearchSession final : private SessionThread {
     std::filesystem::path folder;  ///< for its files, removed at the end
     std::unique_ptr<CommandSequence> program;
   };
-  /// A store that was read, for the next look at it.
-  struct Open {
-    std::filesystem::path folder;
-    std::uint64_t inode = 0;
-    std::unique_ptr<const optimize::Experiment> experiment;
-  };
-
   // SessionThread
   void serve() override;
   void fail(const std::string& why) override;
@@ -89,12 +82,6 @@ class SearchSession final : private SessionThread {
 
   void publish(const std::string& name, nlohmann::json document);
   [[nodiscard]] std::shared_ptr<const sim::Scenario> draft() const;
-  /// What a store is of. It stays until other searches are looked at.
-  const optimize::Experiment& experiment_of(const std::filesystem::path& search);
-  /// The evaluation that the arguments name, and its experiment.
-  [[nodiscard]] optimize::Evaluation evaluation_of(const nlohmann::json& arguments,
-                                                   const optimize::Experiment& experiment,
-                                                   const std::filesystem::path& search) const;
   /// `proleg optimise` with these words, and with the algorithms of users that this program has.
   [[nodiscard]] std::vector<std::string> command(const std::vector<std::string>& words) const;
   void begin(const host::OperationRequest& request, const std::string& name, const std::filesystem::path& folder,
@@ -108,7 +95,7 @@ class SearchSession final : private SessionThread {
   const ProjectFiles& files_;
   const PresentDraft& draft_;
   SearchFolder folder_;
-  std::list<Open> open_;  ///< the one that was used last is the first
+  SearchResults results_;
   std::list<Beginning> beginnings_;
   std::list<DetachedProgram> running_;  ///< whose end must be taken note of
   std::optional<Estimate> estimate_;

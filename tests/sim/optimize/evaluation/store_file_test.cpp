@@ -14,6 +14,7 @@
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/store_summary.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/sources.hpp"
 #include "small_experiment.hpp"

@@ -1,0 +1,194 @@
+#include "tools/proleg/ui/search_results.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/store_summary.hpp"
+#include "tools/proleg/ui/search_folder.hpp"
+#include "tools/proleg/ui/session_base.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using optimize::Evaluation;
+using optimize::Experiment;
+
+json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
+
+std::uint64_t inode_of(const fs::path& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 ? status.st_ino : 0;
+}
+
+/// What `proleg optimise` has left of its result; null: nothing that is an object.
+json result_of(const fs::path& search) {
+  constexpr std::uintmax_t most = 1 << 20;
+  std::error_code error;
+  const fs::path file = search / "result.json";
+  if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > most) {
+    return json();
+  }
+  std::ifstream stream(file);
+  json result = json::parse(stream, nullptr, false);
+  return result.is_object() ? result : json();
+}
+
+json dimensions_json(const optimize::SearchSpace& space) {
+  json dimensions = json::array();
+  for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
+    optimize::Candidate corner(space.dimensions.size(), 0);
+    const double lowest = space.value(corner, i);
+    corner[i] = static_cast<std::uint32_t>(space.dimensions[i].values.size() - 1);
+    dimensions.push_back({{"name", space.dimensions[i].name},
+                          {"unit", std::string(scale_of(space.dimensions[i].unit).symbol)},
+                          {"count", space.dimensions[i].values.size()},
+                          {"lowest", lowest},
+                          {"highest", space.value(corner, i)}});
+  }
+  return dimensions;
+}
+
+Evaluation evaluation_of(const Experiment& experiment, const fs::path& search, std::uint32_t run,
+                         std::uint64_t number) {
+  optimize::Store store(SearchFolder::store_of(search), experiment, {}, optimize::Store::Opening::look);
+  std::vector<Evaluation> found = store.evaluations(run, number, 1);
+  if (found.empty() || found.front().number != number) {
+    throw InputError("number", 0, std::to_string(number), "the number of an evaluation");
+  }
+  return std::move(found.front());
+}
+
+}  // namespace
+
+const Experiment& SearchResults::experiment_of(const fs::path& search) {
+  constexpr std::size_t most = 4;
+  const fs::path store = SearchFolder::store_of(search);
+  const std::uint64_t inode = inode_of(store);
+  const auto found =
+      std::ranges::find_if(open_, [&](const Open& open) { return open.search == search && open.inode == inode; });
+  if (found != open_.end()) {
+    open_.splice(open_.begin(), open_, found);
+    return *open_.front().experiment;
+  }
+  open_.remove_if([&](const Open& open) { return open.search == search; });
+  open_.push_front({search, inode, std::make_unique<const Experiment>(optimize::read_experiment_of(store))});
+  if (open_.size() > most) {
+    open_.pop_back();
+  }
+  return *open_.front().experiment;
+}
+
+json SearchResults::describe(const fs::path& search) {
+  const optimize::StoreSummary summary = optimize::read_store_summary(SearchFolder::store_of(search));
+  const Experiment& experiment = experiment_of(search);
+  json objectives = json::array();
+  for (const optimize::Objective& objective : experiment.objectives) {
+    objectives.push_back({{"name", objective.name},
+                          {"unit", objective.unit()},
+                          {"maximise", objective.goal == optimize::Goal::maximise}});
+  }
+  json measures = json::array();
+  for (const sim::MeasureDeclaration& measure : sim::measures()) {
+    measures.push_back(measure.name);
+  }
+  const bool has_ended = summary.ending && !optimize::is_being_written(SearchFolder::store_of(search));
+  return {{"experiment", one_line(fs::path(experiment.path).filename().string())},
+          {"method", optimize::method_name(experiment.method)},
+          {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+          {"seed", std::to_string(experiment.seed)},
+          {"trials", experiment.trials.count},
+          {"planned", summary.planned > 0 ? json(summary.planned) : json()},
+          {"runs", summary.runs},
+          {"joints", experiment.scenario.robot.joints.size()},
+          {"objectives", std::move(objectives)},
+          {"dimensions", dimensions_json(experiment.space)},
+          {"measures", std::move(measures)},
+          {"has_baseline", experiment.has_baseline},
+          {"result", has_ended ? result_of(search) : json()}};
+}
+
+json SearchResults::rows(const fs::path& search, std::uint32_t run, std::uint64_t from) {
+  constexpr std::size_t most_rows = 1000;
+  constexpr std::size_t most_numbers = 20'000;
+  const Experiment& experiment = experiment_of(search);
+  const std::size_t width = experiment.objectives.size() + experiment.space.dimensions.size();
+  const std::size_t most = std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(width, 1), 1, most_rows);
+  optimize::Store store(SearchFolder::store_of(search), experiment, {}, optimize::Store::Opening::look);
+  json scores = json::array();
+  json values = json::array();
+  json flags = json::array();
+  for (const Evaluation& evaluation : store.evaluations(run, from, most)) {
+    json its_scores = json::array();
+    for (const double score : evaluation.scores) {
+      its_scores.push_back(number_or_null(score));
+    }
+    json its_values = json::array();
+    for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+      its_values.push_back(experiment.space.value(evaluation.candidate, i));
+    }
+    scores.push_back(std::move(its_scores));
+    values.push_back(std::move(its_values));
+    flags.push_back((optimize::has_own_score(experiment, evaluation, 0) ? 0 : 1) + (evaluation.given_up ? 2 : 0) +
+                    (evaluation.reused ? 4 : 0));
+  }
+  return {{"from", from},
+          {"made", store.evaluation_count(run)},
+          {"scores", std::move(scores)},
+          {"values", std::move(values)},
+          {"flags", std::move(flags)}};
+}
+
+json SearchResults::candidate(const fs::path& search, std::uint32_t run, std::uint64_t number) {
+  const Experiment& experiment = experiment_of(search);
+  const Evaluation evaluation = evaluation_of(experiment, search, run, number);
+  json scores = json::array();
+  for (const double score : evaluation.scores) {
+    scores.push_back(number_or_null(score));
+  }
+  json words = json::array();
+  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+    // `--set` takes one joint or all of them, a dimension also some.
+    const std::string value = experiment.space.value_text(evaluation.candidate, i);
+    const std::string& name = experiment.space.dimensions[i].name;
+    const std::size_t colon = name.find(':');
+    const std::string joints = colon == std::string::npos ? std::string() : name.substr(colon + 1);
+    if (joints.find(',') == std::string::npos) {
+      words.push_back(name + "=" + value);
+      continue;
+    }
+    for (const Setting& target : experiment.space.dimensions[i].targets) {
+      words.push_back(name.substr(0, colon) + ":" + experiment.scenario.robot.joints[target.joint].name + "=" + value);
+    }
+  }
+  json measures = json::object();
+  for (const sim::MeasureDeclaration& measure : sim::measures()) {
+    measures[std::string(measure.name)] = number_or_null(evaluation.measures[measure.measure]);
+  }
+  return {{"number", evaluation.number},
+          {"scores", std::move(scores)},
+          {"words", std::move(words)},
+          {"measures", std::move(measures)},
+          {"failure", text_or_null(one_line(evaluation.failure))},
+          {"given_up", evaluation.given_up},
+          {"reused", evaluation.reused}};
+}
+
+sim::Scenario SearchResults::scenario_of(const fs::path& search, std::uint32_t run, std::uint64_t number) {
+  const Experiment& experiment = experiment_of(search);
+  return optimize::own_world(experiment, evaluation_of(experiment, search, run, number));
+}
+
+}  // namespace proleg::tools

@@ -61,6 +61,20 @@ json dimensions_json(const optimize::SearchSpace& space) {
   return dimensions;
 }
 
+/// The names of a dimension as `--set` takes them: it has a name for one joint and for all, a dimension also for some.
+std::vector<std::string> setting_names(const Experiment& experiment, std::size_t dimension) {
+  const optimize::Dimension& its = experiment.space.dimensions[dimension];
+  const std::size_t colon = its.name.find(':');
+  if (colon == std::string::npos || its.name.find(',', colon) == std::string::npos) {
+    return {its.name};
+  }
+  std::vector<std::string> names;
+  for (const Setting& target : its.targets) {
+    names.push_back(its.name.substr(0, colon + 1).append(experiment.scenario.robot.joints[target.joint].name));
+  }
+  return names;
+}
+
 Evaluation evaluation_of(const Experiment& experiment, const fs::path& search, std::uint32_t run,
                          std::uint64_t number) {
   optimize::Store store(SearchFolder::store_of(search), experiment, {}, optimize::Store::Opening::look);
@@ -160,17 +174,9 @@ json SearchResults::candidate(const fs::path& search, std::uint32_t run, std::ui
   }
   json words = json::array();
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
-    // `--set` takes one joint or all of them, a dimension also some.
     const std::string value = experiment.space.value_text(evaluation.candidate, i);
-    const std::string& name = experiment.space.dimensions[i].name;
-    const std::size_t colon = name.find(':');
-    const std::string joints = colon == std::string::npos ? std::string() : name.substr(colon + 1);
-    if (joints.find(',') == std::string::npos) {
-      words.push_back(name + "=" + value);
-      continue;
-    }
-    for (const Setting& target : experiment.space.dimensions[i].targets) {
-      words.push_back(name.substr(0, colon) + ":" + experiment.scenario.robot.joints[target.joint].name + "=" + value);
+    for (const std::string& name : setting_names(experiment, i)) {
+      words.push_back(std::string(name).append("=").append(value));
     }
   }
   json measures = json::object();

@@ -17,8 +17,9 @@ const tests = join(room, '../../tests/host/page');
 // Sizes in bytes of gzip. The first chunk is what the page needs for the top bar, STOP and the connection.
 const largestFirstChunk = 40 * 1024;
 const largestMake = 60 * 1024; // the page Make
+const largestSearch = 30 * 1024; // the part Search of Make
 const largestEditor = 150 * 1024; // of sources, with CodeMirror
-const largestPage = 220 * 1024 + largestMake + largestEditor;
+const largestPage = 220 * 1024 + largestMake + largestSearch + largestEditor;
 
 // Bytes of the player as it is in every exported recording.
 const largestPlayer = 800 * 1024;
@@ -69,6 +70,7 @@ function checkSizes(folder, first) {
   let compressed = 0;
   let compressedFirst = 0;
   let compressedMake = 0;
+  let compressedSearch = 0;
   let compressedEditor = 0;
   for (const name of readdirSync(folder).sort()) {
     const bytes = readFileSync(join(folder, name));
@@ -77,6 +79,7 @@ function checkSizes(folder, first) {
     compressed += size;
     compressedFirst += first.has(name) ? size : 0;
     compressedMake += name.startsWith('chunk-make_page-') ? size : 0;
+    compressedSearch += name.startsWith('chunk-search_part-') ? size : 0;
     compressedEditor += name.startsWith('chunk-code_mirror-') ? size : 0;
     print(name + (first.has(name) ? ' (first)' : ''), bytes.length, size);
   }
@@ -87,6 +90,7 @@ function checkSizes(folder, first) {
   for (const [what, size, largest] of [
     ['the first chunk', compressedFirst, largestFirstChunk],
     ['the page Make', compressedMake, largestMake],
+    ['the part Search', compressedSearch, largestSearch],
     ['the editor of sources', compressedEditor, largestEditor],
     ['the page', compressed, largestPage],
   ]) {

@@ -2,7 +2,7 @@
 // all modules of its column give.
 import { useRef } from 'preact/hooks';
 import type { AlgorithmDocument, BehaviourModule, DraftRobot } from '../wire/messages.js';
-import { algorithmTitle, fromTail } from './robot_text.js';
+import { algorithmTitle, fromTail } from '../state/robot_text.js';
 import type { MakeApp } from './make_app.js';
 import { ModuleForm } from './module_form.js';
 

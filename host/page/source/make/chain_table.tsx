@@ -7,7 +7,7 @@ import { addFront } from '../view/front.js';
 import type { DraftRobot } from '../wire/messages.js';
 import { columnAfter, placeAt, scrollStep } from './joint_drag.js';
 import type { MakeApp } from './make_app.js';
-import { axisLetter, axisOfAngle, axisWord, fromTail } from './robot_text.js';
+import { axisLetter, axisOfAngle, axisWord, fromTail } from '../state/robot_text.js';
 
 const smallestDrag = 4; // pixels: a press with a trembling hand moves nothing
 

@@ -1,13 +1,15 @@
-// The robot of the draft for the panels that show a robot: it stands at its start, and its path is the foresight.
-import { effect, signal } from '@preact/signals-core';
+// The robot of the draft for the panels that show a robot: it stands at its start, and its path is the foresight. Or it moves,
+// and beside it a candidate of a search.
+import { computed, effect, signal } from '@preact/signals-core';
 import { TelemetryHistory } from '../data/telemetry_history.js';
 import { ActionList } from '../state/actions.js';
 import type { PageState } from '../state/page_state.js';
 import { SignalSelection } from '../state/signal_selection.js';
-import { TimeView } from '../state/time_view.js';
+import { TimeView, type ShownTime } from '../state/time_view.js';
 import type { Choice, RobotView } from '../view/robot_view.js';
 import type { RobotDocument, Signal, TelemetryDocument } from '../wire/messages.js';
 import { rowLayout } from '../wire/subscription.js';
+import type { MotionPair } from './search/motion.js';
 
 const micrometre = 1e-6;
 const quaternionUnit = 2 ** 30;
@@ -19,14 +21,22 @@ export class DraftView implements RobotView {
     bus: signal(null),
     busSession: signal(null),
   };
-  readonly history = new TelemetryHistory();
-  readonly time = new TimeView();
+  readonly wantedMotion = signal<MotionPair | null>(null); // null: it stands
+  // A motion of a robot with other joints waits until it is replaced.
+  readonly motion = computed(() => {
+    const motion = this.wantedMotion.value;
+    return motion !== null && motion.draft.joints === this.state.robot.value?.joints.length ? motion : null;
+  });
+  readonly compared = computed(() => this.motion.value?.compared ?? null);
   readonly marks = null;
   readonly mover = null;
   readonly poses = null;
   readonly selection = new SignalSelection();
   readonly tickRate = 100;
-  readonly wholePath = signal<Float64Array | null>(null);
+  readonly wholePath = computed<Float64Array | null>(() => this.motion.value?.wholePath ?? this.foresight.value);
+  private readonly start = new TelemetryHistory();
+  private readonly noTime = new TimeView();
+  private readonly foresight = signal<Float64Array | null>(null);
   private run = 0;
 
   constructor(
@@ -42,13 +52,19 @@ export class DraftView implements RobotView {
       if (robot === null || head === undefined) return;
       this.place(head, robot.joints.length);
       this.state.robot.value = { ...robot, meshes: [...meshes] };
-      // The view forgets the path with the robot; the old one is right until the next comes.
-      this.wholePath.value = this.wholePath.peek()?.slice() ?? null;
     });
     effect(() => {
       const path = page.foresight.value?.path ?? [];
-      this.wholePath.value = Float64Array.from(path.flatMap((point) => [...point, 1, 0, 0, 0]));
+      this.foresight.value = Float64Array.from(path.flatMap((point) => [...point, 1, 0, 0, 0]));
     });
+  }
+
+  get time(): ShownTime {
+    return this.motion.peek()?.time ?? this.noTime;
+  }
+
+  get history(): TelemetryHistory {
+    return this.motion.peek()?.draft.rows ?? this.start;
   }
 
   get sampledRows(): TelemetryHistory {
@@ -60,7 +76,7 @@ export class DraftView implements RobotView {
   }
 
   get newestTick(): number {
-    return 0;
+    return this.motion.peek()?.time.last ?? 0;
   }
 
   // One row: the robot at its start, straight.
@@ -75,6 +91,6 @@ export class DraftView implements RobotView {
     ]);
     this.run += 1;
     const message = { subscription: 0, tick: 0, rows: 1, stride: 1, run: this.run, hasGap: false, width: values.length, values };
-    this.history.append(message, rowLayout(signals));
+    this.start.append(message, rowLayout(signals));
   }
 }

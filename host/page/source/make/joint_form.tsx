@@ -1,9 +1,9 @@
 // The numbers of the chosen joints, and of a link.
 import type { DraftJoint, DraftRobot } from '../wire/messages.js';
-import { axisAngle, axisOfAngle } from './robot_text.js';
+import { axisAngle, axisOfAngle } from '../state/robot_text.js';
 import type { MakeApp } from './make_app.js';
-import { NumberField } from './number_field.js';
-import { TextField } from './text_field.js';
+import { NumberField } from './fields/number_field.js';
+import { TextField } from './fields/text_field.js';
 
 export function JointForm({ app, robot }: { app: MakeApp; robot: DraftRobot }) {
   const joints = app.chosenJoints.value.filter((joint) => joint < robot.joints.length);

@@ -2,7 +2,7 @@
 import { formatNumber, parseNumber } from '../state/parameter_values.js';
 import { type CellProblem, type CellRange, splitCells } from '../state/value_table.js';
 import type { DraftJoint, JointValues } from '../wire/messages.js';
-import { axisAngle, axisOfAngle } from './robot_text.js';
+import { axisAngle, axisOfAngle } from '../state/robot_text.js';
 
 type ColumnName = 'name' | 'axis' | 'lower' | 'upper' | 'torque' | 'speed';
 

@@ -3,7 +3,7 @@ import { useSignal } from '@preact/signals';
 import type { LibraryItem } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
 import { WorldMeshForm } from './mesh_form.js';
-import { NumberField } from './number_field.js';
+import { NumberField } from './fields/number_field.js';
 
 function ItemForm({ app, item, done }: { app: MakeApp; item: LibraryItem; done(): void }) {
   const values = useSignal<Record<string, number>>({});

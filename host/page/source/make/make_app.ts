@@ -15,12 +15,13 @@ import { DraftView } from './draft_view.js';
 import { freeDistance } from './free_place.js';
 import { copyJoints, jointColumns, type JointPaste } from './joint_table.js';
 import { OwnMesh } from './own_mesh.js';
+import type { SearchHost } from './search/search_host.js';
 import type { MeshFile } from './mesh_transfer.js';
 
 export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
 // The parts of the draft that can be shown beside the drawings.
-export const partNames = ['robot', 'behaviour', 'algorithm', 'world', 'run'] as const;
+export const partNames = ['robot', 'behaviour', 'algorithm', 'world', 'run', 'search'] as const;
 export type PartName = (typeof partNames)[number];
 
 // What is dragged, and where it is now. The program gets the next step when it has answered the one before.
@@ -65,6 +66,7 @@ export class MakeApp {
     const chosen = this.chosen.value;
     return chosen === null ? null : (this.objects.value[chosen] ?? null);
   });
+  readonly search: SearchHost;
   // Text for the table of joints, until the table takes it.
   readonly jointText = signal<string | null>(null);
 
@@ -83,6 +85,16 @@ export class MakeApp {
       objects: computed(() => this.objects.value.filter((_, number) => this.isChosen(number))),
       choose: (joint, object, adds) => this.chooseInView(joint, object, adds),
     });
+    this.search = {
+      page,
+      draft: this.draft,
+      draftRobot: this.view.state.robot,
+      isSearchShown: computed(() => page.shownPage.value === 'make' && this.part.value === 'search' && page.state.isConnected.value),
+      chosenSearch: signal<string | null>(null),
+      motion: this.view.wantedMotion,
+      obstacle: () => this.obstacle(),
+      setValues: (words, label) => this.changes.change('behaviour.values', { words, label }),
+    };
     this.mesh = new OwnMesh({
       operations: page.operations,
       obstacle: () => this.obstacle(),
@@ -292,6 +304,7 @@ export class MakeApp {
 
   // Chooses what was clicked in the 3D view, and shows its part. The ground is the background.
   private chooseInView(joint: number | null, object: PlacedObject | null, adds: boolean): void {
+    if (this.view.motion.peek() !== null) return; // somebody watches it
     const number = object === null ? -1 : this.objects.peek().findIndex(({ moves, index }) => moves === object.moves && index === object.index);
     const isGround = this.objects.peek()[number]?.shapes.some(({ size }) => Math.max(...size) > groundSize) ?? true;
     if (joint !== null) {

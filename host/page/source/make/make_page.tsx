@@ -1,6 +1,7 @@
 // The page Make: the scenario from above, from the side and in 3D, where the robot will go in it, and its parts: robot,
-// behaviour, world, run.
+// behaviour, world, run, search.
 import { useEffect } from 'preact/hooks';
+import { LaterView, loadLater } from '../panels/later_view.js';
 import { ScenePanel } from '../panels/scene_panel.js';
 import { openDialog } from '../view/dialogs.js';
 import { isTextField } from '../view/keyboard.js';
@@ -15,8 +16,13 @@ import { OpenPanel } from './open_panel.js';
 import { RobotPart } from './robot_part.js';
 import { FileList, RunForm } from './run_form.js';
 import { SavePanel } from './save_panel.js';
+import type { SearchHost } from './search/search_host.js';
 import { WorldMap } from './world_map.js';
 import { WorldPart } from './world_part.js';
+
+// The part Search is loaded when it is first shown.
+const searchPart = loadLater<SearchHost>(() => import('./search/search_part.js').then((module) => module.SearchPart));
+const chosenSearch = loadLater<SearchHost>(() => import('./search/search_part.js').then((module) => module.ChosenSearchView));
 
 let make: MakeApp | null = null; // the only one of the page; it stays when another page is shown
 
@@ -141,7 +147,7 @@ function Foresight({ app }: { app: MakeApp }) {
   );
 }
 
-const partTitles: Record<PartName, string> = { robot: 'Robot', behaviour: 'Behaviour', algorithm: 'Algorithm', world: 'World', run: 'Run' };
+const partTitles: Record<PartName, string> = { robot: 'Robot', behaviour: 'Behaviour', algorithm: 'Algorithm', world: 'World', run: 'Run', search: 'Search' };
 
 // Which part of the draft is at the side of the drawings.
 function PartTabs({ app }: { app: MakeApp }) {
@@ -184,6 +190,8 @@ function Part({ app }: { app: MakeApp }) {
       return <AlgorithmPart app={app} />;
     case 'world':
       return <WorldPart app={app} />;
+    case 'search':
+      return <LaterView app={app.search} part={searchPart()} wait="Loading …" />;
     case 'run':
       return (
         <section class="panel make-panel" aria-label="Run">
@@ -245,11 +253,15 @@ export function MakePage({ app: page }: { app: MakeStores }) {
         </div>
       ))}
       <div class="make-main">
-        <section class="panel make-maps" aria-label="Maps">
-          <WorldMap app={app} plane="top" />
-          <WorldMap app={app} plane="side" />
-          <Foresight app={app} />
-        </section>
+        {app.part.value === 'search' && app.search.chosenSearch.value !== null ? (
+          <LaterView app={app.search} part={chosenSearch()} wait="Loading …" />
+        ) : (
+          <section class="panel make-maps" aria-label="Maps">
+            <WorldMap app={app} plane="top" />
+            <WorldMap app={app} plane="side" />
+            <Foresight app={app} />
+          </section>
+        )}
         <ScenePanel app={app.view} />
       </div>
       {app.panel.value === 'new' ? (

@@ -4,8 +4,8 @@ import type { SentMesh } from '../wire/messages.js';
 import { fromHex, toHex } from './colour_text.js';
 import { formatNumber } from '../state/parameter_values.js';
 import type { MakeApp } from './make_app.js';
-import { NumberField } from './number_field.js';
-import { TextField } from './text_field.js';
+import { NumberField } from './fields/number_field.js';
+import { TextField } from './fields/text_field.js';
 import { MeshPreview } from './mesh_preview.js';
 import { sidesOf, sizeText, suggestedUnit, turnedSides, units, type Purpose } from './mesh_scale.js';
 

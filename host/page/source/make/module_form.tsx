@@ -3,10 +3,10 @@ import { useSignal } from '@preact/signals';
 import { ParameterSlider } from '../panels/parameter_slider.js';
 import { formatNumber, formatRaw, parseValue, splitHelp } from '../state/parameter_values.js';
 import type { AlgorithmDocument, AlgorithmParameter, BehaviourModule, DraftRobot } from '../wire/messages.js';
-import { fromTail } from './robot_text.js';
-import { ChoiceField } from './choice_field.js';
+import { fromTail } from '../state/robot_text.js';
+import { ChoiceField } from './fields/choice_field.js';
 import type { MakeApp } from './make_app.js';
-import { TextField } from './text_field.js';
+import { TextField } from './fields/text_field.js';
 
 interface Row {
   app: MakeApp;

@@ -4,7 +4,7 @@ import { signal } from '@preact/signals-core';
 import { useEffect } from 'preact/hooks';
 import type { NewScenario, RobotKind } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
-import { algorithmTitle } from './robot_text.js';
+import { algorithmTitle } from '../state/robot_text.js';
 
 const steps = ['robot', 'gait', 'world', 'name'] as const;
 

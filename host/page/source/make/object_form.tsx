@@ -5,8 +5,8 @@ import { poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js
 import type { DraftDocument, WorldObject, WorldShape } from '../wire/messages.js';
 import { fromHex, toHex } from './colour_text.js';
 import type { MakeApp } from './make_app.js';
-import { NumberField } from './number_field.js';
-import { TextField } from './text_field.js';
+import { NumberField } from './fields/number_field.js';
+import { TextField } from './fields/text_field.js';
 
 const sizeLabels: Record<WorldShape['type'], readonly string[]> = {
   box: ['size x', 'size y', 'size z'],

@@ -4,7 +4,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import type { GalleryEntry } from '../wire/messages.js';
 import { Picture } from './gallery_picture.js';
 import type { MakeApp } from './make_app.js';
-import { algorithmTitle } from './robot_text.js';
+import { algorithmTitle } from '../state/robot_text.js';
 import { shortPath } from './short_path.js';
 
 function distanceText(distance: number): string {

@@ -7,9 +7,9 @@ import { JointTableDialog } from './joint_table_dialog.js';
 import type { MakeApp } from './make_app.js';
 import { ModuleMeshForm } from './mesh_form.js';
 import { formatNumber } from '../state/parameter_values.js';
-import { NumberField } from './number_field.js';
+import { NumberField } from './fields/number_field.js';
 import { SensorPanel } from './sensor_panel.js';
-import { TextField } from './text_field.js';
+import { TextField } from './fields/text_field.js';
 
 const servoFields = [
   { name: 'gain', unit: '1/s', title: 'How hard the servo pulls towards its angle. A larger one follows more closely.' },

@@ -1,9 +1,9 @@
 // How the scenario is run, and what each value costs.
 import type { RunDocument } from '../wire/messages.js';
-import { ChoiceField } from './choice_field.js';
+import { ChoiceField } from './fields/choice_field.js';
 import type { MakeApp } from './make_app.js';
-import { NumberField } from './number_field.js';
-import { TextField } from './text_field.js';
+import { NumberField } from './fields/number_field.js';
+import { TextField } from './fields/text_field.js';
 
 const engineTexts: Record<RunDocument['engine'], string> = {
   ode: 'ODE: any robot, any world',

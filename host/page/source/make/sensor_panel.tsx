@@ -1,10 +1,10 @@
 // The sensors that the robot carries.
 import { useSignal } from '@preact/signals';
 import type { DraftRobot, DraftSensor, PartsDocument } from '../wire/messages.js';
-import { ChoiceField } from './choice_field.js';
+import { ChoiceField } from './fields/choice_field.js';
 import type { MakeApp } from './make_app.js';
-import { NumberField } from './number_field.js';
-import { TextField } from './text_field.js';
+import { NumberField } from './fields/number_field.js';
+import { TextField } from './fields/text_field.js';
 
 type SensorNumber = 'minangle' | 'maxangle' | 'resolution' | 'maxrange' | 'scantime';
 

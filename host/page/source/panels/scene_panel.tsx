@@ -13,6 +13,7 @@ import { listenToPointer, type RobotMover } from './scene_pointer.js';
 import { ScenePull } from './scene_pull.js';
 import { areComing } from './joint_values.js';
 import { poseAt, shownPose } from './scene_pose.js';
+import { sendRobots } from './scene_robots.js';
 
 const readoutPeriod = 100; // milliseconds
 
@@ -31,7 +32,7 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
   const level = useSignal(0);
   const failure = useSignal<string | null>(null);
   const isOnBus = app.state.busSession.value !== null;
-  const isCompared = (app.compared?.value ?? null) !== null;
+  const compared = app.compared?.value ?? null;
   const post = useRef<(message: ToScene) => void>(() => {});
 
   useEffect(() => {
@@ -104,22 +105,7 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
       listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover, pull, choose),
       effect(() => void canvas.classList.toggle('can-pull', pull.isPossible)),
       effect(() => send({ kind: 'theme', isDark: isDark.value })),
-      effect(() => {
-        const robot = app.state.robot.value;
-        if (robot !== null) send({ kind: 'robot', robot });
-      }),
-      effect(() => {
-        const heads = app.wholePath.value;
-        if (heads !== null) send({ kind: 'path', heads, isOfGhost: false });
-      }),
-      effect(() => {
-        const ghost = app.compared?.value?.reader.robot ?? app.state.robot.value;
-        if (ghost !== null) send({ kind: 'ghost', robot: ghost });
-      }),
-      effect(() => {
-        const heads = app.compared?.value?.reader.wholePath.value ?? null;
-        if (heads !== null) send({ kind: 'path', heads, isOfGhost: true });
-      }),
+      sendRobots(app, send),
       effect(() => {
         const hovered = app.selection.hoveredJoint.value;
         const chosen = app.choice?.joints.value ?? [];
@@ -184,10 +170,10 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
-        {((isOnBus && ghostIsOn.value) || isCompared) && (
+        {((isOnBus && ghostIsOn.value) || compared !== null) && (
           <>
             {' '}
-            <i class="mark ghost" /> {isCompared ? 'second recording' : 'simulation'}
+            <i class="mark ghost" /> {compared === null ? 'simulation' : (compared.legend ?? 'second recording')}
           </>
         )}
       </span>

@@ -24,6 +24,8 @@ import type {
   RemoteValues,
   RecordingsDocument,
   RobotDocument,
+  SearchesDocument,
+  SearchMethodsDocument,
   ServerMessage,
   SessionDocument,
   TelemetryDocument,
@@ -78,6 +80,9 @@ export class PageState {
   readonly algorithmCheck = signal<AlgorithmCheck | null>(null);
   readonly algorithmImage = signal<AlgorithmImage | null>(null);
   readonly missingAlgorithms = signal<MissingAlgorithms | null>(null);
+  // Searches for a gait; null until somebody has looked.
+  readonly searches = signal<SearchesDocument | null>(null);
+  readonly searchMethods = signal<SearchMethodsDocument | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -200,6 +205,12 @@ export class PageState {
           break;
         case 'missing_algorithms':
           this.missingAlgorithms.value = message.value;
+          break;
+        case 'searches':
+          this.searches.value = message.value;
+          break;
+        case 'search_methods':
+          this.searchMethods.value = message.value;
           break;
       }
     }

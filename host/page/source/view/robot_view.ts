@@ -15,8 +15,9 @@ import type { TimeMarks } from '../state/time_marks.js';
 import type { ShownTime, TimeView } from '../state/time_view.js';
 import type { RobotDocument } from '../wire/messages.js';
 
-// A second recording that is shown beside the first.
+// A second robot that is shown beside the first: a second recording, unless it says what it is.
 export interface ComparedView {
+  readonly legend?: string;
   readonly reader: {
     readonly robot: RobotDocument;
     readonly history: TelemetryHistory;

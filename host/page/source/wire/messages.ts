@@ -20,9 +20,11 @@ import type {
   ServoDocument,
 } from './make_messages.js';
 import type { InternalValue, Parameter, PoseArray } from './robot_messages.js';
+import type { Experiment, SearchEngine, SearchesDocument, SearchMethodsDocument } from './search_messages.js';
 
 export type * from './make_messages.js';
 export type * from './robot_messages.js';
+export type * from './search_messages.js';
 
 export const protocol = 1;
 
@@ -279,6 +281,8 @@ export interface Documents {
   algorithm_check: AlgorithmCheck;
   algorithm_image: AlgorithmImage;
   missing_algorithms: MissingAlgorithms | null;
+  searches: SearchesDocument;
+  search_methods: SearchMethodsDocument;
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
@@ -424,6 +428,19 @@ export interface Operations {
   'behaviour.algorithm': PartOperation & { module: number; algorithm: string };
   'behaviour.joints': PartOperation & { module: number; joints: readonly number[] };
   'behaviour.set': PartOperation & { module: number; parameter: string; joints: readonly number[]; value: string };
+  'behaviour.values': PartOperation & { words: readonly string[]; label: string };
+  'draft.motion': Record<string, never>;
+  'search.refresh': Record<string, never>;
+  'search.open': { name: string };
+  'search.rows': { name: string; run: number; from: number };
+  'search.candidate': { name: string; run: number; number: number };
+  'search.motion': { name: string; run: number; number: number };
+  'search.check': { experiment: Experiment };
+  'search.read': { file: string };
+  'search.estimate': { experiment: Experiment; engine: SearchEngine; workers: number };
+  'search.start': { name: string; engine: SearchEngine; workers: number } & ({ experiment: Experiment } | { file: string });
+  'search.stop': { name: string };
+  'search.resume': { name: string; evaluations: string; workers: number };
   'control.take': Record<string, never>;
   'control.answer': { grant: boolean };
   'control.release': Record<string, never>;

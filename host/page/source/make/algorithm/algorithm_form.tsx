@@ -2,7 +2,8 @@
 import { useSignal, type Signal } from '@preact/signals';
 import type { AlgorithmForm, FormParameter, FormValue, UnitName } from '../../wire/messages.js';
 import type { AlgorithmApp } from './algorithm_app.js';
-import { fieldProblem, type FieldProblem } from './field_problem.js';
+import { fieldProblem, type FieldProblem } from '../fields/field_problem.js';
+import { FormField } from '../fields/form_field.js';
 
 const unitTexts: Record<UnitName, string> = {
   degree: 'angle (deg)',
@@ -18,39 +19,6 @@ const mostValues = 20;
 
 const newParameter: FormParameter = { name: '', unit: 'ratio', minimum: '0', default: '0.5', maximum: '1', help: '' };
 const newValue: FormValue = { name: '', unit: 'ratio', help: '' };
-
-interface FieldProps {
-  name: string; // as in refusals
-  label: string;
-  value: string;
-  size: number;
-  problem: FieldProblem | null;
-  change(text: string): void;
-}
-
-function TextField({ name, label, value, size, problem, change }: FieldProps) {
-  const isWrong = problem?.field === name;
-  return (
-    <label class="number-field">
-      <span>{label}</span>
-      <input
-        type="text"
-        name={name}
-        size={size}
-        value={value}
-        autocomplete="off"
-        spellcheck={false}
-        aria-invalid={isWrong}
-        onInput={(event) => change(event.currentTarget.value)}
-      />
-      {isWrong && (
-        <span class="problem" role="alert">
-          {problem.text}
-        </span>
-      )}
-    </label>
-  );
-}
 
 function UnitField({ value, change }: { value: UnitName; change(unit: UnitName): void }) {
   return (
@@ -88,7 +56,7 @@ function Rows<Row extends { name: string; unit: UnitName }>({ title, list, rows,
             key === 'unit' ? (
               <UnitField key={key} value={row.unit} change={(unit) => set(i, { unit } as Partial<Row>)} />
             ) : (
-              <TextField
+              <FormField
                 key={key}
                 name={`${list}.${i}.${key}`}
                 label={label}
@@ -171,9 +139,9 @@ export function AlgorithmFormView({ app, first }: { app: AlgorithmApp; first: Al
         what it does.
       </p>
       <div class="fields">
-        <TextField name="name" label="name" value={form.value.name} size={24} problem={problem.value} change={(name) => set({ name })} />
-        <TextField name="id" label="id (96 to 126)" value={id.value} size={4} problem={problem.value} change={(text) => (id.value = text)} />
-        <TextField name="help" label="what it does" value={form.value.help} size={40} problem={problem.value} change={(help) => set({ help })} />
+        <FormField name="name" label="name" value={form.value.name} size={24} problem={problem.value} change={(name) => set({ name })} />
+        <FormField name="id" label="id (96 to 126)" value={id.value} size={4} problem={problem.value} change={(text) => (id.value = text)} />
+        <FormField name="help" label="what it does" value={form.value.help} size={40} problem={problem.value} change={(help) => set({ help })} />
         <label class="switch">
           <input
             type="checkbox"

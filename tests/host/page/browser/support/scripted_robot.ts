@@ -217,7 +217,8 @@ export class ScriptedRobot {
   }
 
   private sendDocuments(viewer: Viewer): void {
-    const documents: Omit<Documents, 'remote_values' | 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'parts' | Extract<keyof Documents, `algorithm${string}`> | 'missing_algorithms' | 'foresight' | 'gallery'> = {
+    type OfMake = 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'parts' | Extract<keyof Documents, `algorithm${string}` | `search${string}`> | 'missing_algorithms' | 'foresight' | 'gallery';
+    const documents: Omit<Documents, 'remote_values' | OfMake> = {
       robot: chain(),
       parameters: [],
       session: this.session,

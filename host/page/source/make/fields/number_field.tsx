@@ -1,5 +1,5 @@
 // A number that is sent when it is complete.
-import { formatNumber, parseNumber } from '../state/parameter_values.js';
+import { formatNumber, parseNumber } from '../../state/parameter_values.js';
 import { TextField } from './text_field.js';
 
 interface Field {

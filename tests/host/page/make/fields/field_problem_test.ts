@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { fieldProblem } from '../../../../../host/page/source/make/algorithm/field_problem.js';
+import { fieldProblem } from '../../../../../host/page/source/make/fields/field_problem.js';
 
 describe('a refusal of a form', () => {
   it('names its field', () => {

@@ -1,7 +1,7 @@
 // Words for joints, and the order of a chain.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, fromTail } from '../../../../host/page/source/make/robot_text.js';
+import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, fromTail } from '../../../../host/page/source/state/robot_text.js';
 
 describe('the axis of a joint', () => {
   it('is pitch, yaw or an angle between them', () => {

@@ -1,0 +1,110 @@
+// The chosen candidate: its values beside those of the draft, its measures, and the way into the draft.
+import type { Measure, SearchCandidate } from '../../wire/messages.js';
+import type { ChosenSearch } from './chosen_search.js';
+import type { SearchApp } from './search_app.js';
+import { candidateRemarks, withUnit } from './search_text.js';
+import { wordValues } from './word_values.js';
+
+function Values({ app, candidate }: { app: SearchApp; candidate: SearchCandidate }) {
+  const draft = app.host.draft.value;
+  const { algorithms } = app.host.page.state;
+  if (draft === null) return null;
+  const values = wordValues(candidate.words, draft, algorithms.value);
+  const isApplied = values.length > 0 && values.every(({ isSame }) => isSame);
+  const obstacle = app.host.obstacle();
+  return (
+    <>
+      <div class="table-frame">
+        <table data-testid="candidate-values">
+          <thead>
+            <tr>
+              <th scope="col">value</th>
+              <th scope="col">candidate</th>
+              <th scope="col">draft</th>
+              <th scope="col">unit</th>
+            </tr>
+          </thead>
+          <tbody>
+            {values.map(({ name, unit, candidate: value, draft: present, isSame }) => (
+              <tr key={name} class={isSame ? '' : 'differs'}>
+                <th scope="row">{name}</th>
+                <td>{value}</td>
+                <td>{present === '' ? '–' : present}</td>
+                <td>{unit}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+      <div class="fields">
+        <button
+          type="button"
+          class="primary"
+          disabled={obstacle !== null || isApplied}
+          title={obstacle ?? (isApplied ? 'The draft has these values.' : 'Puts these values into the draft, as one change that can be undone')}
+          onClick={() => void app.apply()}
+        >
+          Apply
+        </button>
+        <span class="hint" role="status">
+          {isApplied ? 'The draft has these values. Save … shows the lines that change.' : ''}
+        </span>
+      </div>
+    </>
+  );
+}
+
+function Measures({ candidate, measures }: { candidate: SearchCandidate; measures: readonly Measure[] }) {
+  const known = Object.entries(candidate.measures).filter(([, value]) => value !== null);
+  if (known.length === 0) return null;
+  return (
+    <details>
+      <summary>{known.length} measures</summary>
+      <dl class="file-list measure-list">
+        {known.map(([name, value]) => {
+          const measure = measures.find((each) => each.name === name);
+          return (
+            <div key={name} title={measure?.help}>
+              <dt>{name.replaceAll('_', ' ')}</dt>
+              <dd>{withUnit(value, measure?.unit ?? '')}</dd>
+            </div>
+          );
+        })}
+      </dl>
+    </details>
+  );
+}
+
+export function CandidateView({ app, chosen }: { app: SearchApp; chosen: ChosenSearch }) {
+  const number = chosen.number.value;
+  const candidate = chosen.candidate.value;
+  const opened = chosen.opened.value;
+  const problem = chosen.candidateProblem.value;
+  if (number === null || opened === null) return null;
+  const scores = opened.objectives.map(({ name, unit }, i) => `${name.replaceAll('_', ' ')} ${withUnit(candidate?.scores[i] ?? null, unit, 7)}`);
+  return (
+    <section class="panel make-panel" aria-label="Candidate" data-testid="candidate">
+      <h2>
+        Candidate {number} of {chosen.name}
+      </h2>
+      {problem !== null && (
+        <p class="problem" role="alert">
+          {problem}
+        </p>
+      )}
+      {candidate === null && problem === null && <p class="hint">Reading …</p>}
+      {candidate !== null && (
+        <>
+          {candidate.failure === null && <p>{scores.join(', ')}</p>}
+          {candidateRemarks(candidate, opened.has_baseline).map((remark) => (
+            <p class="hint" key={remark}>
+              {remark}
+            </p>
+          ))}
+          <Values app={app} candidate={candidate} />
+          <Measures candidate={candidate} measures={app.host.page.state.searchMethods.value?.measures ?? []} />
+        </>
+      )}
+    </section>
+  );
+}

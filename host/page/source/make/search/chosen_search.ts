@@ -1,0 +1,126 @@
+// The search that is shown: what it is, its evaluations, and the candidate that is chosen in it.
+import { computed, signal } from '@preact/signals-core';
+import type { OpenedSearch, SearchCandidate, SearchEntry, SearchRows } from '../../wire/messages.js';
+import { Ranking } from './ranking.js';
+import { RowReader } from './row_reader.js';
+import { RowStore } from './row_store.js';
+import type { SearchHost } from './search_host.js';
+
+const tablePeriod = 500; // milliseconds: the tables and charts follow at most twice a second
+const openPeriod = 2000; // milliseconds after which a search is opened again that could not be
+
+// The evaluations of one repetition.
+export interface ShownRows {
+  id: number; // other rows have another one
+  reader: RowReader;
+  store: RowStore;
+  rankings: readonly Ranking[]; // by objective
+}
+
+export class ChosenSearch {
+  readonly opened = signal<OpenedSearch | null>(null);
+  readonly problem = signal<string | null>(null); // why it cannot be shown
+  readonly run = signal(0);
+  readonly objective = signal(0); // by which the charts and the table are
+  readonly dimension = signal(0); // of the chart of points
+  readonly rows = signal<ShownRows | null>(null);
+  readonly shownCount = signal(0); // evaluations that tables show
+  readonly number = signal<number | null>(null); // of the candidate that is chosen
+  readonly candidate = signal<SearchCandidate | null>(null);
+  readonly candidateProblem = signal<string | null>(null);
+  readonly ranking = computed(() => this.rows.value?.rankings[this.objective.value] ?? null);
+  private rowsBegun = 0;
+  private openedOf = ''; // state of the search when it was opened
+  private openedAt = -Infinity;
+  private isOpening = false;
+  private shownAt = -Infinity;
+  private isClosed = false;
+
+  constructor(
+    private readonly host: SearchHost,
+    readonly name: string,
+  ) {}
+
+  close(): void {
+    this.isClosed = true;
+    this.rows.peek()?.reader.close();
+  }
+
+  // To be called at each frame while it is shown. `entry`: of the document `searches`; undefined: it is not there.
+  advance(now: number, entry: SearchEntry | undefined): void {
+    if (entry === undefined) return;
+    // At its end it has a result, and after it was resumed another number of evaluations.
+    const key = `${entry.state}/${entry.planned ?? ''}`;
+    const isDue = key !== this.openedOf ? this.problem.peek() === null || now - this.openedAt >= openPeriod : false;
+    if (isDue && !this.isOpening && entry.state !== 'unreadable') {
+      this.openedAt = now;
+      void this.open(key);
+    }
+    const rows = this.rows.peek();
+    if (rows === null) return;
+    // Of several repetitions nobody says how many evaluations each has.
+    const announced = this.opened.peek()?.runs === 1 ? entry.made : 0;
+    rows.reader.advance(now, announced, entry.state === 'running' || entry.state === 'stopping');
+    if (rows.store.count !== this.shownCount.peek() && now - this.shownAt >= tablePeriod) {
+      this.shownAt = now;
+      rows.rankings.forEach((ranking) => ranking.update());
+      this.shownCount.value = rows.store.count;
+    }
+  }
+
+  // Shows another repetition.
+  chooseRun(run: number): void {
+    this.run.value = run;
+    this.chooseCandidate(null);
+    this.beginRows();
+  }
+
+  chooseCandidate(number: number | null): void {
+    this.number.value = number;
+    this.candidate.value = null;
+    this.candidateProblem.value = null;
+    if (number !== null) void this.readCandidate(number);
+  }
+
+  private async open(key: string): Promise<void> {
+    this.isOpening = true;
+    try {
+      const opened = (await this.host.page.operations.ask('search.open', { name: this.name })) as OpenedSearch;
+      if (this.isClosed) return;
+      this.openedOf = key;
+      this.problem.value = null;
+      const before = this.opened.peek();
+      this.opened.value = opened;
+      const isOther = before?.dimensions.length !== opened.dimensions.length || before.objectives.length !== opened.objectives.length;
+      if (isOther) this.beginRows();
+    } catch (error) {
+      if (!this.isClosed) this.problem.value = (error as Error).message;
+    } finally {
+      this.isOpening = false;
+    }
+  }
+
+  private beginRows(): void {
+    const opened = this.opened.peek();
+    this.rows.peek()?.reader.close();
+    this.shownCount.value = 0;
+    this.shownAt = -Infinity;
+    if (opened === null) return;
+    const store = new RowStore(opened.objectives.length, opened.dimensions.length);
+    const run = this.run.peek();
+    const reader = new RowReader(store, async (from) => (await this.host.page.operations.ask('search.rows', { name: this.name, run, from })) as SearchRows);
+    const rankings = opened.objectives.map(({ maximise }, objective) => new Ranking(store, objective, maximise));
+    this.rows.value = { id: ++this.rowsBegun, reader, store, rankings };
+  }
+
+  private async readCandidate(number: number): Promise<void> {
+    const run = this.run.peek();
+    const isWanted = () => this.number.peek() === number && this.run.peek() === run;
+    try {
+      const candidate = (await this.host.page.operations.ask('search.candidate', { name: this.name, run, number })) as SearchCandidate;
+      if (isWanted()) this.candidate.value = candidate;
+    } catch (error) {
+      if (isWanted()) this.candidateProblem.value = (error as Error).message;
+    }
+  }
+}

@@ -429,12 +429,11 @@ export interface Operations {
   'behaviour.joints': PartOperation & { module: number; joints: readonly number[] };
   'behaviour.set': PartOperation & { module: number; parameter: string; joints: readonly number[]; value: string };
   'behaviour.values': PartOperation & { words: readonly string[]; label: string };
-  'draft.motion': Record<string, never>;
   'search.refresh': Record<string, never>;
   'search.open': { name: string };
   'search.rows': { name: string; run: number; from: number };
   'search.candidate': { name: string; run: number; number: number };
-  'search.motion': { name: string; run: number; number: number };
+  'search.motion': { name: string; run: number; number: number } | Record<string, never>; // without a name that of the draft
   'search.check': { experiment: Experiment };
   'search.read': { file: string };
   'search.estimate': { experiment: Experiment; engine: SearchEngine; workers: number };

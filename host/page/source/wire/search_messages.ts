@@ -93,8 +93,8 @@ export interface Objective {
 
 export interface Trials {
   count: string;
-  aggregate: 'mean' | 'worst';
-  random_numbers: 'common' | 'fresh';
+  aggregate: '' | 'mean' | 'worst';
+  random_numbers: '' | 'common' | 'fresh';
   friction: string;
   mass: string;
   servo_gain: string;
@@ -179,10 +179,10 @@ export interface OpenedSearch {
   method: string;
   engine: string;
   seed: string;
-  tick_us: number; // of its scenario
   trials: number;
   planned: number | null;
   runs: number; // repetitions
+  joints: number;
   objectives: SearchObjective[];
   dimensions: Dimension[];
   measures: string[];
@@ -198,7 +198,7 @@ export const wasKnown = 4; // flag: the same candidate was evaluated before
 export interface SearchRows {
   from: number;
   made: number; // evaluations of the search, of which there may be more than in this answer
-  scores: number[][]; // for each evaluation one for each objective
+  scores: (number | null)[][]; // for each evaluation one for each objective
   values: number[][]; // for each evaluation one for each dimension
   flags: number[];
 }
@@ -206,7 +206,7 @@ export interface SearchRows {
 // The value of `search.candidate`.
 export interface SearchCandidate {
   number: number;
-  scores: number[];
+  scores: (number | null)[];
   words: string[]; // as for `behaviour.values`
   measures: Record<string, number | null>;
   failure: string | null;

@@ -5,6 +5,7 @@ import type { FieldProblem } from '../fields/field_problem.js';
 import { FormField } from '../fields/form_field.js';
 import { settingsFor } from './experiment_defaults.js';
 import { FieldAlert } from './field_alert.js';
+import { sentence } from './search_text.js';
 
 const keyOf = ({ tag, algorithm }: Pick<SearchMethod, 'tag' | 'algorithm'>) => `${tag}/${algorithm ?? ''}`;
 
@@ -14,6 +15,11 @@ const objectiveTexts: Record<SearchMethod['objectives'], string> = {
   any: 'For one objective or more.',
 };
 
+function hintOf({ help, kind, lowest, highest, default: usual }: MethodSetting): string {
+  const range = kind === 'choice' || lowest === null || highest === null ? '' : ` ${lowest} to ${highest}.`;
+  return `${sentence(help)}${range}${usual === '' && kind !== 'choice' ? ' Empty: left to the method.' : ''}`;
+}
+
 function SettingField({ setting, value, problem, change }: { setting: MethodSetting; value: string; problem: FieldProblem | null; change(text: string): void }) {
   if (setting.kind === 'choice') {
     const usual = setting.default === '' ? 'left to the method' : `usual: ${setting.default}`;
@@ -22,13 +28,11 @@ function SettingField({ setting, value, problem, change }: { setting: MethodSett
         label={setting.name}
         value={value === '' ? ' ' : value}
         texts={Object.fromEntries([[' ', usual], ...(setting.choices ?? []).map((choice) => [choice, choice])])}
-        title={setting.help}
         isDisabled={false}
         commit={(choice) => change(choice.trim())}
       />
     );
   }
-  const range = setting.lowest === null || setting.highest === null ? '' : ` ${setting.lowest} to ${setting.highest}.`;
   return (
     <FormField
       name={`settings.${setting.name}`}
@@ -38,7 +42,6 @@ function SettingField({ setting, value, problem, change }: { setting: MethodSett
       isNumeric
       placeholder={setting.default}
       problem={problem}
-      title={`${setting.help}.${range}${setting.default === '' ? ' Empty: left to the method.' : ''}`}
       change={change}
     />
   );
@@ -75,7 +78,7 @@ export function MethodFields({ experiment, methods, method, problem, change }: {
       </div>
       {method !== undefined && (
         <p class="hint">
-          {method.help}. {objectiveTexts[method.objectives]}
+          {sentence(method.help)} {objectiveTexts[method.objectives]}
         </p>
       )}
       <FieldAlert problem={problem} isAbout={(field) => field === 'method' || (field.startsWith('settings.') && method?.settings.every(({ name, kind }) => field !== `settings.${name}` || kind === 'choice') === true)} />
@@ -84,17 +87,12 @@ export function MethodFields({ experiment, methods, method, problem, change }: {
           <summary>
             Settings of the method{typed > 0 ? ` (${typed} not as usual)` : ''}
           </summary>
-          <div class="fields">
-            {method.settings.map((setting) => (
-              <SettingField
-                key={setting.name}
-                setting={setting}
-                value={settings[setting.name] ?? ''}
-                problem={problem}
-                change={(text) => change({ settings: { ...settings, [setting.name]: text } })}
-              />
-            ))}
-          </div>
+          {method.settings.map((setting) => (
+            <div class="fields" key={setting.name}>
+              <SettingField setting={setting} value={settings[setting.name] ?? ''} problem={problem} change={(text) => change({ settings: { ...settings, [setting.name]: text } })} />
+              <span class="hint">{hintOf(setting)}</span>
+            </div>
+          ))}
         </details>
       )}
     </section>

@@ -10,7 +10,7 @@ import { bytesResultHeader } from '../../wire/bytes_result.js';
 import { rowLayout } from '../../wire/subscription.js';
 
 const headValues = 7;
-const headerBytes = bytesResultHeader + 16;
+const headerBytes = 16;
 const angleScale = 180 / 2 ** 31; // degrees
 // The two may have ticks of different lengths: here a tick is a microsecond.
 const tickRate = 1e6;
@@ -22,26 +22,25 @@ export interface Motion {
   readonly end: number; // microseconds
 }
 
-// Decodes the answer of `search.motion` or `draft.motion`. `tick`: microseconds of a tick. Throws an Error that says what was
-// found and what was expected.
-export function decodeMotion(buffer: ArrayBuffer, tick: number): Motion {
-  if (buffer.byteLength < headerBytes) {
-    throw new Error(`motion: found ${buffer.byteLength} bytes, expected a header of ${headerBytes} bytes`);
+// Decodes the answer of `search.motion`. Throws an Error that says what was found and what was expected.
+export function decodeMotion(buffer: ArrayBuffer): Motion {
+  const bytes = buffer.byteLength - bytesResultHeader;
+  if (bytes < headerBytes) {
+    throw new Error(`motion: found ${Math.max(0, bytes)} bytes, expected a header of ${headerBytes} bytes`);
   }
-  const header = new DataView(buffer);
-  const [first, stride, count] = [0, 4, 8].map((offset) => header.getUint32(bytesResultHeader + offset, true)) as [number, number, number];
-  const width = (buffer.byteLength - headerBytes) / 4 / Math.max(1, count);
-  if (count === 0 || stride === 0 || !Number.isInteger(width) || width <= headValues) {
-    throw new Error(`motion: found ${buffer.byteLength - headerBytes} bytes for ${count} rows, expected rows with a head and joints`);
+  const header = new DataView(buffer, bytesResultHeader);
+  const [tick, stride, count, joints] = [0, 4, 8, 12].map((offset) => header.getUint32(offset, true)) as [number, number, number, number];
+  const width = joints + headValues;
+  if (count === 0 || tick * stride === 0 || bytes !== headerBytes + 4 * count * width) {
+    throw new Error(`motion: found ${bytes - headerBytes} bytes, expected ${count} rows of ${joints} joints and the head, at least one`);
   }
-  const joints = width - headValues;
   const signals: Signal[] = [
     { name: 'angle', unit: 'degree', scale: angleScale, count: joints, of: 'joint' },
     { name: 'head', unit: '', scale: 1, count: headValues, of: 'robot' },
   ];
   const rows = historyFor(count);
-  const values = new Int32Array(buffer, headerBytes, count * width);
-  rows.append({ subscription: 0, tick: first * tick, rows: count, stride: stride * tick, run: 0, hasGap: false, width, values }, rowLayout(signals));
+  const values = new Int32Array(buffer, bytesResultHeader + headerBytes, count * width);
+  rows.append({ subscription: 0, tick: 0, rows: count, stride: stride * tick, run: 0, hasGap: false, width, values }, rowLayout(signals));
   return { joints, rows, path: wholePathOf(rows, []), end: rows.lastTick() };
 }
 

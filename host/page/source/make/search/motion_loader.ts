@@ -1,56 +1,59 @@
 // What the 3D view plays while a candidate is chosen: the present gait of the draft, and the candidate beside it. Of several
 // candidates and drafts in a row the newest is shown.
 import { computed, effect, signal, untracked } from '@preact/signals-core';
-import type { DraftDocument } from '../../wire/messages.js';
+import type { DraftDocument, Operations, RobotDocument } from '../../wire/messages.js';
 import { decodeMotion, MotionPair, type Motion } from './motion.js';
 import { NewestAnswer } from './newest_answer.js';
 import type { SearchHost } from './search_host.js';
 
 const delay = 200; // milliseconds
 
-// A candidate whose motion is wanted. `tick`: microseconds, of its scenario.
+// A candidate whose motion is wanted, and the number of joints of its robot.
 export interface WantedMotion {
   name: string;
   run: number;
   number: number;
-  tick: number;
+  joints: number;
 }
 
 export class MotionLoader {
+  // Why nothing is played; null: it is, or comes.
   readonly problem = computed(() => {
     if (this.wanted.value === null) return null;
-    return this.candidates.failure.value ?? this.drafts.failure.value ?? this.otherRobot.value;
+    return this.otherRobot.value ?? this.candidates.failure.value ?? this.drafts.failure.value;
   });
   // Whether a motion is still to come.
   readonly isWaiting = computed(() => this.wanted.value !== null && (this.candidates.isWaiting.value || this.drafts.isWaiting.value));
   private readonly wanted = signal<WantedMotion | null>(null);
-  private readonly otherRobot = signal<string | null>(null);
+  private readonly otherRobot = computed(() => {
+    const [joints, own] = [this.wanted.value?.joints, this.host.draftRobot.value?.joints.length];
+    if (joints === undefined || own === undefined || joints === own) return null;
+    return `The robot of this search has ${joints} joints, that of the draft ${own}: they are not shown together.`;
+  });
   private readonly candidates: NewestAnswer<WantedMotion, Motion>;
   private readonly drafts: NewestAnswer<DraftDocument, Motion>;
+  private asked: WantedMotion | null = null; // of the candidates
 
   constructor(
     private readonly host: SearchHost,
     after: (ms: number, action: () => void) => void,
   ) {
-    const { operations } = host.page;
-    this.candidates = new NewestAnswer(
-      async ({ name, run, number, tick }) => decodeMotion((await operations.ask('search.motion', { name, run, number })) as ArrayBuffer, tick),
-      after,
-      0,
-    );
-    this.drafts = new NewestAnswer(async ({ run }) => decodeMotion((await operations.ask('draft.motion', {})) as ArrayBuffer, 1000 * run.tick), after, delay);
+    const ask = async (words: Operations['search.motion']) => decodeMotion((await host.page.operations.ask('search.motion', words)) as ArrayBuffer);
+    this.candidates = new NewestAnswer(({ name, run, number }) => ask({ name, run, number }), after, 0);
+    this.drafts = new NewestAnswer(() => ask({}), after, delay);
     // The draft moves otherwise after each change. What was refused is asked again when the part is shown again.
     effect(() => {
       const draft = this.host.draft.value;
       const wanted = this.wanted.value;
-      if (wanted === null || !this.host.isSearchShown.value || draft === null) return;
+      if (wanted === null || !this.host.isSearchShown.value || draft === null || this.otherRobot.value !== null) return;
       untracked(() => {
         if (this.drafts.last.peek()?.question !== draft || this.drafts.failure.peek() !== null) this.drafts.want(draft);
-        if (this.candidates.failure.peek() !== null) this.candidates.want(wanted);
+        if (this.asked !== wanted || this.candidates.failure.peek() !== null) this.candidates.want(wanted);
+        this.asked = wanted;
       });
     });
     effect(() => {
-      const wanted = this.host.isSearchShown.value ? this.wanted.value : null;
+      const wanted = this.host.isSearchShown.value && this.otherRobot.value === null ? this.wanted.value : null;
       const candidate = this.candidates.last.value;
       const draft = this.drafts.last.value;
       const robot = this.host.draftRobot.value;
@@ -60,22 +63,16 @@ export class MotionLoader {
   }
 
   want(wanted: WantedMotion | null): void {
-    if (JSON.stringify(wanted) === JSON.stringify(this.wanted.peek())) return;
-    if (wanted !== null) this.candidates.want(wanted);
-    this.wanted.value = wanted;
+    if (JSON.stringify(wanted) !== JSON.stringify(this.wanted.peek())) this.wanted.value = wanted;
   }
 
-  private show(wanted: WantedMotion | null, candidate: Motion | null, draft: Motion | null, robot: SearchHost['draftRobot']['value']): void {
+  private show(wanted: WantedMotion | null, candidate: Motion | null, draft: Motion | null, robot: RobotDocument | null): void {
     const { motion } = this.host;
     const before = motion.peek();
-    const joints = robot?.joints.length;
-    this.otherRobot.value =
-      candidate !== null && joints !== undefined && candidate.joints !== joints
-        ? `The robot of this search has ${candidate.joints} joints, that of the draft ${joints}: they are not shown together.`
-        : null;
     // The one before stays until the next is there.
     if (wanted !== null && candidate === null && this.candidates.isWaiting.peek() && before?.robot === robot) return;
-    if (wanted === null || candidate === null || draft === null || robot === null || candidate.joints !== joints || draft.joints !== joints) {
+    // A draft with other joints comes before its motion.
+    if (wanted === null || candidate === null || robot === null || draft?.joints !== candidate.joints || candidate.joints !== robot.joints.length) {
       motion.value = null;
       return;
     }

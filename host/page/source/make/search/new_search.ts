@@ -2,7 +2,7 @@
 import { computed, effect, signal, untracked } from '@preact/signals-core';
 import type { Experiment, Operations, SearchCheck, SearchEngine, SearchEstimate } from '../../wire/messages.js';
 import { fieldProblem, type FieldProblem } from '../fields/field_problem.js';
-import { fitToDraft, newExperiment } from './experiment_defaults.js';
+import { fitToDraft, newExperiment, newObjective } from './experiment_defaults.js';
 import { freeName, plainExperiment, proposedName } from './experiment_text.js';
 import { NewestAnswer } from './newest_answer.js';
 import type { SearchHost } from './search_host.js';
@@ -141,7 +141,8 @@ export class NewSearch {
       this.preset.value = null;
       this.typedName.value = null;
       this.startProblem.value = null;
-      this.experiment.value = experiment;
+      // A file without a rating maximises the distance.
+      this.experiment.value = experiment.objectives.length > 0 ? experiment : { ...experiment, objectives: [newObjective('distance')] };
       return null;
     } catch (error) {
       return (error as Error).message;

@@ -6,6 +6,7 @@ import type { FieldProblem } from '../fields/field_problem.js';
 import { FormField } from '../fields/form_field.js';
 import { newObjective } from './experiment_defaults.js';
 import { FieldAlert } from './field_alert.js';
+import { sentence } from './search_text.js';
 
 function MeasureChoice({ measures, value, change }: { measures: readonly Measure[]; value: string; change(measure: string): void }) {
   return (
@@ -84,7 +85,7 @@ function ObjectiveRow({ path, objective, measures, problem, isExpert, change, re
           </button>
         )}
       </div>
-      <p class="hint">{objective.terms.map(({ measure }) => measures.find(({ name }) => name === measure)?.help ?? '').filter(Boolean).join('; ')}</p>
+      <p class="hint">{objective.terms.map(({ measure }) => sentence(measures.find(({ name }) => name === measure)?.help ?? '')).join(' ')}</p>
       <FieldAlert problem={problem} isAbout={(field) => field === path || new RegExp(`^${path}\\.(goal|terms(\\.\\d+(\\.measure)?)?)$`).test(field) || (!isExpert && field === `${path}.failed`)} />
     </div>
   );

@@ -54,7 +54,7 @@ export class SearchApp {
       const opened = chosen?.opened.value ?? null;
       const number = chosen?.number.value ?? null;
       const run = chosen?.run.value ?? 0;
-      const wanted = chosen === null || opened === null || number === null ? null : { name: chosen.name, run, number, tick: opened.tick_us };
+      const wanted = chosen === null || opened === null || number === null ? null : { name: chosen.name, run, number, joints: opened.joints };
       untracked(() => this.motions.want(wanted));
     });
     // What can be in the form is known only now.

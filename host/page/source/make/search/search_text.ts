@@ -4,6 +4,11 @@ import type { OpenedSearch, SearchCandidate, SearchEntry, SearchResult } from '.
 const minute = 60;
 const hour = 3600;
 
+// A text of a declaration as a sentence.
+export function sentence(text: string): string {
+  return text === '' ? '' : `${text[0]!.toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? '' : '.'}`;
+}
+
 export function shortNumber(value: number, digits = 5): string {
   return Number.isFinite(value) ? String(Number(value.toPrecision(digits))) : '–';
 }

@@ -57,10 +57,10 @@ export function TrialFields({ experiment, problem, change }: Fields) {
         {trials !== null && (
           <>
             {number('trials.count', 'trials', trials.count, 'Runs of each candidate. 1 to 1000.', (count) => setTrials({ count }))}
-            <ChoiceField label="score" value={trials.aggregate} texts={{ mean: 'their mean', worst: 'the worst of them' }} isDisabled={false} commit={(aggregate) => setTrials({ aggregate })} />
+            <ChoiceField label="score" value={trials.aggregate || 'mean'} texts={{ mean: 'their mean', worst: 'the worst of them' }} isDisabled={false} commit={(aggregate) => setTrials({ aggregate })} />
             <ChoiceField
               label="worlds"
-              value={trials.random_numbers}
+              value={trials.random_numbers || 'common'}
               texts={{ common: 'the same for all candidates', fresh: 'new for each evaluation' }}
               isDisabled={false}
               commit={(random_numbers) => setTrials({ random_numbers })}

@@ -9,7 +9,7 @@ const second = 1e6; // microseconds
 
 describe('a motion', () => {
   it('has the angles and the head in each row, at the times of its ticks', () => {
-    const motion = decodeMotion(motionBytes({ stride: 100, rows: 4 }), 10_000);
+    const motion = decodeMotion(motionBytes({ stride: 100, rows: 4 }));
     assert.deepEqual([motion.joints, motion.end], [5, 3 * second]);
     const pose = poseAt(motion.rows, 2 * second, false, false);
     assert.ok(Math.abs((pose?.angles[4] ?? 0) - Math.PI / 6) < 1e-6);
@@ -18,23 +18,23 @@ describe('a motion', () => {
   });
 
   it('of half a minute with each tick is kept as it is', () => {
-    const motion = decodeMotion(motionBytes({ rows: 3001 }), 10_000);
+    const motion = decodeMotion(motionBytes({ rows: 3001 }));
     assert.equal(motion.end, 30 * second);
     assert.equal(motion.rows.end, 3001);
   });
 
   it('that is cut is refused, with what was found and what was expected', () => {
     const bytes = motionBytes();
-    assert.throws(() => decodeMotion(bytes.slice(0, 20), 10_000), /found 20 bytes, expected a header of 32 bytes/);
-    assert.throws(() => decodeMotion(bytes.slice(0, -4), 10_000), /expected rows with a head and joints/);
-    assert.throws(() => decodeMotion(motionBytes({ rows: 0 }), 10_000), /for 0 rows/);
+    assert.throws(() => decodeMotion(bytes.slice(0, 20)), /found 4 bytes, expected a header of 16 bytes/);
+    assert.throws(() => decodeMotion(bytes.slice(0, -4)), /found 188 bytes, expected 4 rows of 5 joints and the head/);
+    assert.throws(() => decodeMotion(motionBytes({ rows: 0 })), /expected 0 rows .* at least one/);
   });
 });
 
 describe('the draft and a candidate', () => {
   const robot = {} as RobotDocument;
   const pairOf = (draftRows = 4, candidateRows = 4, tick = 10_000) =>
-    new MotionPair(decodeMotion(motionBytes({ rows: draftRows, stride: 100 }), 10_000), decodeMotion(motionBytes({ rows: candidateRows, stride: 100, angle: 10 }), tick), robot, 0, true);
+    new MotionPair(decodeMotion(motionBytes({ rows: draftRows, stride: 100 })), decodeMotion(motionBytes({ rows: candidateRows, stride: 100, tick, angle: 10 })), robot, 0, true);
 
   it('play together, round and round', () => {
     const pair = pairOf();

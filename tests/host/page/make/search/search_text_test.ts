@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { candidateRemarks, countText, durationText, evaluationsText, progressText, resultLines, resumeKind, shortNumber, withUnit } from '../../../../../host/page/source/make/search/search_text.js';
+import { candidateRemarks, countText, durationText, evaluationsText, progressText, resultLines, resumeKind, sentence, shortNumber, withUnit } from '../../../../../host/page/source/make/search/search_text.js';
 import type { SearchResult } from '../../../../../host/page/source/wire/messages.js';
 import { entry, openedSearch } from '../../support/search_program.js';
 
@@ -32,6 +32,11 @@ describe('numbers in words', () => {
     assert.equal(withUnit(null, 'm'), '–');
     assert.equal(countText(108_175_616_801), '1.1·10^11');
     assert.equal(countText(2001), '2,001');
+  });
+
+  it('stand in sentences', () => {
+    assert.equal(sentence('learns which values belong together; it needs the fewest evaluations'), 'Learns which values belong together; it needs the fewest evaluations.');
+    assert.deepEqual([sentence('Is one.'), sentence('')], ['Is one.', '']);
   });
 
   it('of seconds are those that a person uses', () => {

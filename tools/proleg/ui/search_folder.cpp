@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
@@ -22,6 +23,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* store_name = "store.sqlite";
+
+/// A list comes in this time, also of many searches; the rest of it comes later.
+constexpr std::chrono::milliseconds time_to_read{100};
 
 }  // namespace
 
@@ -109,11 +113,7 @@ void SearchFolder::walk() {
   entries_ = std::move(found);
 }
 
-void SearchFolder::read(const fs::path& store, Entry& entry) {
-  const Version version = version_of(store);
-  if (entry.is_read && entry.version == version) {
-    return;
-  }
+void SearchFolder::read(const fs::path& store, const Version& version, Entry& entry) {
   const bool is_same_store = entry.is_read && entry.problem.empty() && entry.version.inode == version.inode;
   try {
     entry.summary = optimize::read_store_summary(store, is_same_store ? &entry.summary : nullptr);
@@ -127,9 +127,14 @@ void SearchFolder::read(const fs::path& store, Entry& entry) {
 
 json SearchFolder::object_of(const std::string& name, const fs::path& search, const Entry& entry, bool is_running) {
   const optimize::StoreSummary& summary = entry.summary;
-  json object{{"name", name}, {"problem", text_or_null(entry.problem)}};
-  if (!entry.problem.empty()) {
-    object["state"] = "unreadable";
+  json object{{"name", name},      {"state", entry.is_read ? "unreadable" : "unread"},
+              {"method", ""},      {"scenario", ""},
+              {"started", ""},     {"made", 0},
+              {"planned", json()}, {"best", json()},
+              {"score", json()},   {"objective", ""},
+              {"unit", ""},        {"left_s", json()},
+              {"ending", json()},  {"problem", text_or_null(entry.problem)}};
+  if (!entry.is_read || !entry.problem.empty()) {
     return object;
   }
   const bool has_all = summary.planned > 0 && summary.made >= summary.planned;
@@ -163,22 +168,34 @@ json SearchFolder::list(Clock::time_point now) {
     walk();
     next_walk_ = now + 50 * (Clock::now() - begin);  // at most 2 % of the time
   }
-  std::vector<std::pair<std::int64_t, json>> all;
+  struct Found {
+    const std::string* name;
+    Entry* entry;
+    Version version;
+  };
+  std::vector<Found> all;
   for (auto& [name, entry] : entries_) {
-    const fs::path search = folder_ / name;
-    const bool is_running = optimize::is_being_written(store_of(search));
-    read(store_of(search), entry);
-    if (is_running) {
-      entry.speed.note(entry.summary.made, now);
-    } else {
-      entry.speed.forget();
-    }
-    all.emplace_back(-entry.version.time_ns, object_of(name, search, entry, is_running));
+    all.push_back({&name, &entry, version_of(store_of(folder_ / name))});
   }
-  std::ranges::stable_sort(all, {}, &std::pair<std::int64_t, json>::first);
+  std::ranges::stable_sort(all, std::greater(), [](const Found& found) { return found.version.time_ns; });
+  all.resize(std::min(all.size(), max_searches));
   json searches = json::array();
-  for (std::size_t i = 0; i < std::min(all.size(), max_searches); ++i) {
-    searches.push_back(std::move(all[i].second));
+  has_unread_ = false;
+  const Clock::time_point end = Clock::now() + time_to_read;
+  for (const auto& [name, entry, version] : all) {
+    const fs::path search = folder_ / *name;
+    const bool is_running = optimize::is_being_written(store_of(search));
+    if (!entry->is_read && Clock::now() >= end) {
+      has_unread_ = true;
+    } else if (!entry->is_read || entry->version != version) {
+      read(store_of(search), version, *entry);
+    }
+    if (is_running) {
+      entry->speed.note(entry->summary.made, now);
+    } else {
+      entry->speed.forget();
+    }
+    searches.push_back(object_of(*name, search, *entry, is_running));
   }
   return searches;
 }

@@ -42,8 +42,11 @@ class SearchFolder {
   explicit SearchFolder(const std::filesystem::path& folder);
 
   /// An array with an object for each search (docs/page-interface.md, Searches), the newest first. Looks into the
-  /// folders again if that was not done just now; of a search that has not changed nothing is read again.
+  /// folders again if that was not done just now; of a search that has not changed nothing is read again. Of many new
+  /// searches some are "unread": the next list() reads more of them.
   [[nodiscard]] nlohmann::json list(Clock::time_point now = Clock::now());
+  /// Whether the last list() had "unread" searches.
+  [[nodiscard]] bool has_unread() const { return has_unread_; }
   /// Looks into the folders at the next list() in any case.
   void look_again() { next_walk_ = {}; }
 
@@ -68,7 +71,6 @@ class SearchFolder {
   struct Entry {
     Version version;
     bool is_read = false;
-    bool was_running = false;
     optimize::StoreSummary summary;
     std::string problem;  ///< why it cannot be read
     SearchSpeed speed;
@@ -76,13 +78,14 @@ class SearchFolder {
 
   void walk();
   [[nodiscard]] static Version version_of(const std::filesystem::path& store);
-  static void read(const std::filesystem::path& store, Entry& entry);
+  static void read(const std::filesystem::path& store, const Version& version, Entry& entry);
   [[nodiscard]] static nlohmann::json object_of(const std::string& name, const std::filesystem::path& search,
                                                 const Entry& entry, bool is_running);
 
   std::filesystem::path folder_;  ///< without symbolic links
   std::map<std::string, Entry> entries_;
   Clock::time_point next_walk_;
+  bool has_unread_ = false;
 };
 
 }  // namespace proleg::tools

@@ -135,10 +135,15 @@ SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& f
 SearchSession::~SearchSession() { end_thread(); }
 
 void SearchSession::serve() {
-  take_operations();
+  if (!take_operations() && folder_.has_unread()) {
+    publish_searches();
+  }
   beginnings_.remove_if([this](Beginning& beginning) { return look_at(beginning); });
   running_.remove_if([](DetachedProgram& program) { return program.status().has_value(); });
   look_at_estimate();
+  if (folder_.has_unread()) {
+    return;
+  }
   if (!beginnings_.empty() || estimate_) {
     requests_.wait_until(Clock::now() + look_period);
   } else if (!running_.empty()) {
@@ -170,6 +175,11 @@ json SearchSession::carry_out(const host::OperationRequest& operation) {
 }
 
 json SearchSession::refresh(const host::OperationRequest& /*request*/) {
+  publish_searches();
+  return json::object();
+}
+
+void SearchSession::publish_searches() {
   json experiments = json::array();
   for (const ProjectFile& file : files_.experiments()) {
     experiments.push_back({{"file", file.file}, {"title", file.title}, {"is_shipped", file.is_shipped}});
@@ -177,7 +187,6 @@ json SearchSession::refresh(const host::OperationRequest& /*request*/) {
   publish("searches", {{"processors", parse_workers(std::nullopt)},
                        {"experiments", std::move(experiments)},
                        {"searches", folder_.list()}});
-  return json::object();
 }
 
 std::shared_ptr<const sim::Scenario> SearchSession::draft() const {

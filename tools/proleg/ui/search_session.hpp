@@ -81,6 +81,7 @@ class SearchSession final : private SessionThread {
   nlohmann::json resume(const host::OperationRequest& request);
 
   void publish(const std::string& name, nlohmann::json document);
+  void publish_searches();
   [[nodiscard]] std::shared_ptr<const sim::Scenario> draft() const;
   /// `proleg optimise` with these words, and with the algorithms of users that this program has.
   [[nodiscard]] std::vector<std::string> command(const std::vector<std::string>& words) const;

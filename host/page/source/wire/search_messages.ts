@@ -1,6 +1,7 @@
 // Messages of the part Search of the page Make: searches for a gait (docs/page-interface.md).
 
-export type SearchState = 'running' | 'stopping' | 'ended' | 'interrupted' | 'unreadable';
+// Of one that is unread, or cannot be read, only the name and the problem are known.
+export type SearchState = 'running' | 'stopping' | 'ended' | 'interrupted' | 'unreadable' | 'unread';
 
 export interface SearchEntry {
   name: string; // path of its folder

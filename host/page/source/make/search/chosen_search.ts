@@ -5,6 +5,7 @@ import { Ranking } from './ranking.js';
 import { RowReader } from './row_reader.js';
 import { RowStore } from './row_store.js';
 import type { SearchHost } from './search_host.js';
+import { isRead } from './search_text.js';
 
 const tablePeriod = 500; // milliseconds: the tables and charts follow at most twice a second
 const openPeriod = 2000; // milliseconds after which a search is opened again that could not be
@@ -52,7 +53,7 @@ export class ChosenSearch {
     // At its end it has a result, and after it was resumed another number of evaluations.
     const key = `${entry.state}/${entry.planned ?? ''}`;
     const isDue = key !== this.openedOf ? this.problem.peek() === null || now - this.openedAt >= openPeriod : false;
-    if (isDue && !this.isOpening && entry.state !== 'unreadable') {
+    if (isDue && !this.isOpening && isRead(entry)) {
       this.openedAt = now;
       void this.open(key);
     }

@@ -6,7 +6,7 @@ import { CandidateView } from './candidate_view.js';
 import { searchApp, type SearchApp } from './search_app.js';
 import { SearchForm } from './search_form.js';
 import type { SearchHost } from './search_host.js';
-import { durationText, evaluationsText, stateText, withUnit } from './search_text.js';
+import { durationText, evaluationsText, isRead, stateText, withUnit } from './search_text.js';
 
 export { ChosenSearchView } from './chosen_search_view.js';
 
@@ -17,12 +17,12 @@ function SearchRow({ app, entry }: { app: SearchApp; entry: SearchEntry }) {
   return (
     <tr class={isChosen ? 'chosen' : ''}>
       <th scope="row">
-        <button type="button" aria-pressed={isChosen} title={`${entry.method} on ${entry.scenario}, ${new Date(entry.started).toLocaleString()}`} onClick={() => app.choose(isChosen ? null : entry.name)}>
+        <button type="button" aria-pressed={isChosen} title={isRead(entry) ? `${entry.method} on ${entry.scenario}, ${new Date(entry.started).toLocaleString()}` : entry.name} onClick={() => app.choose(isChosen ? null : entry.name)}>
           {entry.name.replace(/^searches\//, '')}
         </button>
       </th>
       <td title={entry.problem ?? entry.ending ?? ''}>{entry.problem === null ? stateText(entry) : `${stateText(entry)} (!)`}</td>
-      <td>{evaluationsText(entry)}</td>
+      <td>{isRead(entry) ? evaluationsText(entry) : ''}</td>
       <td title={entry.objective}>{withUnit(entry.score, entry.unit)}</td>
       <td>{entry.left_s === null ? '' : durationText(entry.left_s)}</td>
     </tr>

@@ -42,7 +42,12 @@ const stateTexts: Record<SearchEntry['state'], string> = {
   ended: 'ended',
   interrupted: 'interrupted',
   unreadable: 'cannot be read',
+  unread: 'reading …',
 };
+
+export function isRead({ state }: Pick<SearchEntry, 'state'>): boolean {
+  return state !== 'unread' && state !== 'unreadable';
+}
 
 export function stateText({ state }: Pick<SearchEntry, 'state'>): string {
   return stateTexts[state];
@@ -50,6 +55,7 @@ export function stateText({ state }: Pick<SearchEntry, 'state'>): string {
 
 // One line: the state, how far it is, and why it ended.
 export function progressText(entry: SearchEntry): string {
+  if (!isRead(entry)) return stateText(entry);
   const left = entry.left_s === null ? '' : `, ${durationText(entry.left_s)} left`;
   const ending = entry.ending === null || entry.ending === '' ? '' : `: ${entry.ending}`;
   return `${stateText(entry)}, ${evaluationsText(entry)} evaluations${left}${ending}`;

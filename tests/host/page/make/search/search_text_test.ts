@@ -10,6 +10,8 @@ describe('the state of a search', () => {
     assert.equal(progressText(entry({ state: 'stopping', made: 1320 })), 'stopping …, 1,320 of 2,000 evaluations');
     assert.equal(progressText(entry({ state: 'ended', made: 411, ending: 'the candidates no longer differ' })), 'ended, 411 of 2,000 evaluations: the candidates no longer differ');
     assert.equal(progressText(entry({ state: 'interrupted', made: 7, planned: null })), 'interrupted, 7 evaluations');
+    assert.equal(progressText(entry({ state: 'unreadable', made: 0, planned: null })), 'cannot be read');
+    assert.equal(progressText(entry({ state: 'unread', made: 0, planned: null })), 'reading …');
     assert.equal(evaluationsText({ made: 1_234_567, planned: 3_600_001 }), '1,234,567 of 3,600,001');
   });
 
@@ -19,6 +21,7 @@ describe('the state of a search', () => {
     assert.equal(resumeKind(entry({ state: 'interrupted', made: 2000 })), 'with more');
     assert.equal(resumeKind(entry({ state: 'ended', made: 2000 })), 'with more');
     assert.equal(resumeKind(entry({ state: 'unreadable' })), 'none');
+    assert.equal(resumeKind(entry({ state: 'unread' })), 'none');
   });
 });
 

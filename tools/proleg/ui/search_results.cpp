@@ -138,8 +138,9 @@ json SearchResults::rows(const fs::path& search, std::uint32_t run, std::uint64_
   constexpr std::size_t most_rows = 1000;
   constexpr std::size_t most_numbers = 20'000;
   const Experiment& experiment = experiment_of(search);
-  const std::size_t width = experiment.objectives.size() + experiment.space.dimensions.size();
-  const std::size_t most = std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(width, 1), 1, most_rows);
+  const std::size_t numbers_of_row = experiment.objectives.size() + experiment.space.dimensions.size();
+  const std::size_t most =
+      std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(numbers_of_row, 1), 1, most_rows);
   optimize::Store store(SearchFolder::store_of(search), experiment, {}, optimize::Store::Opening::look);
   json scores = json::array();
   json values = json::array();

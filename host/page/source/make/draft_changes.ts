@@ -43,9 +43,8 @@ export class DraftChanges {
   // together. The layout is that of the present draft, for which the caller knows the positions of the parts.
   changeOf<Name extends PartOperationName>(name: Name, wordsOf: (draft: DraftDocument) => Arguments<Name>): Promise<string | null> {
     const { layout } = this;
-    const earlier = Promise.all([this.underWay, new Promise<void>((resolve) => this.afterLastStep(resolve))]);
     return this.follows(
-      earlier.then(() => {
+      this.settled().then(() => {
         const draft = this.page.state.draft.peek();
         if (draft?.layout !== layout) return 'Other parts have come or gone meanwhile.';
         return this.requestAndWait(name, wordsOf(draft), layout);
@@ -78,6 +77,11 @@ export class DraftChanges {
       if (next !== null) this.send(next);
       else void this.whenDraftHasCome().then(() => this.show());
     });
+  }
+
+  // Waits until all that was requested is in the draft: undo, Save and Simulate are about what the person has just done.
+  async settled(): Promise<void> {
+    await Promise.all([this.underWay, new Promise<void>((resolve) => this.afterLastStep(resolve))]);
   }
 
   // Calls back when the draft of the last step has come: at once if there is none.

@@ -109,8 +109,8 @@ export class MakeApp {
     const canCopy = () => (isRobot() ? this.draft.value !== null : hasChosen()) && (document.getSelection()?.isCollapsed ?? true);
     this.actions.add(
       { id: 'draft_new', title: 'New: a robot, its gait and its world', group: 'Make', keys: ['N'], run: () => this.toggle('new') },
-      { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void page.operations.tell('draft.undo', {}) },
-      { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void page.operations.tell('draft.redo', {}) },
+      { id: 'draft_undo', title: 'Undo the last change of the files', group: 'Make', keys: ['Ctrl+Z'], isEnabled: () => canChange() && this.draft.value?.undo !== null, run: () => void this.travel('draft.undo') },
+      { id: 'draft_redo', title: 'Redo', group: 'Make', keys: ['Ctrl+Y', 'Ctrl+Shift+Z'], isEnabled: () => canChange() && this.draft.value?.redo !== null, run: () => void this.travel('draft.redo') },
       { id: 'draft_open', title: 'Open: show the scenarios', group: 'Make', keys: ['Ctrl+O'], isGlobal: true, run: () => this.toggle('open') },
       { id: 'draft_save', title: 'Save: show the changes of the files', group: 'Make', keys: ['Ctrl+S'], isGlobal: true, isEnabled: () => !hasEditorFocus(), run: () => this.toggle('save') },
       { id: 'draft_simulate', title: 'Simulate the draft on the page Live', group: 'Make', keys: ['Ctrl+Enter'], isGlobal: true, isEnabled: canChange, obstacle: () => this.obstacle(), run: () => void this.simulate() },
@@ -131,6 +131,11 @@ export class MakeApp {
     effect(() => {
       if (page.shownPage.value === 'make' && page.state.isConnected.value) void page.operations.ask('draft.refresh', {}).catch(() => {});
     });
+  }
+
+  async travel(way: 'draft.undo' | 'draft.redo'): Promise<void> {
+    await this.changes.settled();
+    await this.page.operations.tell(way, {});
   }
 
   // Opens a panel below the bar, or closes it.
@@ -502,6 +507,7 @@ export class MakeApp {
   }
 
   async simulate(): Promise<void> {
+    await this.changes.settled();
     if ((await this.page.operations.tell('load_draft', {})) !== null) this.page.shownPage.value = 'live';
   }
 }

@@ -30,7 +30,6 @@ function Bar({ app }: { app: MakeApp }) {
   const draft = app.draft.value;
   const obstacle = app.obstacle();
   const isOnBus = app.page.state.robot.value?.kind === 'bus';
-  const tell = (name: 'draft.undo' | 'draft.redo') => void app.page.operations.tell(name, {});
   const count = draft?.changed.length ?? 0;
   return (
     <div class="make-bar">
@@ -55,7 +54,7 @@ function Bar({ app }: { app: MakeApp }) {
         type="button"
         disabled={obstacle !== null || draft?.undo === null}
         title={obstacle ?? (draft?.undo === null ? 'There is nothing to undo.' : `Undo: ${draft?.undo} (Ctrl + Z)`)}
-        onClick={() => tell('draft.undo')}
+        onClick={() => void app.travel('draft.undo')}
       >
         Undo
       </button>
@@ -63,7 +62,7 @@ function Bar({ app }: { app: MakeApp }) {
         type="button"
         disabled={obstacle !== null || draft?.redo === null}
         title={obstacle ?? (draft?.redo === null ? 'There is nothing to do again.' : `Redo: ${draft?.redo} (Ctrl + Y)`)}
-        onClick={() => tell('draft.redo')}
+        onClick={() => void app.travel('draft.redo')}
       >
         Redo
       </button>

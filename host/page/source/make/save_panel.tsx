@@ -48,8 +48,8 @@ export function SavePanel({ app }: { app: MakeApp }) {
     );
   }, [draft?.revision, draft?.changed.length]);
   const obstacle = app.obstacle() ?? saveObstacle(draft);
-  const finish = (asked: Promise<unknown>) =>
-    asked.then(
+  const finish = (ask: () => Promise<unknown>) =>
+    app.changes.settled().then(ask).then(
       () => {
         app.panel.value = 'none';
       },
@@ -72,14 +72,14 @@ export function SavePanel({ app }: { app: MakeApp }) {
           class="primary"
           disabled={obstacle !== null}
           title={obstacle ?? 'Writes these lines. Everything else in the files stays.'}
-          onClick={() => void finish(app.page.operations.ask('draft.save', {}))}
+          onClick={() => void finish(() => app.page.operations.ask('draft.save', {}))}
         >
           Save
         </button>
         <form
           onSubmit={(event) => {
             event.preventDefault();
-            void finish(app.page.operations.ask('draft.save_as', { folder: folder.value.trim() }));
+            void finish(() => app.page.operations.ask('draft.save_as', { folder: folder.value.trim() }));
           }}
         >
           <label>

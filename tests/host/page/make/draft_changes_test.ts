@@ -73,6 +73,25 @@ describe('changes of the draft', () => {
     assert.equal(refusal, null);
   });
 
+  it('are settled when the draft of the last step of a gesture has come: undo takes back the whole drag', async () => {
+    const program = new Program();
+    let isSettled = false;
+    program.changes.follow('world.start', at(1), 7);
+    program.changes.follow('world.start', at(2), 7);
+    void program.changes.settled().then(() => (isSettled = true));
+    program.requests[0]!.answer();
+    program.publish();
+    await tick();
+    assert.deepEqual([program.requests.length, isSettled], [2, false]);
+    program.requests[1]!.answer();
+    await tick();
+    assert.equal(isSettled, false);
+    program.publish();
+    await tick();
+    assert.equal(isSettled, true);
+    await program.changes.settled();
+  });
+
   it('give the reason of a refusal at once, and tell it as a notice', async () => {
     const program = new Program();
     const done = program.changes.tell('world.start', at(1));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <stdexcept>
 #include <string_view>
@@ -83,19 +82,6 @@ std::vector<std::string> options_in(const json& arguments) {
   return options;
 }
 
-/// The last line that a program has printed, without its name.
-std::string last_line_of(const std::string& output) {
-  std::string last;
-  TextLines lines(output);
-  while (const std::optional<std::string_view> line = lines.next()) {
-    if (!trimmed(*line).empty()) {
-      last = one_line(trimmed(*line));
-    }
-  }
-  constexpr std::string_view program = "proleg optimise: ";
-  return last.starts_with(program) ? last.substr(program.size()) : last;
-}
-
 json names_of(const optimize::SearchSpace& space) {
   json names = json::array();
   for (const optimize::Dimension& dimension : space.dimensions) {
@@ -124,9 +110,9 @@ SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& f
       files_(files),
       draft_(draft),
       folder_(options_.folder) {
-  if (options_.program.empty()) {
+  if (options_.programs.empty()) {
     std::error_code error;
-    options_.program = fs::read_symlink("/proc/self/exe", error).parent_path() / "proleg-optimise";
+    options_.programs = fs::read_symlink("/proc/self/exe", error).parent_path();
   }
   publish("search_methods", search_methods_json());
   begin_thread();
@@ -140,11 +126,11 @@ void SearchSession::serve() {
   }
   beginnings_.remove_if([this](Beginning& beginning) { return look_at(beginning); });
   running_.remove_if([](DetachedProgram& program) { return program.status().has_value(); });
-  look_at_estimate();
+  look_at_job();
   if (folder_.has_unread()) {
     return;
   }
-  if (!beginnings_.empty() || estimate_) {
+  if (!beginnings_.empty() || job_) {
     requests_.wait_until(Clock::now() + look_period);
   } else if (!running_.empty()) {
     requests_.wait_until(Clock::now() + reap_period);
@@ -158,10 +144,10 @@ void SearchSession::fail(const std::string& why) {
     output_.refuse(beginning.request, why);
   }
   beginnings_.clear();
-  end_estimate(why);
+  end_job(why);
 }
 
-void SearchSession::close() { end_estimate("the program ends"); }
+void SearchSession::close() { end_job("the program ends"); }
 
 json SearchSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{
@@ -169,8 +155,8 @@ json SearchSession::carry_out(const host::OperationRequest& operation) {
       {"search.rows", &SearchSession::rows},       {"search.candidate", &SearchSession::candidate},
       {"search.motion", &SearchSession::motion},   {"search.check", &SearchSession::check},
       {"search.read", &SearchSession::read},       {"search.estimate", &SearchSession::estimate},
-      {"search.start", &SearchSession::start},     {"search.stop", &SearchSession::stop},
-      {"search.resume", &SearchSession::resume}};
+      {"search.confirm", &SearchSession::confirm}, {"search.start", &SearchSession::start},
+      {"search.stop", &SearchSession::stop},       {"search.resume", &SearchSession::resume}};
   return (this->*handler_of(handlers, operation.name))(operation);
 }
 
@@ -253,8 +239,9 @@ json SearchSession::read(const host::OperationRequest& request) {
   return {{"experiment", experiment_json(optimize::read_experiment_form(file, disk, *draft()))}};
 }
 
-std::vector<std::string> SearchSession::command(const std::vector<std::string>& words) const {
-  std::vector<std::string> command{options_.program.string()};
+std::vector<std::string> SearchSession::command(const std::string& program,
+                                                const std::vector<std::string>& words) const {
+  std::vector<std::string> command{(options_.programs / ("proleg-" + program)).string()};
   command.insert(command.end(), words.begin(), words.end());
   for (const std::string& library : loaded_libraries()) {
     command.insert(command.end(), {"--algorithms", library});
@@ -263,70 +250,82 @@ std::vector<std::string> SearchSession::command(const std::vector<std::string>& 
 }
 
 json SearchSession::estimate(const host::OperationRequest& request) {
-  end_estimate("another estimate was asked for");
   const std::shared_ptr<const sim::Scenario> scenario = draft();
   const optimize::ExperimentForm form = form_in(request.arguments);
   static_cast<void>(required_experiment(form, *scenario));
-  std::string folder = (fs::temp_directory_path() / "proleg_estimate_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw std::runtime_error("cannot make a folder in " + fs::temp_directory_path().string());
+  auto program = std::make_unique<JsonProgram>();
+  std::vector<std::string> words{write_search_files(form, *scenario, program->folder(), "estimate").string(),
+                                 "--estimate", "--json"};
+  const std::vector<std::string> options = options_in(request.arguments);
+  words.insert(words.end(), options.begin(), options.end());
+  return begin_job(request, std::move(program), command("optimise", words),
+                   {"evaluation_s", "planned", "seconds", "engine"});
+}
+
+json SearchSession::confirm(const host::OperationRequest& request) {
+  const auto name = argument<std::string>(request.arguments, "name", "the name of a search, or null");
+  std::vector<std::string> words;
+  std::optional<sim::Scenario> scenario;
+  if (name) {
+    const fs::path search = folder_.find(*name);
+    const std::uint32_t run = run_in(request.arguments);
+    const std::uint64_t number = number_in(request.arguments);
+    scenario = results_.scenario_of(search, run, number);
+    const json candidate = results_.candidate(search, run, number);
+    for (const json& word : candidate["words"]) {
+      words.insert(words.end(), {"--set", word.get<std::string>()});
+    }
+  } else {
+    scenario = *draft();
   }
-  estimate_.emplace(Estimate{request.request, folder, nullptr});
-  try {
-    std::vector<std::string> words{write_search_files(form, *scenario, folder, "estimate").string(), "--estimate",
-                                   "--json"};
-    const std::vector<std::string> options = options_in(request.arguments);
-    words.insert(words.end(), options.begin(), options.end());
-    estimate_->program =
-        std::make_unique<CommandSequence>(std::vector<std::vector<std::string>>{command(words)}, folder,
-                                          options_.longest_estimate, ChildProgram::Errors::apart);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-    estimate_.reset();
-    throw;
-  }
+  auto program = std::make_unique<JsonProgram>();
+  const std::string top = scenario->sources.front().path;
+  words.insert(words.end(), {"--engine", std::string(sim::name_of(scenario->environment.engine)), "--seed",
+                             std::to_string(scenario->kernel.seed), "--json",
+                             copy_sources(scenario->sources, program->folder() / "scenario").at(top)});
+  return begin_job(request, std::move(program), command("confirm", words),
+                   {"nothing_speaks_against", "findings", "runs"});
+}
+
+json SearchSession::begin_job(const host::OperationRequest& request, std::unique_ptr<JsonProgram> program,
+                              const std::vector<std::string>& words, std::vector<const char*> members) {
+  end_job("another estimate or confirmation was asked for");
+  program->start(words, options_.longest_job);
+  job_.emplace(Job{request.request, std::move(program), std::move(members)});
   return answered_later();
 }
 
-void SearchSession::look_at_estimate() {
-  if (!estimate_) {
+void SearchSession::look_at_job() {
+  if (!job_) {
     return;
   }
-  const std::optional<CommandSequence::End> end = estimate_->program->look();
+  const std::optional<JsonProgram::End> end = job_->program->look();
   if (!end) {
     return;
   }
-  const json result = json::parse(estimate_->program->output(), nullptr, false);
-  if (end->status != 0 || !result.is_object()) {
-    const std::string line = last_line_of(estimate_->program->errors());
-    end_estimate(line.empty() ? "the estimate failed" : line);
+  if (!end->object.is_object()) {
+    end_job(end->error);
     return;
   }
-  output_.answer(estimate_->request, {{"evaluation_s", result.value("evaluation_s", json())},
-                                      {"planned", result.value("planned", json())},
-                                      {"seconds", result.value("seconds", json())},
-                                      {"engine", result.value("engine", json())}});
-  std::error_code ignored;
-  fs::remove_all(estimate_->folder, ignored);
-  estimate_.reset();
+  json value = json::object();
+  for (const char* member : job_->members) {
+    value[member] = end->object.value(member, json());
+  }
+  output_.answer(job_->request, value);
+  job_.reset();
 }
 
-void SearchSession::end_estimate(const std::string& refusal) {
-  if (!estimate_) {
-    return;
+void SearchSession::end_job(const std::string& refusal) {
+  if (job_) {
+    output_.refuse(job_->request, refusal);
+    job_.reset();
   }
-  output_.refuse(estimate_->request, refusal);
-  estimate_->program.reset();
-  std::error_code ignored;
-  fs::remove_all(estimate_->folder, ignored);
-  estimate_.reset();
 }
 
 void SearchSession::begin(const host::OperationRequest& request, const std::string& name, const fs::path& folder,
                           const std::vector<std::string>& words, bool is_new) {
   beginnings_.push_back({request.request, name, folder,
-                         DetachedProgram(command(words), folder.string(), SearchFolder::log_of(folder)),
+                         DetachedProgram(command("optimise", words), folder.string(), SearchFolder::log_of(folder)),
                          Clock::now() + options_.longest_start, is_new});
 }
 

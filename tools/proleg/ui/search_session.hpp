@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "tools/proleg/common/detached_program.hpp"
-#include "tools/proleg/ui/command_sequence.hpp"
+#include "tools/proleg/ui/json_program.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/search_folder.hpp"
@@ -25,11 +25,11 @@ namespace proleg::tools {
 
 struct SearchSessionOptions {
   std::filesystem::path folder;  ///< of the project
-  /// `proleg optimise`; empty: the one beside this program.
-  std::filesystem::path program = {};
+  /// The folder of proleg-optimise and proleg-confirm; empty: that of this program.
+  std::filesystem::path programs = {};
   /// A search that does not begin in this time is not waited for any more.
   std::chrono::seconds longest_start = std::chrono::minutes(1);
-  std::chrono::seconds longest_estimate = std::chrono::minutes(2);
+  std::chrono::seconds longest_job = std::chrono::minutes(10);  ///< of an estimate or a confirmation
 };
 
 class SearchSession final : private SessionThread {
@@ -55,12 +55,13 @@ class SearchSession final : private SessionThread {
     Clock::time_point until;
     bool is_new;  ///< its folder is removed if it does not begin
   };
-  /// An estimate that goes on.
-  struct Estimate {
+  /// An estimate or a confirmation that goes on.
+  struct Job {
     host::RequestId request = 0;
-    std::filesystem::path folder;  ///< for its files, removed at the end
-    std::unique_ptr<CommandSequence> program;
+    std::unique_ptr<JsonProgram> program;
+    std::vector<const char*> members;  ///< of the object that it prints: those of the answer
   };
+
   // SessionThread
   void serve() override;
   void fail(const std::string& why) override;
@@ -76,6 +77,7 @@ class SearchSession final : private SessionThread {
   nlohmann::json check(const host::OperationRequest& request);
   nlohmann::json read(const host::OperationRequest& request);
   nlohmann::json estimate(const host::OperationRequest& request);
+  nlohmann::json confirm(const host::OperationRequest& request);
   nlohmann::json start(const host::OperationRequest& request);
   nlohmann::json stop(const host::OperationRequest& request);
   nlohmann::json resume(const host::OperationRequest& request);
@@ -83,14 +85,17 @@ class SearchSession final : private SessionThread {
   void publish(const std::string& name, nlohmann::json document);
   void publish_searches();
   [[nodiscard]] std::shared_ptr<const sim::Scenario> draft() const;
-  /// `proleg optimise` with these words, and with the algorithms of users that this program has.
-  [[nodiscard]] std::vector<std::string> command(const std::vector<std::string>& words) const;
+  /// One of our programs with these words, and with the algorithms of users that this program has.
+  [[nodiscard]] std::vector<std::string> command(const std::string& program,
+                                                 const std::vector<std::string>& words) const;
   void begin(const host::OperationRequest& request, const std::string& name, const std::filesystem::path& folder,
              const std::vector<std::string>& words, bool is_new);
   /// Whether a search has begun, or has failed to.
   bool look_at(Beginning& beginning);
-  void look_at_estimate();
-  void end_estimate(const std::string& refusal);
+  nlohmann::json begin_job(const host::OperationRequest& request, std::unique_ptr<JsonProgram> program,
+                           const std::vector<std::string>& words, std::vector<const char*> members);
+  void look_at_job();
+  void end_job(const std::string& refusal);
 
   SearchSessionOptions options_;
   const ProjectFiles& files_;
@@ -99,7 +104,7 @@ class SearchSession final : private SessionThread {
   SearchResults results_;
   std::list<Beginning> beginnings_;
   std::list<DetachedProgram> running_;  ///< whose end must be taken note of
-  std::optional<Estimate> estimate_;
+  std::optional<Job> job_;
   std::map<std::string, nlohmann::json> published_;
 };
 

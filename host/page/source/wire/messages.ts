@@ -437,6 +437,7 @@ export interface Operations {
   'search.check': { experiment: Experiment };
   'search.read': { file: string };
   'search.estimate': { experiment: Experiment; engine: SearchEngine; workers: number };
+  'search.confirm': { name: string; run: number; number: number };
   'search.start': { name: string; engine: SearchEngine; workers: number } & ({ experiment: Experiment } | { file: string });
   'search.stop': { name: string };
   'search.resume': { name: string; evaluations: string; workers: number };

@@ -142,6 +142,12 @@ export interface SearchEstimate {
   engine: string;
 }
 
+// The value of `search.confirm`: whether a gait is real.
+export interface SearchConfirmation {
+  nothing_speaks_against: boolean;
+  findings: { name: string; good: boolean | null; text: string }[]; // null: it could not be looked at
+}
+
 export interface Dimension {
   name: string;
   unit: string;

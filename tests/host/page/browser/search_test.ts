@@ -155,6 +155,14 @@ describe('a search for a gait', () => {
     await page().screenshot({ path: 'build/page_test/make_search.png', fullPage: true });
   });
 
+  it('says whether the gait is real', async () => {
+    await candidate().getByRole('button', { name: 'Is it real?' }).click();
+    const confirmation = page().getByTestId('confirmation');
+    await confirmation.waitFor();
+    assert.match((await confirmation.textContent()) ?? '', /ok: a finer step|doubt: a finer step/);
+    assert.deepEqual(await seriousProblems(ui.viewer), []);
+  });
+
   it('puts the best into the draft; what is saved goes as far as the search has said, to the last bit', async () => {
     const before = readFileSync(actuation, 'utf8');
     await candidate().getByRole('button', { name: 'Apply' }).click();

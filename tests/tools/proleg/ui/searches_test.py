@@ -109,6 +109,13 @@ def a_form_becomes_a_better_gait(program):
         way = sum((b - a) ** 2 for a, b in zip(first, last)) ** 0.5 / 1e6
         assert abs(way - distance) < 0.05, (way, distance)
 
+    # Whether they are real: the draft has the distance of the scenario, the candidate that of the search.
+    for arguments, distance in (({}, rows["scores"][0][0]), ({"name": name, "number": best}, search["score"])):
+        confirmed = program.must("search.confirm", **arguments)
+        assert confirmed["runs"][0]["distance_m"] == distance, (confirmed["runs"][0], distance)
+        assert {finding["name"] for finding in confirmed["findings"]} >= {"a finer step", "energy", "start"}, confirmed
+        assert confirmed["nothing_speaks_against"] in (True, False)
+
     # Applied, it is one change of the draft, and what is saved has the score of the search to the last bit.
     candidate = program.must("search.candidate", name=name, number=best)
     assert candidate["scores"] == rows["scores"][best] and candidate["measures"]["distance"] == search["score"]
@@ -203,6 +210,8 @@ def bad_input_is_one_line_and_leaves_nothing(program):
             program.refused(f"search.{operation}", name=name)
     program.refused("search.candidate", name="searches/wave", number=4000)
     program.refused("search.motion", name="searches/wave")
+    program.refused("search.confirm", name="searches/wave")
+    program.refused("search.confirm", name="searches/none", number=1)
     program.refused("behaviour.values", words=[], label="")
     program.refused("behaviour.values", words=["amplitude:J9=1"], label="")
     program.refused("behaviour.values", words=["amplitude=1@5"], label="")

@@ -75,6 +75,42 @@ function Measures({ candidate, measures }: { candidate: SearchCandidate; measure
   );
 }
 
+// Whether the gait is real: what `proleg confirm` says.
+function Confirmation({ app, chosen }: { app: SearchApp; chosen: ChosenSearch }) {
+  const confirmation = chosen.confirmation.value;
+  const obstacle = app.host.obstacle();
+  const isRunning = confirmation === 'running';
+  return (
+    <>
+      <div class="fields">
+        <button
+          type="button"
+          disabled={obstacle !== null || isRunning}
+          title={obstacle ?? 'Simulates it with a finer step, in the other engines and in 50 worlds that differ, and looks where its energy comes from'}
+          onClick={() => void chosen.confirm()}
+        >
+          Is it real?
+        </button>
+        <span class="hint" role="status">
+          {isRunning ? 'simulating in other engines and worlds …' : ''}
+        </span>
+      </div>
+      {confirmation !== null && confirmation !== 'running' && (
+        <div data-testid="confirmation">
+          <p role="status">{confirmation.nothing_speaks_against ? 'Nothing speaks against this gait.' : 'It may live on an error of the physics:'}</p>
+          <ul class="findings">
+            {confirmation.findings.map(({ name, good, text }) => (
+              <li key={name} class={good === false ? 'problem' : ''}>
+                {good === null ? '–' : good ? 'ok' : 'doubt'}: {name}. {text}
+              </li>
+            ))}
+          </ul>
+        </div>
+      )}
+    </>
+  );
+}
+
 export function CandidateView({ app, chosen }: { app: SearchApp; chosen: ChosenSearch }) {
   const number = chosen.number.value;
   const candidate = chosen.candidate.value;
@@ -102,6 +138,7 @@ export function CandidateView({ app, chosen }: { app: SearchApp; chosen: ChosenS
             </p>
           ))}
           <Values app={app} candidate={candidate} />
+          {candidate.failure === null && <Confirmation app={app} chosen={chosen} />}
           <Measures candidate={candidate} measures={app.host.page.state.searchMethods.value?.measures ?? []} />
         </>
       )}

@@ -1,6 +1,6 @@
 // The search that is shown: what it is, its evaluations, and the candidate that is chosen in it.
 import { computed, signal } from '@preact/signals-core';
-import type { OpenedSearch, SearchCandidate, SearchEntry, SearchRows } from '../../wire/messages.js';
+import type { OpenedSearch, SearchCandidate, SearchConfirmation, SearchEntry, SearchRows } from '../../wire/messages.js';
 import { Ranking } from './ranking.js';
 import { RowReader } from './row_reader.js';
 import { RowStore } from './row_store.js';
@@ -29,6 +29,7 @@ export class ChosenSearch {
   readonly number = signal<number | null>(null); // of the candidate that is chosen
   readonly candidate = signal<SearchCandidate | null>(null);
   readonly candidateProblem = signal<string | null>(null);
+  readonly confirmation = signal<SearchConfirmation | 'running' | null>(null); // whether the candidate's gait is real
   readonly ranking = computed(() => this.rows.value?.rankings[this.objective.value] ?? null);
   private rowsBegun = 0;
   private openedOf = ''; // state of the search when it was opened
@@ -80,7 +81,26 @@ export class ChosenSearch {
     this.number.value = number;
     this.candidate.value = null;
     this.candidateProblem.value = null;
+    this.confirmation.value = null;
     if (number !== null) void this.readCandidate(number);
+  }
+
+  // Has the program check whether the gait of the candidate is real.
+  async confirm(): Promise<void> {
+    const number = this.number.peek();
+    const run = this.run.peek();
+    if (number === null || this.confirmation.peek() === 'running') return;
+    const isWanted = () => this.number.peek() === number && this.run.peek() === run && !this.isClosed;
+    this.confirmation.value = 'running';
+    this.candidateProblem.value = null;
+    try {
+      const confirmation = (await this.host.page.operations.ask('search.confirm', { name: this.name, run, number })) as SearchConfirmation;
+      if (isWanted()) this.confirmation.value = confirmation;
+    } catch (error) {
+      if (!isWanted()) return;
+      this.confirmation.value = null;
+      this.candidateProblem.value = (error as Error).message;
+    }
   }
 
   private async open(key: string): Promise<void> {

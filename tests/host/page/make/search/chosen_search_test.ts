@@ -102,6 +102,28 @@ describe('the chosen candidate', () => {
     assert.equal(search.candidate.value?.number, 2);
   });
 
+  it('is confirmed when that is asked for; the answer for another one is dropped', async () => {
+    const { program, search } = await shown();
+    search.chooseCandidate(1);
+    const done = search.confirm();
+    void search.confirm();
+    assert.equal(search.confirmation.value, 'running');
+    assert.equal(program.ofName('search.confirm').length, 1);
+    const answer = { nothing_speaks_against: true, findings: [{ name: 'energy', good: true, text: 'contacts gave nothing' }] };
+    await program.last('search.confirm').answer(answer);
+    await done;
+    assert.deepEqual(search.confirmation.value, answer);
+    search.chooseCandidate(2);
+    assert.equal(search.confirmation.value, null);
+    void search.confirm();
+    search.chooseCandidate(1);
+    await program.last('search.confirm').answer(answer);
+    assert.equal(search.confirmation.value, null);
+    void search.confirm();
+    await program.last('search.confirm').refuse('another estimate or confirmation was asked for');
+    assert.deepEqual([search.confirmation.value, search.candidateProblem.value], [null, 'another estimate or confirmation was asked for']);
+  });
+
   it('that is not there says why', async () => {
     const { program, search } = await shown();
     search.chooseCandidate(7_000_000);

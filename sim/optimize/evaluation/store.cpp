@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -25,6 +26,7 @@ class Store::Implementation {
       }
       lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, result_key)
                                               : claim_store(path_));
+      forget_stop_request(path_);  // of an earlier program: nobody asks before the lock is there
       database_ = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE);
       if (opening == Opening::resume) {
         require_same_experiment(path, *database_, experiment, result_key);
@@ -35,7 +37,6 @@ class Store::Implementation {
       database_->require_own_file();
       statements_ = std::make_unique<Statements>(*database_, columns_);
       read_last_numbers();
-      forget_stop_request(path_);
     });
   }
   ~Implementation() {
@@ -140,6 +141,9 @@ class Store::Implementation {
   std::vector<Evaluation> evaluations(std::uint32_t run, std::uint64_t from, std::size_t most) {
     return guard([&] {
       std::vector<Evaluation> evaluations;
+      if (from > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
+        return evaluations;  // SQLite has no such numbers
+      }
       Statement statement(*database_,
                           "SELECT * FROM evaluation WHERE run = ?1 AND number >= ?2 ORDER BY number LIMIT ?3");
       statement.bind_all(run, from, most);

@@ -148,7 +148,7 @@ StoreLock::~StoreLock() {
 StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 bool is_being_written(const std::filesystem::path& store) {
-  const int descriptor = open((store.string() + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = open((store.string() + ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     return false;
   }

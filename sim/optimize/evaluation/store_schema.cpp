@@ -341,6 +341,15 @@ Evaluation read_evaluation(Statement& statement, const Experiment& experiment, c
   evaluation.restored = !evaluation.reused;
   evaluation.failure = row.text();
   evaluation.candidate = candidate_of(row.text());
+  const std::vector<Dimension>& dimensions = experiment.space.dimensions;
+  bool is_in_space = evaluation.candidate.size() == dimensions.size();
+  for (std::size_t i = 0; is_in_space && i < dimensions.size(); ++i) {
+    is_in_space = evaluation.candidate[i] < dimensions[i].values.size();
+  }
+  if (!is_in_space) {
+    throw SqliteError(SQLITE_CORRUPT, "the candidate of evaluation " + std::to_string(evaluation.number) +
+                                          " is not in the search space; another program has changed the store");
+  }
   return evaluation;
 }
 

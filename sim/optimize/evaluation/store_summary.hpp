@@ -9,6 +9,7 @@ namespace proleg::optimize {
 
 /// What a list of searches shows of a store.
 struct StoreSummary {
+  std::string identity;       ///< another store has another one, also under the same name
   std::string method;         ///< its short name
   std::string scenario;       ///< path of its top-level file
   std::string started;        ///< Universal Time, "2026-11-27T23:40:00Z"; empty: not known
@@ -25,8 +26,11 @@ struct StoreSummary {
 };
 
 /// Reads that, and no more: the experiment's files may be of any kind. Another program may write the store. before:
-/// what was read of this store before; then only the evaluations since are looked at, if it has one run. Throws
-/// StoreError.
+/// what was read under this name before; if that is the same store, and it has one run, only the evaluations since are
+/// looked at. Throws StoreError.
 [[nodiscard]] StoreSummary read_store_summary(const std::filesystem::path& path, const StoreSummary* before = nullptr);
+
+/// StoreSummary::identity. Throws StoreError.
+[[nodiscard]] std::string identity_of_store(const std::filesystem::path& path);
 
 }  // namespace proleg::optimize

@@ -27,18 +27,6 @@ std::filesystem::path program_beside_this(const std::string& name) {
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
 }
 
-/// The last line of what a program has printed.
-std::string last_line(std::string_view output) {
-  std::string last;
-  TextLines lines(output);
-  while (const std::optional<std::string_view> line = lines.next()) {
-    if (!trimmed(*line).empty()) {
-      last = one_line(trimmed(*line));
-    }
-  }
-  return last;
-}
-
 }  // namespace
 
 AlgorithmSession::AlgorithmSession(AlgorithmSessionOptions options, SessionRequests& requests,
@@ -228,7 +216,7 @@ void AlgorithmSession::look_at_job() {
   } else if (job.work == Work::image) {
     finish_image(end->status);
   } else if (end->status != 0) {
-    const std::string line = last_line(job.programs->output());
+    const std::string line = last_line_of(job.programs->output());
     finish("failed", line.empty() ? "exit status " + std::to_string(end->status) : line);
   } else {
     const std::string error = load(job.algorithms.front());
@@ -251,7 +239,7 @@ void AlgorithmSession::finish_image(int status) {
   if (status != 0) {
     const std::string& output = job_->programs->output();
     const std::string problem = image_build_.problem(output);
-    finish("failed", problem.empty() ? last_line(output) : problem);
+    finish("failed", problem.empty() ? last_line_of(output) : problem);
     return;
   }
   try {

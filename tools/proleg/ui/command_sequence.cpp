@@ -3,7 +3,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
+
 namespace proleg::tools {
+
+std::string last_line_of(std::string_view output) {
+  std::string last;
+  TextLines lines(output);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    if (!trimmed(*line).empty()) {
+      last = one_line(trimmed(*line));
+    }
+  }
+  return last;
+}
 
 CommandSequence::CommandSequence(std::vector<std::vector<std::string>> commands, std::string folder,
                                  std::chrono::seconds longest, ChildProgram::Errors errors)

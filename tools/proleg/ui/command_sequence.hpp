@@ -5,11 +5,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/proleg/common/child_program.hpp"
 
 namespace proleg::tools {
+
+/// The last line that a program has printed, without blanks; empty if there is none.
+[[nodiscard]] std::string last_line_of(std::string_view output);
 
 /// Programs that run one after the other, up to the first one that fails, within a time.
 class CommandSequence {

@@ -533,7 +533,7 @@ json DraftSession::save_as(const json& arguments) {
   const auto name = argument<std::string>(arguments, "folder", "the name of a new folder");
   const sim::Scenario& scenario = draft().scenario();
   const std::map<std::string, std::string> names =
-      copy_sources(scenario.sources, folder_of_copy(options_.folder, name.value_or("")));
+      copy_sources(scenario.sources, new_folder_in(options_.folder, name.value_or(""), "folder"));
   const std::string& file = names.at(scenario.sources.front().path);
   draft().rename_files(names, file, disk_);
   options_.has_file = true;

@@ -13,9 +13,10 @@ inline constexpr int max_folder_depth = 4;
 inline constexpr std::size_t max_visited_paths = 20'000;
 
 /// Calls use(path) for what is in a folder and in the folders in it. Links to folders are not followed. enters(path):
-/// whether to look into this folder.
+/// whether to look into this folder. Returns false if it has not seen all: there is too much, or a folder was removed
+/// meanwhile.
 template <typename Use, typename Enters>
-void for_each_path(const std::filesystem::path& folder, const Use& use, const Enters& enters) {
+bool for_each_path(const std::filesystem::path& folder, const Use& use, const Enters& enters) {
   std::error_code error;
   std::size_t visited = 0;
   std::filesystem::recursive_directory_iterator entry(
@@ -28,6 +29,7 @@ void for_each_path(const std::filesystem::path& folder, const Use& use, const En
     }
     use(entry->path());
   }
+  return !error && entry == std::filesystem::recursive_directory_iterator();
 }
 
 /// Whether a path is below a folder. Both without symbolic links.

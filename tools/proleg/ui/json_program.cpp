@@ -2,27 +2,17 @@
 
 #include <cstdlib>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
-
-#include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The last line that a program has printed, without the name of the program.
-std::string last_line_of(const std::string& output) {
-  std::string last;
-  TextLines lines(output);
-  while (const std::optional<std::string_view> line = lines.next()) {
-    if (!trimmed(*line).empty()) {
-      last = one_line(trimmed(*line));
-    }
-  }
-  const std::size_t name_end = last.starts_with("proleg ") ? last.find(": ") : std::string::npos;
-  return name_end == std::string::npos ? last : last.substr(name_end + 2);
+/// "proleg optimise: TEXT" without the name of the program.
+std::string without_program(const std::string& line) {
+  const std::size_t name_end = line.starts_with("proleg ") ? line.find(": ") : std::string::npos;
+  return name_end == std::string::npos ? line : line.substr(name_end + 2);
 }
 
 }  // namespace
@@ -57,7 +47,7 @@ std::optional<JsonProgram::End> JsonProgram::look() {
   if (nlohmann::json object = nlohmann::json::parse(program_->output(), nullptr, false); object.is_object()) {
     return End{std::move(object), ""};
   }
-  const std::string line = last_line_of(program_->errors());
+  const std::string line = without_program(last_line_of(program_->errors()));
   return End{nullptr, line.empty() ? "it ended with status " + std::to_string(end->status) : line};
 }
 

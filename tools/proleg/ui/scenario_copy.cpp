@@ -36,11 +36,11 @@ std::map<std::string, std::string> copy_sources(std::span<const sim::SourceFile>
   return names;
 }
 
-fs::path folder_of_copy(const fs::path& parent, const std::string& name) {
+fs::path new_folder_in(const fs::path& parent, const std::string& name, const char* argument) {
   const fs::path folder(name);
   const bool is_plain = is_visible_line(name) && shortened(name) == name;
   if (name.empty() || folder.filename() != folder || name.front() == '.' || !is_plain) {
-    throw InputError("folder", 0, in_quotes(one_line(name)), "a short name without a path, for a new folder");
+    throw InputError(argument, 0, in_quotes(name), "1 to 60 characters that a person sees, without a path");
   }
   return parent / folder;
 }

@@ -17,8 +17,9 @@ namespace proleg::tools {
 std::map<std::string, std::string> copy_sources(std::span<const sim::SourceFile> sources,
                                                 const std::filesystem::path& folder);
 
-/// The folder that an argument `folder` names, for a copy below `parent`. Throws InputError if it is no short name
-/// without a path.
-[[nodiscard]] std::filesystem::path folder_of_copy(const std::filesystem::path& parent, const std::string& name);
+/// The folder with this name below `parent`, for new files. argument: what has named it. Throws InputError if it is no
+/// short name without a path.
+[[nodiscard]] std::filesystem::path new_folder_in(const std::filesystem::path& parent, const std::string& name,
+                                                  const char* argument);
 
 }  // namespace proleg::tools

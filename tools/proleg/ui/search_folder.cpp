@@ -3,16 +3,18 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
+#include "tools/proleg/ui/command_sequence.hpp"
 #include "tools/proleg/ui/folder_walk.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
@@ -60,24 +62,17 @@ fs::path SearchFolder::store_of(const fs::path& search) { return search / store_
 fs::path SearchFolder::log_of(const fs::path& search) { return search / "search.log"; }
 
 std::string SearchFolder::failure_of(const fs::path& search) {
-  constexpr std::size_t most = 64 * 1024;
-  std::error_code error;
-  if (!fs::is_regular_file(log_of(search), error) || fs::file_size(log_of(search), error) > most) {
+  constexpr std::streamoff most = 64 * 1024;
+  std::ifstream log(log_of(search), std::ios::binary);
+  if (std::error_code error; !fs::is_regular_file(log_of(search), error) || !log.seekg(0, std::ios::end)) {
     return {};
   }
-  const std::string text = first_bytes(log_of(search), most);
-  std::string last;
-  TextLines lines(text);
-  while (const std::optional<std::string_view> line = lines.next()) {
-    if (!trimmed(*line).empty()) {
-      last = one_line(trimmed(*line));
-    }
-  }
+  log.seekg(std::max<std::streamoff>(0, log.tellg() - most));
+  const std::string end(std::istreambuf_iterator<char>(log), {});
+  const std::string last = last_line_of(end);
   constexpr std::string_view program = "proleg optimise: ";
-  if (!last.starts_with(program) || last.find(": interrupted ") != std::string::npos) {
-    return {};
-  }
-  return last.substr(program.size());
+  const bool is_failure = last.starts_with(program) && last.find(": interrupted ") == std::string::npos;
+  return is_failure ? last.substr(program.size()) : std::string();
 }
 
 /// Of a store that is written the newest part is in a file beside it.
@@ -109,14 +104,21 @@ void SearchFolder::walk() {
     const auto before = entries_.find(name);
     found[name] = before == entries_.end() ? Entry{} : std::move(before->second);
   };
-  for_each_path(folder_, note, enters);
+  if (!for_each_path(folder_, note, enters)) {
+    for (auto& [name, entry] : entries_) {  // what was not visited may still be there
+      std::error_code error;
+      if (fs::is_regular_file(store_of(folder_ / name), error)) {
+        found.emplace(name, std::move(entry));
+      }
+    }
+  }
   entries_ = std::move(found);
 }
 
 void SearchFolder::read(const fs::path& store, const Version& version, Entry& entry) {
-  const bool is_same_store = entry.is_read && entry.problem.empty() && entry.version.inode == version.inode;
   try {
-    entry.summary = optimize::read_store_summary(store, is_same_store ? &entry.summary : nullptr);
+    entry.summary =
+        optimize::read_store_summary(store, entry.is_read && entry.problem.empty() ? &entry.summary : nullptr);
     entry.problem.clear();
   } catch (const std::exception& error) {
     entry.problem = one_line(error.what());
@@ -181,13 +183,16 @@ json SearchFolder::list(Clock::time_point now) {
   all.resize(std::min(all.size(), max_searches));
   json searches = json::array();
   has_unread_ = false;
+  bool has_read_new = false;  // one at least: the list is complete some time, however busy the computer is
   const Clock::time_point end = Clock::now() + time_to_read;
   for (const auto& [name, entry, version] : all) {
     const fs::path search = folder_ / *name;
     const bool is_running = optimize::is_being_written(store_of(search));
-    if (!entry->is_read && Clock::now() >= end) {
+    const bool is_late = Clock::now() >= end && has_read_new;
+    if (!entry->is_read && is_late) {
       has_unread_ = true;
     } else if (!entry->is_read || entry->version != version) {
+      has_read_new = has_read_new || !entry->is_read;
       read(store_of(search), version, *entry);
     }
     if (is_running) {

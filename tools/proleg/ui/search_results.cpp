@@ -1,7 +1,5 @@
 #include "tools/proleg/ui/search_results.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -27,11 +25,6 @@ using optimize::Evaluation;
 using optimize::Experiment;
 
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
-
-std::uint64_t inode_of(const fs::path& file) {
-  struct stat status {};
-  return ::stat(file.c_str(), &status) == 0 ? status.st_ino : 0;
-}
 
 /// What `proleg optimise` has left of its result; null: nothing that is an object.
 json result_of(const fs::path& search) {
@@ -90,15 +83,16 @@ Evaluation evaluation_of(const Experiment& experiment, const fs::path& search, s
 const Experiment& SearchResults::experiment_of(const fs::path& search) {
   constexpr std::size_t most = 4;
   const fs::path store = SearchFolder::store_of(search);
-  const std::uint64_t inode = inode_of(store);
+  std::string identity = optimize::identity_of_store(store);
   const auto found =
-      std::ranges::find_if(open_, [&](const Open& open) { return open.search == search && open.inode == inode; });
+      std::ranges::find_if(open_, [&](const Open& open) { return open.search == search && open.identity == identity; });
   if (found != open_.end()) {
     open_.splice(open_.begin(), open_, found);
     return *open_.front().experiment;
   }
   open_.remove_if([&](const Open& open) { return open.search == search; });
-  open_.push_front({search, inode, std::make_unique<const Experiment>(optimize::read_experiment_of(store))});
+  open_.push_front(
+      {search, std::move(identity), std::make_unique<const Experiment>(optimize::read_experiment_of(store))});
   if (open_.size() > most) {
     open_.pop_back();
   }

@@ -8,6 +8,7 @@
 #include <list>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
@@ -32,7 +33,7 @@ class SearchResults {
   /// A store that was read, for the next look at it.
   struct Open {
     std::filesystem::path search;
-    std::uint64_t inode = 0;
+    std::string identity;  ///< of the store
     std::unique_ptr<const optimize::Experiment> experiment;
   };
 

@@ -140,8 +140,9 @@ void SearchSession::serve() {
 }
 
 void SearchSession::fail(const std::string& why) {
-  for (const Beginning& beginning : beginnings_) {
+  for (Beginning& beginning : beginnings_) {
     output_.refuse(beginning.request, why);
+    running_.push_back(std::move(beginning.program));
   }
   beginnings_.clear();
   end_job(why);
@@ -333,7 +334,7 @@ json SearchSession::start(const host::OperationRequest& request) {
   const json& arguments = request.arguments;
   const std::string name = name_in(arguments);
   const fs::path parent = folder_.folder() / searches_folder;
-  const fs::path folder = folder_of_copy(parent, name);
+  const fs::path folder = new_folder_in(parent, name, "name");
   const auto file = argument<std::string>(arguments, "file", "a file of `searches`, or null");
   std::vector<std::string> words;
   std::shared_ptr<const sim::Scenario> scenario;
@@ -396,9 +397,14 @@ bool SearchSession::look_at(Beginning& beginning) {
   const fs::path store = SearchFolder::store_of(beginning.folder);
   const std::optional<int> status = beginning.program.status();
   std::error_code error;
-  const bool has_begun = fs::exists(store, error) && (optimize::is_being_written(store) || status == exit_success);
+  // The log of the store is there when the program has taken the store for its own.
+  const bool is_open = optimize::is_being_written(store) && fs::exists(store.string() + "-wal", error);
+  const bool has_begun = fs::exists(store, error) && (is_open || status == exit_success);
   if (has_begun) {
     folder_.look_again();
+    if (beginning.stops && is_open) {
+      optimize::request_stop(store);
+    }
     output_.answer(beginning.request, {{"name", beginning.name}});
     running_.push_back(std::move(beginning.program));
     return true;
@@ -421,6 +427,11 @@ bool SearchSession::look_at(Beginning& beginning) {
 }
 
 json SearchSession::stop(const host::OperationRequest& request) {
+  const std::string name = name_in(request.arguments);
+  if (const auto begins = std::ranges::find(beginnings_, name, &Beginning::name); begins != beginnings_.end()) {
+    begins->stops = true;
+    return json::object();
+  }
   const fs::path folder = folder_.find(name_in(request.arguments));
   optimize::request_stop(SearchFolder::store_of(folder));
   return json::object();

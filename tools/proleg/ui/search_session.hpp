@@ -53,7 +53,8 @@ class SearchSession final : private SessionThread {
     std::filesystem::path folder;
     DetachedProgram program;
     Clock::time_point until;
-    bool is_new;  ///< its folder is removed if it does not begin
+    bool is_new;         ///< its folder is removed if it does not begin
+    bool stops = false;  ///< a viewer has asked it to stop meanwhile
   };
   /// An estimate or a confirmation that goes on.
   struct Job {

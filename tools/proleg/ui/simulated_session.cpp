@@ -382,7 +382,7 @@ json SimulatedSession::save_as(const json& arguments) {
     require_file();
   }
   const auto name = argument<std::string>(arguments, "folder", "the name of a new folder");
-  live_->save_as(folder_of_copy(options_.recordings, name.value_or("")));
+  live_->save_as(new_folder_in(options_.recordings, name.value_or(""), "folder"));
   const std::string& file = live_->file().path;
   options_.has_file = true;
   if (options_.command_of_copy) {

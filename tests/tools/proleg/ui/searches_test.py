@@ -225,6 +225,54 @@ def bad_input_is_one_line_and_leaves_nothing(program):
     (program.folder / "kept").rename(readonly)
 
 
+def odd_stores_end_nothing(program):
+    """What other programs do to the folders of searches."""
+    wave = program.folder / "searches/wave"
+    for name, sql in (("odd", "UPDATE evaluation SET candidate = '1 2'"), ("far", "UPDATE evaluation SET candidate = '9999 0 0 0 0'"),
+                      ("empty", "DROP TABLE evaluation"), ("runs", "UPDATE evaluation SET run = 2000000000 WHERE number = 3")):
+        shutil.copytree(wave, program.folder / name)
+        with contextlib.closing(sqlite3.connect(program.folder / name / "store.sqlite")) as store:
+            store.execute(sql)
+            store.commit()
+        program.when(name, lambda found: found["state"] in ("ended", "interrupted", "unreadable"))
+        program.ask("search.open", name=name)
+        rows = program.ask("search.rows", name=name, **{"from": 0})
+        assert rows["ok"] == (name == "runs"), rows
+        program.ask("search.candidate", name=name, number=1)
+    shutil.copytree(wave, program.folder / "cut")
+    with open(program.folder / "cut/store.sqlite", "r+b") as store:
+        store.truncate(5000)
+    program.when("cut", lambda found: found["state"] == "unreadable" and found["problem"])
+    program.refused("search.rows", name="cut", **{"from": 0})
+    for number in (2**63 - 1, 2**63, 2**64 - 1):
+        assert program.must("search.rows", name="searches/wave", **{"from": number})["scores"] == []
+        program.refused("search.candidate", name="searches/wave", number=number)
+
+    # Another search under the same name has other values.
+    parameter = experiment()["parameters"][0]
+    for joints in ([0, 1, 2], [3, 4]):
+        name = program.must("search.start", name="again", experiment=experiment(parameters=[{**parameter, "joints": joints}]))["name"]
+        program.when(name, lambda found: found["state"] == "ended")
+        assert len(program.must("search.open", name=name)["dimensions"]) == len(joints)
+        assert len(program.must("search.rows", name=name, **{"from": 0})["values"][0]) == len(joints)
+        shutil.rmtree(program.folder / name)
+    program.refused("search.open", name=name)
+
+    # A search is stopped before it has begun.
+    started = program.viewer.start("search.start", program.epoch, name="early", experiment=experiment(evaluations="100000"))
+    program.must("search.stop", name="searches/early")
+    assert program.viewer.result(started)["ok"]
+    program.when("searches/early", lambda found: found["state"] == "interrupted")
+
+    # Several objectives: a front.
+    name = program.must("search.start", name="front", experiment=experiment(
+        method="nsga2", settings={"popsize": "8"}, objectives=[{"terms": [{"measure": "distance", "weight": ""}]}, {"terms": [{"measure": "mechanical_energy", "weight": ""}]}]))["name"]
+    program.when(name, lambda found: found["state"] == "ended")
+    described = program.must("search.open", name=name)
+    assert [(its["name"], its["maximise"]) for its in described["objectives"]] == [("distance", True), ("mechanical_energy", False)]
+    assert all(len(scores) == 2 for scores in program.must("search.rows", name=name, **{"from": 0})["scores"])
+
+
 def files_of_experiments_are_offered(program):
     program.searches()
     titles = {entry["title"]: entry["file"] for entry in program.document()["experiments"]}
@@ -246,6 +294,7 @@ def main():
             program.must("draft.save")  # the duration
             a_form_becomes_a_better_gait(program)
             bad_input_is_one_line_and_leaves_nothing(program)
+            odd_stores_end_nothing(program)
             a_search_outlives_the_program(program)
             searches_of_others_are_found(program)
             files_of_experiments_are_offered(program)

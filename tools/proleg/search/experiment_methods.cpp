@@ -194,6 +194,8 @@ class Repetitions {
       }
       result.winner = confirmations.front().evaluation;
       result.winner.scores.front() = confirmations.front().mean;
+    } else if (optimize::needs_confirmation(experiment_)) {
+      store.finish_run(run, outcome.ending);  // the experiments of the thesis have no fresh runs
     }
     if (outcome.progress.simulated > 0) {
       out << name_ << " " << run + 1 << " of " << count_ << ": " << outcome.evaluations.size() << " evaluations, best "

@@ -130,7 +130,7 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.own_cpu_s = own_cpu_s() - cpu_start;
   outcome.progress = evaluator.progress();
-  if (!outcome.ending.empty()) {
+  if (!outcome.ending.empty() && !(outcome.progress.best && optimize::needs_confirmation(experiment))) {
     store.finish_run(run, outcome.ending);
   }
   return outcome;
@@ -161,6 +161,7 @@ std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& exp
           return interrupted() || store.is_stop_requested();
         });
     outcome.confirmation_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    store.finish_run(finalists.front().run, outcome.ending);
     return confirmations;
   } catch (const optimize::SearchEnded&) {
     outcome.ending.clear();

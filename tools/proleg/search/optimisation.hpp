@@ -52,7 +52,7 @@ struct SearchOutcome {
 };
 
 /// Runs a search until its method ends, its evaluations are used up, or the user interrupts it. Shows progress on the
-/// terminal, with a label.
+/// terminal, with a label. The store says that the run has ended, unless confirm_best() has to follow.
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
 
@@ -60,7 +60,8 @@ struct SearchOutcome {
 [[nodiscard]] bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run);
 
 /// Rates the best candidates of a search again, if it has ended and needs_confirmation(), and returns them best first;
-/// otherwise returns none. If the user interrupts, the result is empty, and the search counts as interrupted.
+/// otherwise returns none. Then the store says that the run has ended. If the user interrupts, the result is empty, and
+/// the search counts as interrupted.
 [[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,
                                                                optimize::Workers& workers, optimize::Store& store,
                                                                SearchOutcome& outcome);

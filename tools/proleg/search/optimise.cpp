@@ -33,6 +33,8 @@ namespace {
 
 using optimize::Experiment;
 
+constexpr const char* result_file = "result.json";
+
 /// What --json prints.
 Json result_object(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
                    const std::filesystem::path& folder, std::uint32_t workers) {
@@ -162,7 +164,7 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
     const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
     std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
     const std::string object = result_object(experiment, outcome, result, folder, workers.count()).text() + '\n';
-    files.push_back(folder / "result.json");
+    files.push_back(folder / result_file);
     write_file(files.back(), object);
     if (options.json) {
       std::cout << object;
@@ -254,6 +256,8 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::string continuation = command_to_continue(options, folder);
   try {
     keep_stored_evaluations(options, *store, experiment);
+    std::error_code ignored;
+    std::filesystem::remove(folder / result_file, ignored);  // it is of the time before
     return search_and_write(options, experiment, folder, *workers, *store, continuation);
   } catch (const optimize::StoreError& error) {
     throw std::runtime_error(std::string(error.what()) + "; continue with: " + continuation);

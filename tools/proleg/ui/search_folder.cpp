@@ -139,7 +139,6 @@ json SearchFolder::object_of(const std::string& name, const fs::path& search, co
   if (!entry.is_read || !entry.problem.empty()) {
     return object;
   }
-  const bool has_all = summary.planned > 0 && summary.made >= summary.planned;
   object["state"] = is_running       ? optimize::is_stop_requested(store_of(search)) ? "stopping" : "running"
                     : summary.ending ? "ended"
                                      : "interrupted";
@@ -154,8 +153,8 @@ json SearchFolder::object_of(const std::string& name, const fs::path& search, co
   object["unit"] = one_line(summary.unit);
   object["ending"] = summary.ending && !is_running ? json(one_line(*summary.ending)) : json();
   std::optional<double> left;
-  if (is_running && summary.runs == 1 && summary.planned > 0) {
-    left = has_all ? 0.0 : entry.speed.time_of(summary.planned - summary.made);
+  if (is_running && summary.runs == 1 && summary.made < summary.planned) {
+    left = entry.speed.time_of(summary.planned - summary.made);
   }
   object["left_s"] = left ? json(*left) : json();
   if (object["state"] == "interrupted") {
@@ -186,6 +185,9 @@ json SearchFolder::list(Clock::time_point now) {
   bool has_read_new = false;  // one at least: the list is complete some time, however busy the computer is
   const Clock::time_point end = Clock::now() + time_to_read;
   for (const auto& [name, entry, version] : all) {
+    if (version.inode == 0) {
+      continue;  // it has gone since the last walk
+    }
     const fs::path search = folder_ / *name;
     const bool is_running = optimize::is_being_written(store_of(search));
     const bool is_late = Clock::now() >= end && has_read_new;

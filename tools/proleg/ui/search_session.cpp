@@ -13,6 +13,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
+#include "sim/optimize/evaluation/store_summary.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -88,6 +89,15 @@ json names_of(const optimize::SearchSpace& space) {
     names.push_back(dimension.name);
   }
   return names;
+}
+
+/// Whether a search has left anything that is worth keeping.
+bool has_evaluations(const fs::path& store) {
+  try {
+    return optimize::read_store_summary(store).made > 0;
+  } catch (const optimize::StoreError&) {
+    return false;
+  }
 }
 
 /// Why the reduced engine cannot make the search; null: it can.
@@ -312,6 +322,16 @@ void SearchSession::look_at_job() {
   for (const char* member : job_->members) {
     value[member] = end->object.value(member, json());
   }
+  if (value.contains("findings") && value["findings"].is_array()) {
+    const std::string folder = (job_->program->folder() / "scenario").string() + "/";
+    for (json& finding : value["findings"]) {  // its files have gone when a person reads this
+      std::string text = finding.value("text", std::string());
+      for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder, at)) {
+        text.erase(at, folder.size());
+      }
+      finding["text"] = text;
+    }
+  }
   output_.answer(job_->request, value);
   job_.reset();
 }
@@ -352,6 +372,9 @@ json SearchSession::start(const host::OperationRequest& request) {
   const std::vector<std::string> options = options_in(arguments);
   std::error_code error;
   fs::create_directory(parent, error);
+  if (const fs::path real = fs::canonical(parent, error); error || real != parent) {
+    throw InputError(parent.string(), 0, error ? error.message() : "a link to " + real.string(), "a folder");
+  }
   if (!fs::create_directory(folder, error)) {
     if (error) {
       throw FileError(folder, "cannot be created: " + error.message());
@@ -387,8 +410,6 @@ json SearchSession::resume(const host::OperationRequest& request) {
   }
   const std::vector<std::string> options = options_in(arguments);
   words.insert(words.end(), options.begin(), options.end());
-  std::error_code ignored;
-  fs::remove(SearchFolder::log_of(folder), ignored);  // it tells of the time before
   begin(request, name, folder, words, false);
   return answered_later();
 }
@@ -413,11 +434,15 @@ bool SearchSession::look_at(Beginning& beginning) {
   if (!status && !is_late) {
     return false;
   }
-  const std::string line = SearchFolder::failure_of(beginning.folder);
+  constexpr std::uintmax_t little = 64 * 1024;
+  std::string line = SearchFolder::failure_of(beginning.folder);
+  if (line.empty() && fs::space(beginning.folder, error).available < little) {
+    line = "no space left on the disk";  // not even for the reason
+  }
   output_.refuse(beginning.request, is_late        ? "the search has not begun in time; it may begin later"
                                     : line.empty() ? "the search has ended with status " + std::to_string(*status)
                                                    : line);
-  if (status && beginning.is_new && !fs::exists(store, error)) {
+  if (status && beginning.is_new && !has_evaluations(store)) {
     fs::remove_all(beginning.folder, error);
   }
   if (!status) {

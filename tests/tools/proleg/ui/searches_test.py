@@ -222,6 +222,11 @@ def bad_input_is_one_line_and_leaves_nothing(program):
     readonly.write_text("not a folder")
     program.refused("search.start", name="good", experiment=experiment())
     readonly.unlink()
+    with tempfile.TemporaryDirectory() as outside:
+        readonly.symlink_to(outside)
+        assert "a link to" in program.refused("search.start", name="good", experiment=experiment())
+        assert not list(Path(outside).iterdir())
+        readonly.unlink()
     (program.folder / "kept").rename(readonly)
 
 
@@ -263,6 +268,20 @@ def odd_stores_end_nothing(program):
     program.must("search.stop", name="searches/early")
     assert program.viewer.result(started)["ok"]
     program.when("searches/early", lambda found: found["state"] == "interrupted")
+
+    # A search that is stopped in its fresh runs has not ended: it has no result, and goes on.
+    noisy = experiment(evaluations="8", trials={"count": "2", "friction": "0.1"}, confirmation={"candidates": "5", "runs": "150"})
+    name = program.must("search.start", name="noisy", experiment=noisy)["name"]
+    program.when(name, lambda found: found["made"] == 8)
+    program.ask("search.stop", name=name)
+    search = program.when(name, lambda found: found["state"] not in ("running", "stopping"))
+    if search["state"] != "ended":  # a computer that was too slow to stop it before
+        assert search["state"] == "interrupted" and search["left_s"] is None, search
+        assert program.must("search.open", name=name)["result"] is None
+        program.must("search.resume", name=name)
+        program.when(name, lambda found: found["state"] == "ended")
+    assert program.must("search.open", name=name)["result"]["ended"] == "all 8 evaluations made"
+    assert len(program.must("search.open", name=name)["result"]["confirmations"]) >= 5
 
     # Several objectives: a front.
     name = program.must("search.start", name="front", experiment=experiment(

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <optional>
@@ -199,6 +200,7 @@ TEST_F(StoreFile, ItsWriterIsAskedToStop) {
     request_stop(path_);
     EXPECT_TRUE(is_stop_requested(path_));
     while (!writer->is_stop_requested()) {  // it looks five times a second
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
   EXPECT_FALSE(is_being_written(path_));
@@ -213,6 +215,7 @@ TEST_F(StoreFile, CanBeOpenedWhileOthersLookWhetherItIsWritten) {
   std::thread looker([&] {
     while (!ends) {
       static_cast<void>(is_being_written(path_));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
   for (int i = 0; i < 200; ++i) {

@@ -257,6 +257,8 @@ def odd_stores_end_nothing(program):
     parameter = experiment()["parameters"][0]
     for joints in ([0, 1, 2], [3, 4]):
         name = program.must("search.start", name="again", experiment=experiment(parameters=[{**parameter, "joints": joints}]))["name"]
+        # The document may still be of the search before.
+        wait_until(lambda: program.must("search.rows", name=name, **{"from": 0})["made"] == 40, f"{name} has not ended")
         program.when(name, lambda found: found["state"] == "ended")
         assert len(program.must("search.open", name=name)["dimensions"]) == len(joints)
         assert len(program.must("search.rows", name=name, **{"from": 0})["values"][0]) == len(joints)

@@ -26,7 +26,7 @@ class Store::Implementation {
       }
       lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, result_key)
                                               : claim_store(path_));
-      forget_stop_request(path_);  // of an earlier program: nobody asks before the lock is there
+      forget_stop_request(path_);  // of an earlier program: request_stop() needs the lock
       database_ = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE);
       if (opening == Opening::resume) {
         require_same_experiment(path, *database_, experiment, result_key);

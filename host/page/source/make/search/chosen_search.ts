@@ -60,7 +60,7 @@ export class ChosenSearch {
     }
     const rows = this.rows.peek();
     if (rows === null) return;
-    // Of several repetitions nobody says how many evaluations each has.
+    // The list has the evaluations of all repetitions together, not of each.
     const announced = this.opened.peek()?.runs === 1 ? entry.made : 0;
     rows.reader.advance(now, announced, entry.state === 'running' || entry.state === 'stopping');
     if (rows.store.count !== this.shownCount.peek() && now - this.shownAt >= tablePeriod) {

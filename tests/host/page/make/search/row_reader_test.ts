@@ -64,7 +64,7 @@ describe('the evaluations of a search that is shown', () => {
     assert.equal(asked[1]!.from, 2);
   });
 
-  it('are read once where nobody says how many there are: of a repetition', async () => {
+  it('of a repetition are read once: how many there are is not known before', async () => {
     const { reader, store, asked } = readerOf();
     reader.advance(0, 0, false);
     await asked[0]!.answer(thousand(0, 1500));

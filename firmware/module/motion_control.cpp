@@ -47,7 +47,7 @@ void compute(Parts& parts, Microseconds now, const SyncMeaning& meaning) {
   const Kernel& kernel = parts.joint.kernel();
   const std::uint32_t first_tick = kernel.tick();
   parts.joint.set_fault(parts.drive.power().state() == PowerState::fault);
-  parts.joint.advance(meaning.missed, parts.contacts.read(), parts.monitor.current_ma());
+  parts.joint.advance(meaning.missed, parts.contacts.read_contacts(), parts.monitor.current_ma());
   send_state(parts);
   read_servo(parts, now);
   send_monitoring(parts, kernel.tick() - 1U);

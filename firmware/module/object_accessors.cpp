@@ -320,6 +320,9 @@ constexpr ObjectAccessor accessors[] = {
     read_only(object::measured_angle.address,
               [](const Parts& parts) { return canopen::monitored_angle(parts.monitor.angle()); }),
     read_only(object::temperature.address, [](const Parts& parts) { return parts.monitor.temperature_c(); }),
+    read_only(object::feedback_reading.address,
+              [](const Parts& parts) { return parts.monitor.feedback_reading().value_or(canopen::feedback_not_read); }),
+    read_only(object::touch_sensors.address, [](const Parts& parts) { return parts.contacts.read_contacts(); }),
     read_write(
         object::current_limit.address, WritableIn::any_state,
         [](const Parts& parts) { return parts.monitor.limit_ma(); },

@@ -30,7 +30,7 @@ class ContactPort {
  public:
   /// Present state of the touch sensors, as in byte 6 of the state frame: bits 0-1 the link behind the joint (rear,
   /// front), bits 2-3 the link in front of it, of which only the head module has sensors.
-  [[nodiscard]] virtual std::uint8_t read() = 0;
+  [[nodiscard]] virtual std::uint8_t read_contacts() = 0;
 
  protected:
   ~ContactPort() = default;

@@ -50,6 +50,8 @@ class ServoMonitor {
   [[nodiscard]] std::int8_t temperature_c() const { return readings_.temperature_c; }
   /// Angle of the joint; nothing if it is not measured.
   [[nodiscard]] const std::optional<std::int32_t>& angle() const { return readings_.angle; }
+  /// Reading of the feedback potentiometer by the ADC, also if none is fitted.
+  [[nodiscard]] const std::optional<std::uint16_t>& feedback_reading() const { return readings_.feedback_reading; }
   /// Angle of the joint if the last reading was a new one.
   [[nodiscard]] std::optional<std::int32_t> new_angle() const {
     return readings_.are_new ? readings_.angle : std::nullopt;

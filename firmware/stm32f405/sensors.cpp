@@ -30,7 +30,7 @@ constexpr std::uint32_t on =
 
 }  // namespace
 
-std::uint8_t Contacts::read() {
+std::uint8_t Contacts::read_contacts() {
   // All four inputs are read at once, so that they are from the same instant.
   constexpr unsigned first = board::contacts[0].number;
   static_assert(board::contacts[1].port == board::contacts[0].port && board::contacts[1].number == first + 1);
@@ -110,10 +110,11 @@ bool Sensors::take_others() {
   if (!adc1::sr.has(adc1::sr_jeoc)) {
     return false;
   }
+  const std::uint32_t feedback = adc1::jdr1.read() & adc1::jdr_mask;
+  readings_.feedback_reading = static_cast<std::uint16_t>(feedback);
   readings_.angle.reset();
   if (feedback_.has_feedback) {
-    readings_.angle = feedback_angle_of(adc1::jdr1.read() & adc1::jdr_mask, feedback_.feedback_at_minus_90,
-                                        feedback_.feedback_at_plus_90);
+    readings_.angle = feedback_angle_of(feedback, feedback_.feedback_at_minus_90, feedback_.feedback_at_plus_90);
   }
   readings_.temperature_c = temperature_of(adc1::jdr2.read() & adc1::jdr_mask, temperature_);
   adc1::sr.write(~adc1::sr_jeoc);

@@ -15,7 +15,7 @@ namespace proleg::stm32f405 {
 /// Reads the four touch inputs, which start_pins() configures. A closed switch is a contact.
 class Contacts final : public firmware::ContactPort {
  public:
-  [[nodiscard]] std::uint8_t read() override;
+  [[nodiscard]] std::uint8_t read_contacts() override;
 };
 
 /// Servo current, feedback potentiometer and the chip's temperature, by ADC1. No interrupt takes part:

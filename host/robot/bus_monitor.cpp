@@ -37,13 +37,16 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
     if (node.state == canopen::NmtState::boot_up) {
       node.current_limit.reset();
       has_limit_.reset(number);
+      lacks_touch_.reset(number);
     }
   } else if (const auto emergency = canopen::decode_emergency(frame)) {
     if (emergency->code != canopen::EmergencyCode::none) {
       node.last_emergency = emergency;
     }
   } else if (const auto measured = canopen::decode_monitoring(frame)) {
-    node.measured = measured;
+    node.current_ma = measured->current_ma;
+    node.temperature_c = measured->temperature_c;
+    node.error_register = measured->faults;
     if (measured->angle != canopen::Monitoring::not_measured) {
       node.position = std::int32_t{measured->angle} * (1 << 16);  // newer than what was read
     }
@@ -64,10 +67,38 @@ void BusMonitor::transmitted(Microseconds now, const CanFrame& frame) {
   readings_.transmitted(now, frame);
 }
 
-void BusMonitor::read_values(Microseconds now) {
+bool BusMonitor::is_silent(const MonitoredNode& node, Microseconds now) const {
   constexpr Microseconds silent_us = 3'000'000;
+  return node.last_heard == 0 || node.last_heard + silent_us < now;
+}
+
+void BusMonitor::forget_silent(Microseconds now) {
   for (MonitoredNode& node : nodes_) {
-    if (node.last_heard == 0 || node.last_heard + silent_us < now) {
+    if (is_silent(node, now)) {
+      const std::uint8_t number = node.node;
+      node = {};
+      node.node = number;
+    }
+  }
+}
+
+void BusMonitor::read_touch(Microseconds now) {
+  for (MonitoredNode& node : nodes_) {
+    if (is_silent(node, now) || lacks_touch_.test(node.node)) {
+      continue;
+    }
+    readings_.read(node.node, canopen::object::touch_sensors.address, [this, &node](const SdoResult& result) {
+      lacks_touch_.set(node.node, !result.is_good() && result.abort_code != canopen::AbortCode::timeout);
+      if (result.is_good()) {
+        node.contacts = static_cast<std::uint8_t>(result.number() & StateFrame::contact_bits);
+      }
+    });
+  }
+}
+
+void BusMonitor::read_values(Microseconds now) {
+  for (MonitoredNode& node : nodes_) {
+    if (is_silent(node, now)) {
       continue;
     }
     readings_.read(node.node, canopen::object::position_demand.address, [&node](const SdoResult& result) {
@@ -81,6 +112,19 @@ void BusMonitor::read_values(Microseconds now) {
     readings_.read(node.node, canopen::object::statusword.address, [&node](const SdoResult& result) {
       node.statusword = result.is_good() ? std::optional(static_cast<std::uint16_t>(result.number())) : std::nullopt;
     });
+    const auto read = [this, &node](const canopen::Object& object, auto take) {
+      readings_.read(node.node, object.address, [object, take](const SdoResult& result) {
+        if (result.is_good()) {
+          take(canopen::extend(object.type, result.number()));
+        }
+      });
+    };
+    read(canopen::object::actual_current,
+         [&node](std::uint32_t number) { node.current_ma = static_cast<std::int32_t>(number); });
+    read(canopen::object::temperature,
+         [&node](std::uint32_t number) { node.temperature_c = static_cast<std::int32_t>(number); });
+    read(canopen::object::error_register,
+         [&node](std::uint32_t number) { node.error_register = static_cast<std::uint8_t>(number); });
     if (!has_limit_.test(node.node)) {
       read_limit(node);
     }
@@ -102,10 +146,19 @@ void BusMonitor::poll(Microseconds now) {
       read_values(now);
     }
   }
+  if (now >= next_touch_) {
+    next_touch_ = now + touch_period_us;
+    if (reads_ && reads_touch_ && readings_.is_idle()) {
+      read_touch(now);
+    }
+  }
   readings_.poll(now);
 }
 
-Microseconds BusMonitor::next_deadline() const { return std::min(next_reading_, readings_.next_deadline()); }
+Microseconds BusMonitor::next_deadline() const {
+  const Microseconds next_touch = reads_touch_ ? next_touch_ : never;
+  return std::min(std::min(next_reading_, next_touch), readings_.next_deadline());
+}
 
 std::vector<MonitoredNode> BusMonitor::nodes() const {
   std::vector<MonitoredNode> heard;

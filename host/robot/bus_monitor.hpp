@@ -20,9 +20,13 @@ struct MonitoredNode {
   std::optional<canopen::NmtState> state;   ///< state in the last heartbeat of the node
   std::optional<std::int32_t> setpoint;     ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
   std::optional<std::uint16_t> statusword;  ///< 0x6041
-  std::optional<canopen::Monitoring> measured;  ///< angle, current, temperature, error register
-  std::optional<std::int32_t> position;  ///< newest of 0x6064 and `measured`: 90 degrees = 2^30; nothing: not measured
-  std::optional<std::uint8_t> contacts;  ///< bits 0 to 3 as in the state frame
+  // The newest of what was read and of the monitoring frame.
+  std::optional<std::int32_t> position;        ///< 0x6064: 90 degrees = 2^30; nothing: not measured
+  std::optional<std::int32_t> current_ma;      ///< 0x6078, of the servo
+  std::optional<std::int32_t> temperature_c;   ///< 0x2009:2, of the chip
+  std::optional<std::uint8_t> error_register;  ///< 0x1001
+  /// Bits 0 to 3 as in the state frame; newest of the state frame and 0x2009:4.
+  std::optional<std::uint8_t> contacts;
   std::optional<canopen::Emergency> last_emergency;  ///< the last one that was not the end of an error
   std::optional<std::uint16_t> current_limit;        ///< 0x200A:1, mA; 0: off; nothing: not known
   Microseconds last_heard = 0;
@@ -31,6 +35,7 @@ struct MonitoredNode {
 class BusMonitor final : public BusUser {
  public:
   static constexpr Microseconds reading_period_us = 500'000;
+  static constexpr Microseconds touch_period_us = 100'000;
 
   /// port: must outlive the monitor.
   explicit BusMonitor(CanPort& port);
@@ -39,6 +44,11 @@ class BusMonitor final : public BusUser {
 
   /// Sets whether the monitor reads values from the modules; true at first. Without them it only listens.
   void set_reads(bool reads) { reads_ = reads; }
+  /// Sets whether it reads the touch sensors of all modules, ten times a second while it reads; false at first. State
+  /// frames have them while the robot is in operation.
+  void set_reads_touch(bool reads) { reads_touch_ = reads; }
+  /// Forgets nodes of which nothing was heard for three seconds: they may have another node id by now.
+  void forget_silent(Microseconds now);
   /// Reads the limits of all modules again. Otherwise they are read once from each module, and again after its
   /// restart.
   void read_limits_again() { has_limit_.reset(); }
@@ -62,15 +72,20 @@ class BusMonitor final : public BusUser {
 
  private:
   void count(const CanFrame& frame);
+  [[nodiscard]] bool is_silent(const MonitoredNode& node, Microseconds now) const;
   void read_values(Microseconds now);
+  void read_touch(Microseconds now);
   void read_limit(MonitoredNode& node);
 
   SdoQueue readings_;
   std::array<MonitoredNode, canopen::host_node> nodes_{};
-  std::bitset<canopen::host_node> has_limit_;  ///< by node: the node has answered, also that it has no limit
+  std::bitset<canopen::host_node> has_limit_;    ///< by node: the node has answered, also that it has no limit
+  std::bitset<canopen::host_node> lacks_touch_;  ///< by node: its program has no such object
   bool reads_ = true;
+  bool reads_touch_ = false;
   Microseconds host_heard_ = 0;
   Microseconds next_reading_ = 0;
+  Microseconds next_touch_ = 0;
   Microseconds traffic_from_ = 0;
   unsigned syncs_ = 0;
   std::uint64_t frames_ = 0;

@@ -44,6 +44,8 @@ inline constexpr std::uint32_t signature_load = 0x64616F6C;
 /// most (DS8626); after 1 s the module answers that the flash has failed.
 inline constexpr Microseconds storing_time_us = 1'500'000;
 
+/// Value of 0x2009:3 if the ADC has not read the potentiometer.
+inline constexpr std::uint16_t feedback_not_read = 0xFFFF;
 /// Value of 0x6064 if the module does not measure the angle.
 inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
 
@@ -211,6 +213,12 @@ inline constexpr Object measured_angle =
                                    "upper bits of 0x6064: 2^14 is 90 degrees; -32768: not measured"));
 inline constexpr Object temperature =
     in_unit("degC", read_only(measured.at(2), "Temperature", DataType::integer8, "of the chip, in degrees Celsius"));
+inline constexpr Object feedback_reading =
+    read_only(measured.at(3), "Feedback reading", DataType::unsigned16,
+              "of the potentiometer by the ADC, 0 to 4095, also if none is fitted; 65535: not read");
+inline constexpr Object touch_sensors =
+    read_only(measured.at(4), "Touch sensors", DataType::unsigned8,
+              "as the pins are now, not debounced; bits 0-3 as in byte 6 of the state frame");
 
 inline constexpr ObjectGroup over_current{0x200A, ObjectCode::record, "Over-current"};
 inline constexpr Object current_limit =

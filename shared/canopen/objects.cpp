@@ -90,6 +90,8 @@ constexpr ObjectRow declared_rows[] = {
     row(object::slot_group_high),
     row(object::measured_angle),
     row(object::temperature),
+    row(object::feedback_reading),
+    row(object::touch_sensors),
     row(object::current_limit),
     row(object::current_limit_time),
     row(object::lost_frames),

@@ -75,7 +75,7 @@ struct ModuleParts {
   unsigned joint;
   firmware::ModuleIdentity identity;
   Crystal crystal;
-  std::function<std::uint8_t()> sensors;    ///< its touch sensors: as firmware::ContactPort::read()
+  std::function<std::uint8_t()> sensors;    ///< its touch sensors: as firmware::ContactPort::read_contacts()
   std::function<ServoReadings()> readings;  ///< of its servo and chip, at this moment
   /// Readings whose current is the mean since the last call, as firmware::SensorPort has it.
   std::function<ServoReadings()> take_readings;

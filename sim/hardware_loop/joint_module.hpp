@@ -1,17 +1,32 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "firmware/module/board_record.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/canopen/power_state.hpp"
 #include "sim/bus/controller.hpp"
 #include "sim/serial/serial_line.hpp"
 
 namespace proleg::sim {
+
+/// The feedback potentiometer of each simulated joint, as its ADC of 12 bits reads it.
+struct Potentiometer {
+  static constexpr std::uint16_t at_minus_90 = 410;
+  static constexpr std::uint16_t at_plus_90 = 3686;
+
+  /// angle: 90 degrees = 2^30.
+  [[nodiscard]] static constexpr std::uint16_t reading_of(std::int32_t angle) {
+    constexpr std::int64_t right_angle = std::int64_t{1} << 30U;
+    const std::int64_t reading = at_minus_90 + (angle + right_angle) * (at_plus_90 - at_minus_90) / (2 * right_angle);
+    return static_cast<std::uint16_t>(std::clamp<std::int64_t>(reading, 0, firmware::BoardRecord::max_reading));
+  }
+};
 
 /// A joint module on the simulated bus. This computer or a virtual chip runs its program.
 class JointModule {

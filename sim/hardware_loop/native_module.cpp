@@ -100,7 +100,8 @@ NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, C
   firmware::BoardRecord board;
   board.node = identity.node;
   board.has_feedback = (identity.capabilities & canopen::measures_angle) != 0;
-  board.feedback_at_plus_90 = firmware::BoardRecord::max_reading;
+  board.feedback_at_minus_90 = Potentiometer::at_minus_90;
+  board.feedback_at_plus_90 = Potentiometer::at_plus_90;
   board.is_gateway = is_gateway;
   if (firmware::append(flash_, board) != firmware::AppendResult::ok) {
     throw std::invalid_argument("node id: found " + std::to_string(identity.node) + ", expected at most " +

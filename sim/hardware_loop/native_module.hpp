@@ -78,13 +78,13 @@ class NativeModule final : public JointModule,
   void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
 
  private:
-  /// A separate object, because read() of ContactPort has the same name.
   struct Meters final : firmware::SensorPort {
     explicit Meters(Readings readings) : source(std::move(readings)) {}
     [[nodiscard]] ServoReadings take_readings() override {
       const bool are_new = converts || has_converted;
       if (are_new) {
         last = source ? source() : ServoReadings{};
+        last.feedback_reading = last.angle ? std::optional(Potentiometer::reading_of(*last.angle)) : std::nullopt;
       }
       last.are_new = are_new;
       has_converted = false;
@@ -136,7 +136,7 @@ class NativeModule final : public JointModule,
   void error_state_changed(BusTime time) override;
   void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override { pulse_.reset(); }
-  [[nodiscard]] std::uint8_t read() override { return sensors_(); }
+  [[nodiscard]] std::uint8_t read_contacts() override { return sensors_(); }
   /// What follows when the chip has written its flash, has computed a checksum, or has hung long enough.
   enum class AfterPause : std::uint8_t { goes_on, starts, resets };
 

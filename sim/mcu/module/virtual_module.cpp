@@ -24,10 +24,6 @@ constexpr unsigned servo_channel = 1;  ///< channel of TIM2
 constexpr std::uint32_t microvolts_per_ma = 1'000;
 constexpr std::uint32_t max_uv = board::vdda_millivolt * 1'000;
 
-// Readings of the feedback potentiometer, 12 bits.
-constexpr std::uint16_t feedback_at_minus_90 = 410;
-constexpr std::uint16_t feedback_at_plus_90 = 3686;
-
 ChipSettings chip_settings(const ModuleParts& parts) {
   return {parts.identity.unique_id, parts.crystal.parts_per_billion(), parts.identity.node};
 }
@@ -36,8 +32,8 @@ firmware::BoardRecord board_record(const ModuleParts& parts) {
   firmware::BoardRecord record;
   record.node = parts.identity.node;
   record.has_feedback = parts.readings().angle.has_value();
-  record.feedback_at_minus_90 = feedback_at_minus_90;
-  record.feedback_at_plus_90 = feedback_at_plus_90;
+  record.feedback_at_minus_90 = Potentiometer::at_minus_90;
+  record.feedback_at_plus_90 = Potentiometer::at_plus_90;
   record.is_gateway = parts.is_gateway;
   return record;
 }
@@ -306,8 +302,8 @@ std::uint32_t VirtualModule::analog_uv(unsigned channel) {
     constexpr std::int64_t quarter_turn = std::int64_t{1} << 30U;
     constexpr std::int64_t codes = 4096;
     const std::int64_t angle = readings_().angle.value_or(0);
-    const std::int64_t span = feedback_at_plus_90 - feedback_at_minus_90;
-    const std::int64_t part = (feedback_at_minus_90 * 2 * quarter_turn + (angle + quarter_turn) * span) / codes;
+    const std::int64_t span = Potentiometer::at_plus_90 - Potentiometer::at_minus_90;
+    const std::int64_t part = (Potentiometer::at_minus_90 * 2 * quarter_turn + (angle + quarter_turn) * span) / codes;
     const std::int64_t uv = part * max_uv / (2 * quarter_turn);
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(uv, 0, max_uv));
   }

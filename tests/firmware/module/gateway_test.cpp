@@ -36,7 +36,7 @@ struct Surroundings final : CanPort, firmware::ServoPort, firmware::ContactPort,
   CanErrors take_errors() override { return std::exchange(errors, {}); }
   void pulse(std::int32_t /*width*/, std::uint32_t /*period_us*/) override {}
   void off() override {}
-  std::uint8_t read() override { return 0; }
+  std::uint8_t read_contacts() override { return 0; }
   void connect(bool is_gateway) override { is_connected = is_gateway; }
   std::size_t read_line(std::span<char> characters) override {
     std::size_t count = 0;

@@ -110,7 +110,7 @@ class UnwiredObject : public testing::Test, private CanPort, firmware::ServoPort
   bool send(const CanFrame& /*frame*/) override { return false; }
   void pulse(std::int32_t /*width*/, std::uint32_t /*period_us*/) override {}
   void off() override {}
-  [[nodiscard]] std::uint8_t read() override { return 0; }
+  [[nodiscard]] std::uint8_t read_contacts() override { return 0; }
 
   AbortCode read(std::span<const ObjectAccessor> accessors, Address address) {
     std::uint32_t value = 0;

@@ -1,6 +1,7 @@
 #include "tools/proleg/common/child_program.hpp"
 
 #include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -42,16 +43,46 @@ void ChildProgram::Pipe::close_other_end() {
   }
 }
 
-ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors) {
+ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors)
+    : ChildProgram(command, folder, errors, false, -1) {}
+
+std::unique_ptr<ChildProgram> ChildProgram::with_input(const std::vector<std::string>& command,
+                                                       const std::string& folder, int inherited) {
+  return std::unique_ptr<ChildProgram>(new ChildProgram(command, folder, Errors::apart, true, inherited));
+}
+
+ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors,
+                           bool has_input, int inherited) {
   if (errors == Errors::apart) {
     errors_.emplace();
   }
-  process_ = start_program(command, {folder, output_.other_end, errors_ ? errors_->other_end : output_.other_end,
-                                     ProgramStart::Life::as_this_one});
-  output_.close_other_end();
-  if (errors_) {
-    errors_->close_other_end();
+  if (has_input) {
+    std::array<int, 2> ends{};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+      throw std::runtime_error(std::string("cannot make a pair of sockets: ") + std::strerror(errno));
+    }
+    input_.emplace(ends);
   }
+  ProgramStart start;
+  start.folder = folder;
+  start.output = output_.other_end;
+  start.errors = errors_ ? errors_->other_end : output_.other_end;
+  start.input = input_ ? input_->other_end : -1;
+  start.inherited = inherited;
+  start.gives_way = !has_input;
+  process_ = start_program(command, start);
+  output_.close_other_end();
+  for (std::optional<Pipe>* pipe : {&errors_, &input_}) {
+    if (*pipe) {
+      (*pipe)->close_other_end();
+    }
+  }
+}
+
+bool ChildProgram::write_line(std::string_view line) {
+  const std::string text = std::string(line) + "\n";
+  return input_ &&
+         send(input_->end, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(text.size());
 }
 
 ChildProgram::~ChildProgram() {

@@ -2,10 +2,13 @@
 
 #include <sys/types.h>
 
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace proleg::tools {
@@ -22,6 +25,10 @@ class ChildProgram {
   /// Starts it in a folder. command: the program, which is searched for as in a shell, and its arguments. Throws
   /// std::runtime_error if it cannot be started.
   ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors = Errors::in_output);
+  /// The same for a program that takes lines on its standard input, and a descriptor, as number inherited_number. It
+  /// does not give way to others. Its standard error is apart.
+  static std::unique_ptr<ChildProgram> with_input(const std::vector<std::string>& command, const std::string& folder,
+                                                  int inherited);
   /// Ends it, with the programs that it has started.
   ~ChildProgram();
   ChildProgram(const ChildProgram&) = delete;
@@ -31,6 +38,8 @@ class ChildProgram {
   [[nodiscard]] std::string read() { return read_from(output_.end); }
   /// The same of standard error alone; nothing without Errors::apart.
   [[nodiscard]] std::string read_errors() { return errors_ ? read_from(errors_->end) : std::string(); }
+  /// Gives it a line; the program may have ended. False: it takes none now.
+  bool write_line(std::string_view line);
   /// Its exit status, or 128 + the number of a signal, as a shell reports it; nothing as long as it runs. Does not
   /// wait. What it has started ends with it. Output that it wrote before can still be read.
   [[nodiscard]] std::optional<int> status();
@@ -45,15 +54,19 @@ class ChildProgram {
     int end;
     int other_end;  ///< until the child has it
     Pipe();
+    explicit Pipe(const std::array<int, 2>& ends) : end(ends[0]), other_end(ends[1]) {}
     ~Pipe();
     Pipe(const Pipe&) = delete;
     Pipe& operator=(const Pipe&) = delete;
     void close_other_end();
   };
   [[nodiscard]] static std::string read_from(int pipe);
+  ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors, bool has_input,
+               int inherited);
 
   Pipe output_;
   std::optional<Pipe> errors_;
+  std::optional<Pipe> input_;  ///< a pair of sockets: a write to a program that has ended sends no signal
   pid_t process_ = 0;
   std::optional<int> status_;
   std::optional<Clock::time_point> killed_at_;

@@ -48,10 +48,17 @@ class Setup {
   explicit Setup(const ProgramStart& start) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_addchdir_np(&actions_, start.folder.c_str());
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (start.input >= 0) {
+      posix_spawn_file_actions_adddup2(&actions_, start.input, STDIN_FILENO);
+    } else {
+      posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    }
     posix_spawn_file_actions_adddup2(&actions_, start.output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions_, start.errors, STDERR_FILENO);
-    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+    if (start.inherited >= 0) {
+      posix_spawn_file_actions_adddup2(&actions_, start.inherited, inherited_number);
+    }
+    posix_spawn_file_actions_addclosefrom_np(&actions_, start.inherited >= 0 ? inherited_number + 1 : inherited_number);
     posix_spawnattr_init(&attributes_);
     sigset_t none;
     sigemptyset(&none);
@@ -95,7 +102,9 @@ pid_t start_program(const std::vector<std::string>& command, const ProgramStart&
                                  ? "found no program " + command.front() + ", expected it in a folder of PATH"
                                  : "cannot start " + command.front() + ": " + std::strerror(error));
   }
-  setpriority(PRIO_PROCESS, static_cast<id_t>(process), lower_priority);
+  if (start.gives_way) {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(process), lower_priority);
+  }
   return process;
 }
 

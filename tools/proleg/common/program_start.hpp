@@ -8,8 +8,8 @@
 
 namespace proleg::tools {
 
-/// How another program starts. It gets no input, no open files of this program, and English messages; it gives way to
-/// other programs. It runs without a shell.
+/// How another program starts. It gets no open files of this program but those named here, and English messages. It
+/// runs without a shell.
 struct ProgramStart {
   enum class Life : std::uint8_t {
     as_this_one,  ///< in a process group of its own: Ctrl-C at the terminal goes to this program alone
@@ -20,7 +20,13 @@ struct ProgramStart {
   int output = -1;     ///< descriptor of its standard output
   int errors = -1;     ///< and of its standard error
   Life life = Life::as_this_one;
+  int input = -1;         ///< descriptor of its standard input; -1: it has none
+  int inherited = -1;     ///< a descriptor that it gets as number 3; -1: none
+  bool gives_way = true;  ///< to programs that need the processor at the same time
 };
+
+/// The number of `inherited` in the other program.
+inline constexpr int inherited_number = 3;
 
 /// Starts it. command: the program, which is searched for as in a shell, and its arguments. Returns its process. Throws
 /// std::runtime_error if it cannot be started.

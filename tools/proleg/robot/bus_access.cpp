@@ -118,6 +118,7 @@ class BusAccess::Implementation {
   explicit Implementation(const host::BusConnection::Open& open) : connection_(open) {}
 
   [[nodiscard]] host::BusConnection& connection() { return connection_; }
+  [[nodiscard]] boost::asio::io_context& context() { return context_; }
 
  private:
   boost::asio::io_context context_{1};
@@ -131,6 +132,7 @@ BusAccess::BusAccess(const host::BusConnection::Open& open) : implementation_(st
 BusAccess::~BusAccess() = default;
 
 host::BusConnection& BusAccess::connection() { return implementation_->connection(); }
+boost::asio::io_context& BusAccess::context() { return implementation_->context(); }
 
 void BusAccess::wait_for(const std::string& what, Microseconds at_most, const std::function<bool()>& done) {
   host::BusConnection& bus = connection();

@@ -3,6 +3,7 @@
 // For the subcommands that use a bus: how they find and open it, and how they read and write objects of modules.
 
 #include <array>
+#include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -50,6 +51,8 @@ class BusAccess {
   BusAccess& operator=(const BusAccess&) = delete;
 
   [[nodiscard]] host::BusConnection& connection();
+  /// In which the transport runs; of a bus of the caller's own it does nothing.
+  [[nodiscard]] boost::asio::io_context& context();
   /// Waits until `done`; throws std::runtime_error if that takes longer than the time, the connection is lost, or the
   /// user interrupts. what: what was waited for, for the message.
   void wait_for(const std::string& what, Microseconds at_most, const std::function<bool()>& done);

@@ -55,10 +55,10 @@ std::string fault_text(const host::MonitoredNode& node, bool is_silent) {
   if (is_silent) {
     return "silent";
   }
-  if (node.measured && node.measured->faults != 0 && node.last_emergency) {
-    return std::string(canopen::describe(node.last_emergency->code));
+  if (node.error_register.value_or(0) == 0) {
+    return "";
   }
-  return node.measured && node.measured->faults != 0 ? "reports an error" : "";
+  return node.last_emergency ? std::string(canopen::describe(node.last_emergency->code)) : "reports an error";
 }
 
 void print_table(const host::BusMonitor& monitor, const host::BusMonitor::Traffic& traffic, Microseconds now,
@@ -72,8 +72,8 @@ void print_table(const host::BusMonitor& monitor, const host::BusMonitor::Traffi
   std::printf("%-5s %-16s %-18s %10s %10s %8s %9s %6s  %s\n", "node", "state", "drive", "set-point", "angle",
               "contacts", "current", "chip", "fault");
   for (const host::MonitoredNode& node : monitor.nodes()) {
-    const auto current = node.measured ? std::optional<double>(node.measured->current_ma) : std::nullopt;
-    const auto temperature = node.measured ? std::optional<double>(node.measured->temperature_c) : std::nullopt;
+    const std::optional<double> current(node.current_ma);
+    const std::optional<double> temperature(node.temperature_c);
     std::printf("%-5u %-16s %-18s %10s %10s %8s %9s %6s  %s\n", unsigned{node.node},
                 node.state        ? std::string(host::state_text(*node.state)).c_str()
                 : node.statusword ? "not driven"
@@ -103,9 +103,9 @@ void print_json(const host::BusMonitor& monitor, const host::BusMonitor::Traffic
                   {"setpoint_deg", node.setpoint ? Json(degrees(*node.setpoint)) : Json()},
                   {"angle_deg", measured_degrees(node)},
                   {"contacts", node.contacts ? Json(unsigned{*node.contacts}) : Json()},
-                  {"current_ma", node.measured ? Json(unsigned{node.measured->current_ma}) : Json()},
-                  {"temperature_c", node.measured ? Json(int{node.measured->temperature_c}) : Json()},
-                  {"error_register", node.measured ? Json(unsigned{node.measured->faults}) : Json()},
+                  {"current_ma", node.current_ma ? Json(*node.current_ma) : Json()},
+                  {"temperature_c", node.temperature_c ? Json(*node.temperature_c) : Json()},
+                  {"error_register", node.error_register ? Json(unsigned{*node.error_register}) : Json()},
                   {"silent", is_silent},
                   {"fault", fault_text(node, is_silent)}});
   }

@@ -36,14 +36,16 @@ json gait_json(const GaitCheck& check) {
 }  // namespace
 
 BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
-                       SessionRequests& requests, host::SessionOutput& output)
+                       BusSharing& sharing, SessionRequests& requests, host::SessionOutput& output)
     : SessionThread(requests, output),
       file_(file),
       address_(std::move(address)),
       options_(std::move(options)),
       bus_(bus.connection()),
+      sharing_(sharing),
       monitor_(bus_),
       monitor_attachment_(bus_, monitor_),
+      shared_(bus.context(), bus_),
       stops_(file, bus_, output),
       edits_(file, file),
       delivery_(edits_),
@@ -51,6 +53,7 @@ BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string ad
       rows_(file) {
   output_.publish("robot", robot_document(file, "bus"));
   output_.set_signals(rows_.layout(), file.kernel.tick_period_us);
+  monitor_.set_reads_touch(true);
   begin_scan();
   begin_thread();
 }
@@ -61,6 +64,7 @@ void BusSession::serve() {
   constexpr Microseconds look_period_us = 5'000;
   stop_at_once();
   look_at_holder();
+  look_at_jobs();
   take_operations();
   poll_robot();
   stops_.answer();
@@ -83,7 +87,7 @@ void BusSession::fail(const std::string& why) {
   } catch (...) {
     // Without a master the modules stop by themselves.
     robot_.reset();
-    monitor_.set_reads(true);
+    sharing_.end_power();
     throw;
   }
 }
@@ -135,6 +139,18 @@ void BusSession::look_at_holder() {
     stop_robot("nobody drives");
     output_.notice(host::NoticeLevel::warning, "the robot stops: nobody drives it");
   }
+}
+
+/// Programs that take part in the bus ask modules what the monitor asks, too: two at a time get each other's answers.
+void BusSession::look_at_jobs() {
+  for (host::Descriptor& end : sharing_.take_programs()) {
+    shared_.add(std::move(end));
+  }
+  const bool has_job = sharing_.has_job();
+  if (has_job) {
+    end_scan();
+  }
+  monitor_.set_reads(!robot_ && !has_job);
 }
 
 json BusSession::carry_out(const host::OperationRequest& operation) {
@@ -273,6 +289,9 @@ json BusSession::scan(const json& /*arguments*/) {
   if (robot_) {
     throw std::runtime_error("the robot has power; its modules are known");
   }
+  if (sharing_.has_job()) {
+    throw std::runtime_error("a job on the modules goes on");
+  }
   if (!scan_) {
     begin_scan();
   }
@@ -291,6 +310,28 @@ void BusSession::start_robot(bool holds) {
   if (absent_since_) {
     throw std::runtime_error("nobody drives");
   }
+  if (!sharing_.begin_power()) {
+    throw std::runtime_error("a job on the modules goes on");
+  }
+  try {
+    make_robot(holds);
+  } catch (...) {
+    sharing_.end_power();
+    throw;
+  }
+  end_scan();
+  monitor_.set_reads(false);  // the master needs the bus, and reads what it needs
+  delivery_.begin_run();
+  are_parameters_new_ = true;
+  dropped_changes_ = 0;
+  failure_.clear();
+  stopped_by_.clear();
+  started_with_ = holds ? "power" : "run";
+  stops_.clear();
+  is_session_new_ = true;
+}
+
+void BusSession::make_robot(bool holds) {
   started_ = edits_.scenario_as_wanted();
   std::unique_ptr<sim::Recorder> recorder;
   if (!holds && !planned_recording_.empty()) {
@@ -314,16 +355,6 @@ void BusSession::start_robot(bool holds) {
   if (is_recording) {
     recording_ = std::exchange(planned_recording_, {});
   }
-  end_scan();
-  monitor_.set_reads(false);  // the master needs the bus, and reads what it needs
-  delivery_.begin_run();
-  are_parameters_new_ = true;
-  dropped_changes_ = 0;
-  failure_.clear();
-  stopped_by_.clear();
-  started_with_ = holds ? "power" : "run";
-  stops_.clear();
-  is_session_new_ = true;
 }
 
 /// by: empty: as somebody wished who drives.
@@ -361,7 +392,7 @@ void BusSession::poll_robot() {
                      "without a host stop by themselves within 1.5 s");
     }
     robot_.reset();
-    monitor_.set_reads(true);
+    sharing_.end_power();
   }
 }
 
@@ -427,8 +458,10 @@ void BusSession::publish_all(Clock::time_point now) {
     are_parameters_new_ = false;
   }
   const bool is_due = now >= publish_at_;
+  if (const std::vector<host::MonitoredNode> nodes = monitor_.nodes(); bus_rate_.is_due(nodes, now)) {
+    publish_bus(now, nodes);
+  }
   if (is_due) {
-    publish_bus(now);
     publish_at_ = now + publish_period;
   }
   if (is_session_new_ || is_due) {
@@ -455,7 +488,7 @@ void BusSession::publish_session() {
                               {"gait", gait_}});
 }
 
-void BusSession::publish_bus(Clock::time_point now) {
+void BusSession::publish_bus(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes) {
   BusView view;
   view.address = address_;
   view.is_connected = bus_.state().is_connected;
@@ -464,7 +497,7 @@ void BusSession::publish_bus(Clock::time_point now) {
   view.traffic = monitor_.take_traffic(view.now);
   view.seconds = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
   view.has_other_host = monitor_.has_host(view.now);
-  view.nodes = monitor_.nodes();
+  view.nodes = nodes;
   view.stop_confirmed = stops_.confirmed();
   if (robot_) {
     view.watch = &robot_->gait().gait_watch();
@@ -472,7 +505,7 @@ void BusSession::publish_bus(Clock::time_point now) {
       view.latency_ms = static_cast<double>(*median_us) * 1e-3;
     }
   }
-  output_.publish("bus", bus_document(file_, view));
+  output_.publish("bus", bus_document(file_.modules, view));
 }
 
 }  // namespace proleg::tools

@@ -13,13 +13,16 @@
 #include "host/robot/bus_connection.hpp"
 #include "host/robot/bus_monitor.hpp"
 #include "host/robot/bus_scan.hpp"
+#include "host/robot/shared_bus.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
+#include "tools/proleg/ui/bus_sharing.hpp"
 #include "tools/proleg/ui/bus_view.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/robot_stops.hpp"
 #include "tools/proleg/ui/session_base.hpp"
+#include "tools/proleg/ui/table_bus.hpp"
 
 namespace proleg::tools {
 
@@ -31,9 +34,9 @@ struct BusSessionOptions {
 class BusSession final : private SessionThread {
  public:
   /// Carries out `requests`, and reports to `output`. file, bus, requests, output: must outlive the session. Another
-  /// thread must not use the bus.
+  /// thread must not use the bus, but programs take part in it by `sharing`, which must outlive the session, too.
   BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
-             SessionRequests& requests, host::SessionOutput& output);
+             BusSharing& sharing, SessionRequests& requests, host::SessionOutput& output);
   /// The joints ramp to the safe pose and lose their power first.
   ~BusSession() override;
 
@@ -41,7 +44,7 @@ class BusSession final : private SessionThread {
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"ping", "scan"}; }
 
  private:
-  static constexpr std::chrono::milliseconds publish_period{500};
+  static constexpr std::chrono::milliseconds publish_period{500};  ///< of the session
   /// Time without a driver after which the robot stops.
   static constexpr std::chrono::milliseconds longest_absence{1'000};
 
@@ -55,6 +58,7 @@ class BusSession final : private SessionThread {
 
   void stop_at_once();
   void look_at_holder();
+  void look_at_jobs();
   void poll_robot();
   void give_changes();
   void add_idle_rows();
@@ -76,23 +80,27 @@ class BusSession final : private SessionThread {
   nlohmann::json ping(const nlohmann::json& arguments);
 
   void start_robot(bool holds);
+  void make_robot(bool holds);
   void begin_scan();
   void stop_robot(const std::string& by);
   /// Throws unless servos have power, or are about to.
   [[nodiscard]] DrivenRobot& powered();
   void publish_all(Clock::time_point now);
   void publish_session();
-  void publish_bus(Clock::time_point now);
+  void publish_bus(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes);
   [[nodiscard]] std::string state_name() const;
 
   const sim::Scenario& file_;
   std::string address_;
   BusSessionOptions options_;
   host::BusConnection& bus_;
+  BusSharing& sharing_;
 
   // The members from here on are used on the session's thread only.
   host::BusMonitor monitor_;
   host::BusAttachment monitor_attachment_;
+  host::SharedBus shared_;
+  BusDocumentRate bus_rate_;
   RobotStops stops_;
   std::optional<host::BusScan> scan_;
   std::optional<host::BusAttachment> scan_attachment_;

@@ -14,10 +14,9 @@ using nlohmann::json;
 
 constexpr Microseconds silent_us = 1'500'000;
 
-std::optional<unsigned> joint_of(const sim::Scenario& scenario, std::uint8_t node) {
-  const auto found = std::ranges::find(scenario.modules, node, &sim::ModulePlace::node);
-  return found == scenario.modules.end() ? std::nullopt
-                                         : std::optional(static_cast<unsigned>(found - scenario.modules.begin()));
+std::optional<unsigned> joint_of(std::span<const sim::ModulePlace> modules, std::uint8_t node) {
+  const auto found = std::ranges::find(modules, node, &sim::ModulePlace::node);
+  return found == modules.end() ? std::nullopt : std::optional(static_cast<unsigned>(found - modules.begin()));
 }
 
 template <typename Value>
@@ -25,20 +24,21 @@ json or_null(const std::optional<Value>& value) {
   return value ? json(*value) : json();
 }
 
-json module_json(const sim::Scenario& scenario, const BusView& view, const host::MonitoredNode& node) {
-  const std::optional<unsigned> joint = joint_of(scenario, node.node);
+json module_json(std::span<const sim::ModulePlace> places, const BusView& view, const host::MonitoredNode& node) {
+  const std::optional<unsigned> joint = joint_of(places, node.node);
   const std::optional<std::uint16_t> watched = view.watch != nullptr ? view.watch->statusword(node.node) : std::nullopt;
   const std::optional<std::uint16_t> statusword = watched ? watched : node.statusword;
-  const bool has_fault = node.measured && node.measured->faults != 0;
+  const bool has_fault = node.error_register.value_or(0) != 0;
   json object{
       {"node", node.node},
       {"joint", or_null(joint)},
       {"state", node.state ? json(host::state_text(*node.state)) : json()},
       {"drive", statusword ? json(host::drive_text(*statusword)) : json()},
       {"angle", node.position ? json(*node.position * 90.0 / (1 << 30)) : json()},
-      {"current", node.measured ? json(node.measured->current_ma) : json()},
+      {"current", or_null(node.current_ma)},
       {"current_limit", or_null(node.current_limit)},
-      {"temperature", node.measured ? json(node.measured->temperature_c) : json()},
+      {"temperature", or_null(node.temperature_c)},
+      {"contacts", or_null(node.contacts)},
       {"fault", nullptr},
       {"advice", nullptr},
       {"silent", node.last_heard + silent_us < view.now},
@@ -64,10 +64,10 @@ std::vector<host::Signal> signals(const sim::Scenario& scenario) {
 
 }  // namespace
 
-json bus_document(const sim::Scenario& scenario, const BusView& view) {
+json bus_document(std::span<const sim::ModulePlace> places, const BusView& view) {
   json modules = json::array();
   for (const host::MonitoredNode& node : view.nodes) {
-    modules.push_back(module_json(scenario, view, node));
+    modules.push_back(module_json(places, view, node));
   }
   const double seconds = view.seconds > 0 ? view.seconds : 1.0;
   return {{"address", view.address},

@@ -33,7 +33,8 @@ struct BusView {
   std::vector<std::optional<bool>> stop_confirmed{};  ///< of each joint, for the last STOP
 };
 
-[[nodiscard]] nlohmann::json bus_document(const sim::Scenario& scenario, const BusView& view);
+/// places: of the robot's joints; none: it is not known whose modules they are.
+[[nodiscard]] nlohmann::json bus_document(std::span<const sim::ModulePlace> places, const BusView& view);
 
 /// The telemetry of a robot on a bus (docs/page-interface.md): with power a row each tick of the gait, without power as
 /// often, with what is known of the joints.

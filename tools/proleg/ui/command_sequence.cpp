@@ -18,6 +18,11 @@ std::string last_line_of(std::string_view output) {
   return last;
 }
 
+std::string message_of(const std::string& line) {
+  const std::size_t name_end = line.starts_with("proleg ") ? line.find(": ") : std::string::npos;
+  return name_end == std::string::npos ? line : line.substr(name_end + 2);
+}
+
 CommandSequence::CommandSequence(std::vector<std::vector<std::string>> commands, std::string folder,
                                  std::chrono::seconds longest, ChildProgram::Errors errors)
     : commands_(std::move(commands)), folder_(std::move(folder)), errors_kind_(errors), until_(Clock::now() + longest) {

@@ -15,6 +15,9 @@ namespace proleg::tools {
 /// The last line that a program has printed, without blanks; empty if there is none.
 [[nodiscard]] std::string last_line_of(std::string_view output);
 
+/// A message of one of our programs without the name of the program: "TEXT" of "proleg optimise: TEXT".
+[[nodiscard]] std::string message_of(const std::string& line);
+
 /// Programs that run one after the other, up to the first one that fails, within a time.
 class CommandSequence {
  public:

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/proleg/common/temporary_folder.hpp"
 #include "tools/proleg/ui/command_sequence.hpp"
 
 namespace proleg::tools {
@@ -16,13 +17,7 @@ namespace proleg::tools {
 /// this object ends the program and removes the folder.
 class JsonProgram {
  public:
-  /// Makes the folder. Throws std::runtime_error if it cannot be made.
-  JsonProgram();
-  ~JsonProgram();
-  JsonProgram(const JsonProgram&) = delete;
-  JsonProgram& operator=(const JsonProgram&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
   /// Starts it in the folder. Throws std::runtime_error if it cannot be started.
   void start(const std::vector<std::string>& command, std::chrono::seconds longest);
@@ -35,7 +30,7 @@ class JsonProgram {
   [[nodiscard]] std::optional<End> look();
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   std::unique_ptr<CommandSequence> program_;
 };
 

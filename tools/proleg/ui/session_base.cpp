@@ -29,6 +29,8 @@ void SessionRouter::operate(const host::OperationRequest& request) {
     algorithms_.operate(request);
   } else if (request.name.starts_with(search_operations)) {
     searches_.operate(request);
+  } else if (request.name.starts_with(module_operations)) {
+    modules_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {
     remote_.operate(request);
   } else {
@@ -38,11 +40,13 @@ void SessionRouter::operate(const host::OperationRequest& request) {
 
 void SessionRouter::stop(const host::StopRequest& request) {
   robot_.stop(request);
+  modules_.stop(request);
   remote_.stop(request);
 }
 
 void SessionRouter::holder_changed(bool has_holder, bool is_away) {
   robot_.holder_changed(has_holder, is_away);
+  modules_.holder_changed(has_holder, is_away);
   remote_.holder_changed(has_holder, is_away);
 }
 

@@ -39,6 +39,7 @@
 #include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gallery.hpp"
 #include "tools/proleg/ui/mesh_session.hpp"
+#include "tools/proleg/ui/modules_session.hpp"
 #include "tools/proleg/ui/page_access.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/recent_files.hpp"
@@ -293,7 +294,8 @@ int serve(UiOptions& options) {
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
-        AlgorithmSession::free_operations(), SearchSession::free_operations(), RemoteSession::free_operations()}) {
+        AlgorithmSession::free_operations(), SearchSession::free_operations(), ModulesSession::free_operations(),
+        RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -309,11 +311,12 @@ int serve(UiOptions& options) {
   SessionRequests gallery_requests;
   SessionRequests algorithm_requests;
   SessionRequests search_requests;
+  SessionRequests module_requests;
   SessionRequests requests;
   RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
                        RemoteSession::kernel_devices);
   SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests,
-                       search_requests, remote, requests);
+                       search_requests, module_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RecentFiles recent(recent_list_path());
@@ -331,10 +334,15 @@ int serve(UiOptions& options) {
   const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
   const SearchSession searches({recordings.folder}, project_files, present_draft, search_requests, page);
   const RemoteThread remote_thread(remote, page);
+  BusSharing sharing;
+  std::optional<RobotBus> robot_bus;
+  if (bus) {
+    robot_bus.emplace(RobotBus{options.bus.address(), bus->connection().description(), run->scenario});
+  }
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
   if (bus) {
-    driven.emplace(run->scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id},
+    driven.emplace(run->scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, sharing,
                    requests, remote);
   } else {
     std::unique_ptr<LiveSimulation> live;
@@ -356,6 +364,8 @@ int serve(UiOptions& options) {
                                 build_id, options.paused, &present_draft},
         requests, remote);
   }
+  const ModulesSession modules({recordings.folder, robot_bus, !options.lan.lan}, present_draft, sharing,
+                               module_requests, page);
   const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;

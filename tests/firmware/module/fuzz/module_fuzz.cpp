@@ -155,7 +155,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     require(off_, "a module asks to come back only in bus-off");
     asked_ = true;
   }
-  std::uint8_t read() override { return sensors_; }
+  std::uint8_t read_contacts() override { return sensors_; }
 
   // Events.
   void check() const {

@@ -215,7 +215,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmwar
     require(false, "a module that is not configured sends no pulses");
   }
   void off() override {}
-  std::uint8_t read() override { return 0; }
+  std::uint8_t read_contacts() override { return 0; }
   ServoReadings take_readings() override { return {}; }
   void calibrate(const BoardRecord& board) override { require(board.valid(), "settings are in their ranges"); }
 

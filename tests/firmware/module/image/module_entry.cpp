@@ -13,7 +13,7 @@ struct NoPorts final : proleg::CanPort, proleg::firmware::ServoPort, proleg::fir
   bool send(const CanFrame& /*frame*/) override { return true; }
   void pulse(std::int32_t /*width*/, std::uint32_t /*period_us*/) override {}
   void off() override {}
-  std::uint8_t read() override { return 0; }
+  std::uint8_t read_contacts() override { return 0; }
 };
 
 struct NoSensors final : proleg::firmware::SensorPort {

@@ -146,7 +146,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     pulse_period_us = period_us;
   }
   void off() override { pulses.push_back({now_, std::nullopt}); }
-  [[nodiscard]] std::uint8_t read() override {
+  [[nodiscard]] std::uint8_t read_contacts() override {
     readings.push_back(now_);
     return sensors;
   }

@@ -24,7 +24,7 @@ class BusDocumentTest : public ::testing::Test {
   }
   json module() {
     view.nodes = {node};
-    return bus_document(scenario, view)["modules"][0];
+    return bus_document(scenario.modules, view)["modules"][0];
   }
 
   sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
@@ -44,7 +44,9 @@ TEST_F(BusDocumentTest, WhatIsNotKnownIsNull) {
        {"state", "drive", "angle", "current", "current_limit", "temperature", "fault", "advice", "stop_confirmed"}) {
     EXPECT_TRUE(module()[name].is_null()) << name;
   }
-  node.measured = canopen::Monitoring{4, canopen::Monitoring::not_measured, 350, 31, 0};
+  node.current_ma = 350;
+  node.temperature_c = 31;
+  node.error_register = 0;
   EXPECT_TRUE(module()["angle"].is_null());
   EXPECT_EQ(module()["current"], 350);
   EXPECT_EQ(module()["temperature"], 31);
@@ -59,17 +61,17 @@ TEST_F(BusDocumentTest, ALimitOfTheCurrentThatIsOffIsNotAnUnknownOne) {
 }
 
 TEST_F(BusDocumentTest, AFaultSaysWhatToDo) {
-  node.measured = canopen::Monitoring{4, 0, 2500, 31, 3};
+  node.error_register = 3;
   node.last_emergency = canopen::Emergency{4, canopen::EmergencyCode::over_current, 3, 0};
   EXPECT_EQ(module()["fault"], canopen::describe(canopen::EmergencyCode::over_current));
   EXPECT_NE(module()["advice"].get<std::string>().find("blocked"), std::string::npos);
-  node.measured->faults = 0;
+  node.error_register = 0;
   EXPECT_TRUE(module()["fault"].is_null()) << "the error is over";
 }
 
 TEST_F(BusDocumentTest, CountsSyncsOfASecondAndTellsSilence) {
   view.nodes = {node};
-  EXPECT_EQ(bus_document(scenario, view)["syncs"], 100);
+  EXPECT_EQ(bus_document(scenario.modules, view)["syncs"], 100);
   EXPECT_EQ(module()["silent"], false);
   node.last_heard = view.now - 2'000'000;
   EXPECT_EQ(module()["silent"], true);

@@ -1,0 +1,38 @@
+#include "host/robot/shared_bus.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace proleg::host {
+
+SharedBus::SharedBus(boost::asio::io_context& context, BusConnection& bus)
+    : bus_(bus), server_(context, *this), attachment_(bus, *this) {}
+
+void SharedBus::add(Descriptor end) { server_.add_descriptor(end.release()); }
+
+void SharedBus::receive(Microseconds now, const CanFrame& frame) { server_.broadcast(now, frame); }
+
+void SharedBus::transmitted(Microseconds now, const CanFrame& frame) {
+  const auto sent = std::ranges::find(sent_, frame, &Sent::frame);
+  if (sent == sent_.end()) {
+    server_.broadcast(now, frame);  // of this program
+    return;
+  }
+  const BusClient client = sent->client;
+  sent_.erase(sent_.begin(), sent + 1);  // what was sent before was lost: the bus keeps the order
+  server_.broadcast(now, frame, client);
+}
+
+bool SharedBus::frame_from_client(BusClient client, const CanFrame& frame) {
+  sent_.push_back({frame, client});  // first, because the transport may confirm it at once
+  if (!bus_.send(frame)) {
+    sent_.pop_back();
+    return false;
+  }
+  if (sent_.size() > max_sent) {
+    sent_.pop_front();
+  }
+  return true;
+}
+
+}  // namespace proleg::host

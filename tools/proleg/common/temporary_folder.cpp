@@ -1,0 +1,24 @@
+#include "tools/proleg/common/temporary_folder.hpp"
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+namespace proleg::tools {
+
+TemporaryFolder::TemporaryFolder() {
+  const std::filesystem::path parent = std::filesystem::temp_directory_path();
+  std::string folder = (parent / "proleg_XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) {
+    throw std::runtime_error("cannot make a folder in " + parent.string());
+  }
+  path_ = folder;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code error;  // what is left does no harm
+  std::filesystem::remove_all(path_, error);
+}
+
+}  // namespace proleg::tools

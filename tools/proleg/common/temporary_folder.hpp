@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+namespace proleg::tools {
+
+/// A new folder for files of this program, among the system's temporary files. It is removed with this object.
+class TemporaryFolder {
+ public:
+  /// Throws std::runtime_error if it cannot be made.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace proleg::tools

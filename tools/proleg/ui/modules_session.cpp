@@ -1,0 +1,543 @@
+#include "tools/proleg/ui/modules_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "host/transport/bus_address.hpp"
+#include "shared/computer/algorithm_library/algorithm_library.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/program_run.hpp"
+#include "tools/proleg/ui/scenario_copy.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Output = ModuleJobPlan::Output;
+
+constexpr std::chrono::milliseconds look_period{20};
+constexpr std::chrono::milliseconds draft_period{1000};
+/// Time without a driver after which a job ends that moves joints.
+constexpr std::chrono::milliseconds longest_absence{1000};
+constexpr const char* store_object = "0x1010:1";
+constexpr const char* save_word = "0x65766173";
+
+template <typename Value>
+Value required(const json& arguments, const char* name, const char* expected) {
+  const auto value = argument<Value>(arguments, name, expected);
+  if (!value) {
+    throw InputError(name, 0, "nothing", expected);
+  }
+  return *value;
+}
+
+bool flag_in(const json& arguments, const char* name) {
+  return argument<bool>(arguments, name, "true or false").value_or(false);
+}
+
+/// A word for a program that cannot be taken for an option.
+std::string word_in(const json& arguments, const char* name, const char* expected) {
+  const auto word = required<std::string>(arguments, name, expected);
+  constexpr std::size_t longest = 200;
+  if (word.empty() || word.size() > longest || word.starts_with("-") || !is_visible_line(word)) {
+    throw InputError(name, 0, in_quotes(one_line(word)), expected);
+  }
+  return word;
+}
+
+std::string node_in(const json& arguments) {
+  const auto node = required<std::uint32_t>(arguments, "node", "a node id");
+  constexpr std::uint32_t highest = 126;
+  if (node < 1 || node > highest) {
+    throw InputError("node", 0, std::to_string(node), "1 to 126");
+  }
+  return std::to_string(node);
+}
+
+/// The libraries with algorithms of users that this program has.
+void add_algorithms(std::vector<std::string>& words) {
+  for (const std::string& library : loaded_libraries()) {
+    words.insert(words.end(), {"--algorithms", library});
+  }
+}
+
+/// What does the same as these words in a shell.
+std::string shown_command(const std::vector<std::string>& words, const std::string& address) {
+  std::string text = "proleg";
+  for (const std::string& word : words) {
+    if (word != "--json" && word != "--json-lines") {
+      text += " " + shell_argument(word);
+    }
+  }
+  return text + " --bus " + shell_argument(address);
+}
+
+ModuleJobPlan plan_of(std::string kind, std::vector<std::string> words, const host::OperationRequest& request,
+                      Output output = Output::object) {
+  ModuleJobPlan plan;
+  plan.kind = std::move(kind);
+  plan.words = std::move(words);
+  plan.by = request.client_name;
+  plan.output = output;
+  return plan;
+}
+
+/// Whether several programs of this computer can open such a bus at the same time.
+bool is_for_several(const std::string& address) {
+  const host::BusAddress::Kind kind = host::parse_bus_address(address).kind;
+  return kind == host::BusAddress::Kind::can || kind == host::BusAddress::Kind::tcp;
+}
+
+}  // namespace
+
+ModulesSession::ModulesSession(ModulesSessionOptions options, const PresentDraft& draft, BusSharing& sharing,
+                               SessionRequests& requests, host::SessionOutput& output)
+    : SessionThread(requests, output),
+      options_(std::move(options)),
+      draft_(draft),
+      sharing_(sharing),
+      files_(options_.folder) {
+  publish();
+  publish_job();
+  begin_thread();
+}
+
+ModulesSession::~ModulesSession() { end_thread(); }
+
+void ModulesSession::serve() {
+  stop_at_once();
+  look_at_holder();
+  take_operations();
+  look_at_job();
+  look_at_quiet_job();
+  if (is_watched_ && draft_.get().revision != draft_revision_) {
+    publish();
+  }
+  if (quiet_ || (job_ && !job_->has_ended())) {
+    requests_.wait_until(Clock::now() + look_period);
+  } else if (is_watched_) {
+    requests_.wait_until(Clock::now() + draft_period);
+  } else {
+    requests_.wait();
+  }
+}
+
+void ModulesSession::fail(const std::string& why) {
+  end_job(why);
+  if (quiet_ && quiet_->request) {
+    output_.refuse(*quiet_->request, why);
+  }
+  quiet_.reset();
+}
+
+void ModulesSession::close() {
+  end_job("the program ends");
+  job_.reset();
+  quiet_.reset();
+  table_.reset();
+}
+
+json ModulesSession::carry_out(const host::OperationRequest& operation) {
+  static const std::map<std::string_view, Handler> handlers{
+      {"modules.look", &ModulesSession::look},       {"modules.open", &ModulesSession::open},
+      {"modules.close", &ModulesSession::close_bus}, {"modules.scan", &ModulesSession::scan},
+      {"modules.examine", &ModulesSession::examine}, {"modules.read", &ModulesSession::read},
+      {"modules.set", &ModulesSession::set},         {"modules.save", &ModulesSession::save},
+      {"modules.compare", &ModulesSession::compare}, {"modules.load", &ModulesSession::load},
+      {"modules.assign", &ModulesSession::assign},   {"modules.calibrate", &ModulesSession::calibrate},
+      {"modules.flash", &ModulesSession::flash},     {"modules.recover", &ModulesSession::recover},
+      {"modules.answer", &ModulesSession::answer},   {"modules.cancel", &ModulesSession::cancel}};
+  return (this->*handler_of(handlers, operation.name))(operation);
+}
+
+std::string ModulesSession::address() const {
+  return options_.bus ? options_.bus->address : table_ ? table_->address() : std::string();
+}
+
+std::shared_ptr<const sim::Scenario> ModulesSession::robot() const {
+  // The robot of the bus outlives the session.
+  return options_.bus ? std::shared_ptr<const sim::Scenario>(std::shared_ptr<void>(), &options_.bus->robot)
+                      : draft_.get().scenario;
+}
+
+json ModulesSession::look(const host::OperationRequest& /*request*/) {
+  is_watched_ = true;
+  files_.look();
+  offers_ = present_buses();
+  publish();
+  return json::object();
+}
+
+json ModulesSession::open(const host::OperationRequest& request) {
+  const std::string wanted = word_in(request.arguments, "bus", "the address of a bus");
+  if (options_.bus || table_) {
+    throw std::runtime_error("the bus " + address() + " is open");
+  }
+  const host::BusAddress::Kind kind = host::parse_bus_address(wanted).kind;
+  if (kind == host::BusAddress::Kind::automatic || kind == host::BusAddress::Kind::descriptor) {
+    throw InputError("bus", 0, in_quotes(wanted), "the address of one bus that this program can open");
+  }
+  if (!options_.opens_any_address && std::ranges::find(offers_, wanted) == offers_.end()) {
+    throw InputError("bus", 0, in_quotes(wanted),
+                     "an adapter of this computer: other computers may open this page, so it opens no other address");
+  }
+  table_ = std::make_unique<TableBus>(wanted, sharing_, output_);
+  found_ = json();
+  publish();
+  return json::object();
+}
+
+json ModulesSession::close_bus(const host::OperationRequest& /*request*/) {
+  if (options_.bus) {
+    throw std::runtime_error("the program was started with this bus");
+  }
+  wait_for_quiet_job();
+  if (sharing_.has_job()) {
+    throw std::runtime_error("a job goes on");
+  }
+  table_.reset();
+  found_ = json();
+  publish();
+  return json::object();
+}
+
+std::unique_ptr<ModuleJob> ModulesSession::make_job(ModuleJobPlan plan) {
+  if (address().empty()) {
+    throw std::runtime_error("no bus is open");
+  }
+  wait_for_quiet_job();
+  if (job_ && !job_->has_ended()) {
+    throw std::runtime_error("another job goes on: " + job_->kind());
+  }
+  if (plan.shown.empty()) {
+    plan.shown = shown_command(plan.words, address());
+  }
+  if (!plan.files && plan.folder.empty()) {
+    plan.folder = fs::absolute(options_.folder).string();
+  }
+  return std::make_unique<ModuleJob>(last_job_ + 1, std::move(plan), address(), sharing_);
+}
+
+json ModulesSession::begin(ModuleJobPlan plan) {
+  job_ = make_job(std::move(plan));
+  last_job_ = job_->number();
+  publish_job();
+  return {{"job", job_->number()}};
+}
+
+json ModulesSession::begin_quietly(const host::OperationRequest& request, ModuleJobPlan plan,
+                                   std::vector<std::string> then) {
+  std::unique_ptr<ModuleJob> job = make_job(std::move(plan));
+  quiet_.emplace(QuietJob{std::move(job), request.request, std::move(then)});
+  return answered_later();
+}
+
+void ModulesSession::wait_for_quiet_job() {
+  while (quiet_ && !requests_.interrupts()) {
+    look_at_quiet_job();
+    if (quiet_) {
+      std::this_thread::sleep_for(look_period);
+    }
+  }
+  if (quiet_) {
+    throw std::runtime_error("STOP came first");
+  }
+}
+
+json ModulesSession::scan(const host::OperationRequest& request) {
+  return begin(plan_of("scan", {"scan", "--json"}, request));
+}
+
+json ModulesSession::examine(const host::OperationRequest& request) {
+  std::vector<std::string> words{"doctor", "--json"};
+  add_algorithms(words);
+  ModuleJobPlan plan = plan_of("examine", std::move(words), request);
+  plan.opens_bus = !address().empty() && is_for_several(address());
+  return begin(std::move(plan));
+}
+
+json ModulesSession::read(const host::OperationRequest& request) {
+  std::vector<std::string> words{"info", node_in(request.arguments), "--json"};
+  if (flag_in(request.arguments, "all")) {
+    words.emplace_back("--all");
+  }
+  add_algorithms(words);
+  return begin_quietly(request, plan_of("read", std::move(words), request));
+}
+
+json ModulesSession::set(const host::OperationRequest& request) {
+  const json& arguments = request.arguments;
+  const std::string node = node_in(arguments);
+  const std::string object = word_in(arguments, "object", "an object, such as 0x6080");
+  const auto value = required<std::string>(arguments, "value", "a value as a text");
+  constexpr std::size_t longest = 100;
+  if (!is_visible_line(value) || value.size() > longest) {
+    throw InputError("value", 0, in_quotes(one_line(value)), "a value in the unit of the object");
+  }
+  std::vector<std::string> words{"set", node, object, "--", value};
+  std::vector<std::string> then;
+  if (flag_in(arguments, "store")) {
+    then = {"set", node, store_object, save_word};
+  }
+  return begin_quietly(request, plan_of("set", std::move(words), request, Output::text), std::move(then));
+}
+
+json ModulesSession::save(const host::OperationRequest& request) {
+  const fs::path file =
+      files_.new_settings(required<std::string>(request.arguments, "file", "a name that ends in .params"));
+  const auto nodes =
+      request.arguments.contains("nodes") ? word_in(request.arguments, "nodes", "all, or 1,3") : std::string("all");
+  std::vector<std::string> words{"params", "save", file.string(), "--nodes", nodes, "--json"};
+  return begin(plan_of("save", std::move(words), request));
+}
+
+json ModulesSession::compare(const host::OperationRequest& request) {
+  const fs::path file = files_.settings(required<std::string>(request.arguments, "file", "a file of the list"));
+  return begin(plan_of("compare", {"params", "diff", file.string(), "--json"}, request));
+}
+
+json ModulesSession::load(const host::OperationRequest& request) {
+  const fs::path file = files_.settings(required<std::string>(request.arguments, "file", "a file of the list"));
+  std::vector<std::string> words{"params", "load", file.string(), "--json"};
+  if (flag_in(request.arguments, "store")) {
+    words.emplace_back("--store");
+  }
+  if (flag_in(request.arguments, "any_module")) {
+    words.emplace_back("--any-module");
+  }
+  return begin(plan_of("load", std::move(words), request));
+}
+
+json ModulesSession::assign(const host::OperationRequest& request) {
+  const std::shared_ptr<const sim::Scenario> scenario = robot();
+  if (scenario == nullptr) {
+    throw std::runtime_error("there is no robot whose places the modules can get; open a scenario in Make first");
+  }
+  look_at_holder();  // whoever asks may have taken control since the last look
+  if (absent_since_) {
+    throw std::runtime_error("nobody drives");
+  }
+  const double amplitude = argument<double>(request.arguments, "amplitude", "degrees").value_or(5);
+  auto files = std::make_unique<TemporaryFolder>();
+  const std::string top = scenario->sources.front().path;
+  const std::string file = copy_sources(scenario->sources, files->path() / "scenario").at(top);
+  std::vector<std::string> words{"assign", file, "--json-lines", "--amplitude", number_text(amplitude)};
+  add_algorithms(words);
+  ModuleJobPlan plan = plan_of("assign", std::move(words), request, Output::events);
+  plan.shown = shown_command({"assign", fs::path(top).filename().string()}, address());
+  plan.files = std::move(files);
+  return begin(std::move(plan));
+}
+
+json ModulesSession::calibrate(const host::OperationRequest& request) {
+  return begin(
+      plan_of("calibrate", {"calibrate", node_in(request.arguments), "--json-lines"}, request, Output::events));
+}
+
+json ModulesSession::flash(const host::OperationRequest& request) {
+  const json& arguments = request.arguments;
+  const fs::path image = files_.image(required<std::string>(arguments, "image", "an image of the list"));
+  std::vector<std::string> words{"flash", image.string(), "--json-lines"};
+  if (const auto nodes = argument<std::string>(arguments, "nodes", "such as 1,3, or null")) {
+    words.insert(words.end(), {"--node", word_in(arguments, "nodes", "such as 1,3, or null")});
+  }
+  for (const auto& [name, option] :
+       {std::pair{"canary", "--canary"}, std::pair{"dry_run", "--dry-run"}, std::pair{"force_board", "--force-board"},
+        std::pair{"allow_downgrade", "--allow-downgrade"}}) {
+    if (flag_in(arguments, name)) {
+      words.emplace_back(option);
+    }
+  }
+  return begin(plan_of("flash", std::move(words), request, Output::events));
+}
+
+json ModulesSession::recover(const host::OperationRequest& request) {
+  const json& arguments = request.arguments;
+  std::vector<std::string> words{"recover"};
+  if (const auto image = argument<std::string>(arguments, "image", "an image of the list, or null")) {
+    words.push_back(files_.image(*image).string());
+  }
+  words.emplace_back("--json-lines");
+  if (const auto wait = argument<double>(arguments, "wait", "seconds")) {
+    words.insert(words.end(), {"--wait", number_text(*wait)});
+  }
+  for (const std::uint32_t serial : argument<std::vector<std::uint32_t>>(arguments, "serials", "serial numbers")
+                                        .value_or(std::vector<std::uint32_t>())) {
+    words.insert(words.end(), {"--serial", hexadecimal(serial, 8)});
+  }
+  if (flag_in(arguments, "reset_settings")) {
+    words.emplace_back("--reset-settings");
+  }
+  if (flag_in(arguments, "dry_run")) {
+    words.emplace_back("--dry-run");
+  }
+  return begin(plan_of("recover", std::move(words), request, Output::events));
+}
+
+json ModulesSession::answer(const host::OperationRequest& request) {
+  const auto number = required<std::uint32_t>(request.arguments, "job", "the number of a job");
+  const auto question = required<std::uint64_t>(request.arguments, "question", "the number of a question");
+  const std::string word = word_in(request.arguments, "word", "an answer");
+  if (!job_ || job_->has_ended() || job_->number() != number) {
+    throw std::runtime_error("this job has ended");
+  }
+  job_->answer(question, word);
+  publish_job();
+  return json::object();
+}
+
+json ModulesSession::cancel(const host::OperationRequest& request) {
+  const auto number = required<std::uint32_t>(request.arguments, "job", "the number of a job");
+  if (!job_ || job_->has_ended() || job_->number() != number) {
+    throw std::runtime_error("this job has ended");
+  }
+  end_job(request.client_name);
+  return json::object();
+}
+
+void ModulesSession::stop_at_once() {
+  const Stops stops = take_stops();
+  if (stops.empty()) {
+    return;
+  }
+  if (table_) {
+    table_->stop_modules();
+  }
+  if (job_ && !job_->has_ended() && (job_->kind() == "assign" || job_->kind() == "calibrate")) {
+    end_job("STOP by " + stops.back().by);
+  }
+}
+
+/// A joint that moves needs somebody who looks at it.
+void ModulesSession::look_at_holder() {
+  const SessionRequests::Holder holder = requests_.take_holder();
+  const Clock::time_point now = Clock::now();
+  if (holder.is_there) {
+    absent_since_.reset();
+  } else if (!absent_since_) {
+    absent_since_ = now;
+  }
+  const bool is_absent = holder.is_away || (absent_since_ && now > *absent_since_ + longest_absence);
+  if (is_absent && job_ && !job_->has_ended() && job_->kind() == "assign") {
+    end_job("nobody drives");
+  }
+}
+
+void ModulesSession::end_job(const std::string& by) {
+  if (job_ && !job_->has_ended()) {
+    job_->end(by);
+    publish_job();
+  }
+}
+
+void ModulesSession::look_at_job() {
+  if (!job_ || !job_->look()) {
+    return;
+  }
+  publish_job();
+  if (!job_->has_ended()) {
+    return;
+  }
+  if (job_->kind() == "scan") {
+    take_found(job_->result());
+  } else {
+    look_for_modules_again();
+  }
+  files_.look();  // a job may have written settings
+  publish();
+}
+
+/// A job may have given modules other node ids or programs.
+void ModulesSession::look_for_modules_again() {
+  if (quiet_ || address().empty()) {
+    return;
+  }
+  try {
+    quiet_.emplace(QuietJob{make_job(plan_of("scan", {"scan", "--json"}, {})), std::nullopt, {}});
+  } catch (const std::runtime_error&) {
+    // The robot has got power meanwhile.
+  }
+}
+
+void ModulesSession::take_found(const json& result) {
+  if (result.is_object()) {
+    found_ = {{"nodes", result.value("nodes", json::array())},
+              {"fresh_modules", result.value("modules_without_node_id", false)}};
+  }
+}
+
+void ModulesSession::look_at_quiet_job() {
+  if (!quiet_) {
+    return;
+  }
+  quiet_->job->look();
+  if (!quiet_->job->has_ended()) {
+    return;
+  }
+  const QuietJob quiet = std::move(*quiet_);
+  quiet_.reset();
+  if (!quiet.request) {
+    take_found(quiet.job->result());
+    publish();
+  } else if (quiet.job->status() != 0) {
+    const std::string error = quiet.job->error();
+    output_.refuse(*quiet.request, error.empty() ? "the program has failed" : error);
+  } else if (quiet.then.empty()) {
+    const json& result = quiet.job->result();
+    output_.answer(*quiet.request, result.is_string() ? json{{"text", result}} : result);
+  } else {
+    go_on_quietly(quiet);
+  }
+}
+
+void ModulesSession::go_on_quietly(const QuietJob& before) {
+  try {
+    quiet_.emplace(QuietJob{make_job(plan_of("set", before.then, {}, Output::text)), before.request, {}});
+  } catch (const std::runtime_error& error) {
+    output_.refuse(*before.request, error.what());
+  }
+}
+
+json ModulesSession::robot_json() const {
+  const std::shared_ptr<const sim::Scenario> scenario = robot();
+  if (scenario == nullptr) {
+    return {};
+  }
+  json joints = json::array();
+  for (std::size_t joint = 0; joint < scenario->robot.joints.size(); ++joint) {
+    const sim::ModulePlace& module = scenario->modules[joint];
+    joints.push_back({{"name", scenario->robot.joints[joint].name},
+                      {"node", module.node},
+                      {"serial", module.serial ? json(*module.serial) : json()}});
+  }
+  return {{"document", options_.bus ? "robot" : "draft_robot"},
+          {"name", scenario->robot.name},
+          {"joints", std::move(joints)}};
+}
+
+void ModulesSession::publish() {
+  draft_revision_ = draft_.get().revision;
+  json offers = json::array();
+  for (const std::string& offer : offers_) {
+    offers.push_back({{"address", offer}, {"text", offer.starts_with("serial:") ? "serial adapter" : "CAN interface"}});
+  }
+  output_.publish("modules", {{"bus", text_or_null(address())},
+                              {"is_fixed", options_.bus.has_value()},
+                              {"description", options_.bus ? text_or_null(options_.bus->description)
+                                              : table_     ? json(table_->description())
+                                                           : json()},
+                              {"offers", std::move(offers)},
+                              {"robot", robot_json()},
+                              {"images", files_.images()},
+                              {"settings", files_.settings()},
+                              {"found", found_}});
+}
+
+void ModulesSession::publish_job() { output_.publish("module_job", job_ ? job_->document() : json()); }
+
+}  // namespace proleg::tools

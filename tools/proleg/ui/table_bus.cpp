@@ -1,0 +1,102 @@
+#include "tools/proleg/ui/table_bus.hpp"
+
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "shared/canopen/declared_objects.hpp"
+#include "shared/canopen/power_state.hpp"
+
+namespace proleg::tools {
+
+bool BusDocumentRate::is_due(const std::vector<host::MonitoredNode>& nodes, Clock::time_point now) {
+  std::vector<std::optional<std::uint8_t>> contacts;
+  contacts.reserve(nodes.size());
+  for (const host::MonitoredNode& node : nodes) {
+    contacts.push_back(node.contacts);
+  }
+  if (now < due_ && contacts == contacts_) {
+    return false;
+  }
+  contacts_ = std::move(contacts);
+  due_ = now + period;
+  return true;
+}
+
+TableBus::TableBus(std::string address, BusSharing& sharing, host::SessionOutput& output)
+    : address_(std::move(address)),
+      sharing_(sharing),
+      output_(output),
+      bus_(BusOptions{address_}),
+      monitor_(bus_.connection()),
+      monitor_attachment_(bus_.connection(), monitor_),
+      queue_(bus_.connection()),
+      queue_attachment_(bus_.connection(), queue_),
+      shared_(bus_.context(), bus_.connection()) {
+  description_ = bus_.connection().description();
+  monitor_.set_reads_touch(true);
+  thread_ = std::thread([this] { run(); });
+}
+
+TableBus::~TableBus() {
+  ends_ = true;
+  thread_.join();
+}
+
+void TableBus::run() {
+  while (!ends_) {
+    try {
+      serve();
+    } catch (const std::exception& error) {
+      output_.notice(host::NoticeLevel::error, address_ + ": " + error.what());
+      std::this_thread::sleep_for(BusDocumentRate::period);
+    }
+  }
+}
+
+void TableBus::serve() {
+  constexpr Microseconds look_period_us = 5'000;
+  for (host::Descriptor& end : sharing_.take_programs()) {
+    shared_.add(std::move(end));
+  }
+  // Two programs that ask one module at a time get each other's answers.
+  const bool has_job = sharing_.has_job();
+  if (had_job_ && !has_job) {
+    monitor_.forget_silent(bus_.connection().now());
+  }
+  had_job_ = has_job;
+  monitor_.set_reads(!has_job);
+  if (stops_.exchange(false)) {
+    send_stops();
+  }
+  const Clock::time_point now = Clock::now();
+  const std::vector<host::MonitoredNode> nodes = monitor_.nodes();
+  if (rate_.is_due(nodes, now)) {
+    publish(now, nodes);
+  }
+  host::BusConnection& bus = bus_.connection();
+  bus.run_until(bus.now() + look_period_us, [this] { return ends_ || stops_; });
+}
+
+void TableBus::send_stops() {
+  for (const host::MonitoredNode& node : monitor_.nodes()) {
+    queue_.write(node.node, canopen::object::controlword.address, canopen::object::controlword.type,
+                 canopen::quick_stop_controlword, [](const host::SdoResult& /*result*/) {});
+  }
+}
+
+void TableBus::publish(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes) {
+  host::BusConnection& bus = bus_.connection();
+  BusView view;
+  view.address = address_;
+  view.is_connected = bus.state().is_connected;
+  view.problem = view.is_connected ? bus.state().reason : bus.diagnosis();
+  view.now = bus.now();
+  view.traffic = monitor_.take_traffic(view.now);
+  view.seconds = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
+  view.has_other_host = monitor_.has_host(view.now);
+  view.nodes = nodes;
+  output_.publish("bus", bus_document({}, view));
+}
+
+}  // namespace proleg::tools

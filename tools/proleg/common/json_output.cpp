@@ -80,6 +80,8 @@ void Json::append(const Json& value) { value_->push_back(*value.value_); }
 
 std::string Json::text() const { return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace); }
 
+std::string Json::line() const { return value_->dump(-1, ' ', true, ordered_json::error_handler_t::replace); }
+
 std::string durations_text(const Durations& durations, double factor, const std::string& unit,
                            const std::string& counted) {
   if (durations.count() == 0) {

@@ -58,6 +58,8 @@ class Json {
   /// Text with one member or element in each line, indented by two blanks for each level. Bytes that are not UTF-8 are
   /// replaced.
   [[nodiscard]] std::string text() const;
+  /// Text without line ends, which no program takes for more than one line: all characters are ASCII.
+  [[nodiscard]] std::string line() const;
 
  private:
   [[nodiscard]] static Json from_boolean(bool value);

@@ -18,7 +18,7 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/flash/flash_bare.hpp"
 #include "tools/proleg/flash/flash_modules.hpp"
 #include "tools/proleg/flash/update_run.hpp"
@@ -44,7 +44,7 @@ struct FlashOptions : BusOptions {
   bool force_board = false;
   bool allow_downgrade = false;
   std::optional<std::string> settings;
-  bool json = false;
+  ProgramReport report;
 };
 
 /// A module, and what becomes of it.
@@ -77,14 +77,15 @@ class Flashing {
 
  private:
   void judge_all();
+  void report_verdicts() const;
   void print_verdicts() const;
   void save_settings();
   void flash_all();
   /// False: at least one of them does not run the image.
   bool flash(const std::vector<Module*>& modules, bool through_its_line);
   void check_settings();
-  void print_result() const;
-  void print_json() const;
+  void print_table() const;
+  [[nodiscard]] Json result_json() const;
 
   const FlashOptions& options_;
   BusAccess& bus_;
@@ -99,6 +100,10 @@ class Flashing {
 std::string digits_of_hash(const image::Header& header) {
   constexpr std::size_t shown = 8;
   return hexadecimal_digits(header.hash).substr(0, shown);
+}
+
+const char* word_of(FlashAction action) {
+  return action == FlashAction::install ? "flash" : action == FlashAction::nothing ? "same" : "refuse";
 }
 
 void Flashing::judge_all() {
@@ -118,17 +123,12 @@ void Flashing::judge_all() {
 }
 
 void Flashing::print_verdicts() const {
-  if (options_.json) {
-    return;
-  }
   std::printf("%s: %s, SHA-256 %s..., for board %u\n", options_.image.c_str(),
               host::version_text(image_.header).c_str(), digits_of_hash(image_.header).c_str(),
               unsigned{image_.header.board_id});
   for (const Module& module : modules_) {
-    const char* const word = module.verdict.action == FlashAction::install   ? "flash"
-                             : module.verdict.action == FlashAction::nothing ? "same"
-                                                                             : "refuse";
-    std::printf("  %-22s %-7s %s\n", name_of(module.found).c_str(), word, module.verdict.text.c_str());
+    std::printf("  %-22s %-7s %s\n", name_of(module.found).c_str(), word_of(module.verdict.action),
+                module.verdict.text.c_str());
   }
   for (const std::uint8_t node : foreign_) {
     std::printf("  %-22s %-7s no joint module of Proleg\n", ("node " + std::to_string(node)).c_str(), "skip");
@@ -194,7 +194,7 @@ bool Flashing::flash(const std::vector<Module*>& modules, bool through_its_line)
       candidates.push_back(module->found);
     }
     const UpdateRun run =
-        run_update(bus_, bytes, candidates, through_its_line,
+        run_update(bus_, bytes, candidates, through_its_line, options_.report,
                    settings_file_.empty() ? "" : "; the settings from before are in " + settings_file_);
     if (run.durations.all() > durations_.all()) {
       durations_ = run.durations;
@@ -257,7 +257,7 @@ void Flashing::check_settings() {
   }
 }
 
-void Flashing::print_result() const {
+void Flashing::print_table() const {
   std::printf("%-22s %-18s %-10s %s\n", "module", "version", "SHA-256", "state");
   for (const Module& module : modules_) {
     const host::ModuleProgram* const program = module.program();
@@ -292,60 +292,70 @@ Json program_json(const host::ModuleProgram* program) {
           {"running", program->is(flag::runs_program)}};
 }
 
-void Flashing::print_json() const {
+/// What was found of a module, and what is done with it. before: what is known of its program.
+Json verdict_json(const Module& module, const Json& before) {
+  return {{"node", unsigned{module.found.node}},      {"serial", module.found.program.serial},
+          {"board", unsigned{module.found.board_id}}, {"before", before},
+          {"action", word_of(module.verdict.action)}, {"reason", module.verdict.text}};
+}
+
+void Flashing::report_verdicts() const {
+  if (options_.report.is_text()) {
+    print_verdicts();
+  }
+  Json modules = Json::empty_array();
+  for (const Module& module : modules_) {
+    const auto& image = module.found.program.image;
+    modules.append(verdict_json(module, image ? Json{{"version", host::version_number_text(image->version)}} : Json()));
+  }
+  options_.report.print_event("verdicts", {{"version", host::version_number_text(image_.header.version)},
+                                           {"sha256", hexadecimal_digits(image_.header.hash)},
+                                           {"modules", modules}});
+}
+
+Json Flashing::result_json() const {
   Json silent = Json::empty_array();
   for (const std::uint8_t node : silent_) {
     silent.append(unsigned{node});
   }
   Json modules = Json::empty_array();
   for (const Module& module : modules_) {
-    const char* const action = module.verdict.action == FlashAction::install   ? "flash"
-                               : module.verdict.action == FlashAction::nothing ? "same"
-                                                                               : "refuse";
     Json changed = Json::empty_array();
     for (const std::string& line : module.changed_settings) {
       changed.append(line);
     }
-    modules.append({{"node", unsigned{module.found.node}},
-                    {"serial", module.found.program.serial},
-                    {"board", unsigned{module.found.board_id}},
-                    {"before", program_json(&module.found.program)},
-                    {"action", action},
-                    {"reason", module.verdict.text},
-                    {"outcome", module.result ? Json(describe(module.result->outcome, module.result->detail)) : Json()},
-                    {"good", module.is_good()},
-                    {"now", program_json(module.program())},
-                    {"changed_settings", changed}});
+    Json object = verdict_json(module, program_json(&module.found.program));
+    object.add("outcome", module.result ? Json(describe(module.result->outcome, module.result->detail)) : Json());
+    object.add("good", module.is_good());
+    object.add("now", program_json(module.program()));
+    object.add("changed_settings", changed);
+    modules.append(object);
   }
-  std::cout << Json{{"bus", bus_.connection().description()},
-                    {"image", options_.image},
-                    {"version", host::version_number_text(image_.header.version)},
-                    {"sha256", hexadecimal_digits(image_.header.hash)},
-                    {"dry_run", options_.dry_run},
-                    {"modules", modules},
-                    {"silent_nodes", silent},
-                    {"transfer_s", durations_.transfer_s},
-                    {"installation_s", durations_.installation_s},
-                    {"restart_s", durations_.restart_s}}
-                   .text()
-            << '\n';
+  return {{"bus", bus_.connection().description()},
+          {"image", options_.image},
+          {"version", host::version_number_text(image_.header.version)},
+          {"sha256", hexadecimal_digits(image_.header.hash)},
+          {"dry_run", options_.dry_run},
+          {"modules", modules},
+          {"silent_nodes", silent},
+          {"transfer_s", durations_.transfer_s},
+          {"installation_s", durations_.installation_s},
+          {"restart_s", durations_.restart_s}};
 }
 
 int Flashing::run() {
   judge_all();
-  print_verdicts();
+  report_verdicts();
   const bool is_any_to_be_flashed = std::ranges::any_of(modules_, &Module::is_to_be_flashed);
   if (is_any_to_be_flashed && !options_.dry_run) {
     save_settings();
     flash_all();
     check_settings();
-    if (!options_.json) {
-      print_result();
+    if (options_.report.is_text()) {
+      print_table();
     }
   }
-  if (options_.json) {
-    print_json();
-  }
+  options_.report.print_result(result_json());
   for (const Module& module : modules_) {
     for (const std::string& line : module.changed_settings) {
       print_warning("proleg flash", line);
@@ -385,7 +395,7 @@ int run_bare(const FlashOptions& options) {
                {"--force-board", options.force_board},
                {"--allow-downgrade", options.allow_downgrade},
                {"--settings", options.settings.has_value()},
-               {"--json", options.json}};
+               {"--json or --json-lines", !options.report.is_text()}};
   for (const auto& option : of_a_bus) {
     if (option.is_given) {
       throw InputError(option.name, 0, "--bare, too", "one of the two: --bare needs no bus");
@@ -419,6 +429,7 @@ int run(const FlashOptions& options) {
   }
   BusAccess bus(options);
   catch_interrupts();
+  options.report.begin();
   require_no_host(bus);
   HostPresence presence(bus.connection());
   return Flashing(options, bus, image).run();
@@ -447,7 +458,7 @@ int main(int argc, char** argv) {
   command_line.add_option("--settings", options.settings,
                           "FILE: keep the settings of the modules from before in this file. Without it a file is kept "
                           "only if something went wrong.");
-  command_line.add_flag("--json", options.json, "print one JSON object");
+  options.report.add_options(command_line);
   add_bus_option(command_line, options);
   command_line.add_flag("--bare", options.is_bare, "the chip is empty: by a probe, and the bootloader first");
   add_bare_options(command_line, options.bare);

@@ -10,7 +10,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/flash/recovery.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
@@ -28,7 +28,7 @@ struct RecoverOptions : BusOptions {
   std::optional<double> wait_s;
   bool reset_settings = false;
   bool dry_run = false;
-  bool json = false;
+  ProgramReport report;
 };
 
 constexpr const char* row = "%-9s %-11s %-18s %s\n";
@@ -55,6 +55,7 @@ RecoverySettings parse(const RecoverOptions& options) {
     settings.image = host::read_image(*options.image);
   }
   settings.resets_settings = options.reset_settings;
+  settings.report = options.report;
   return settings;
 }
 
@@ -106,7 +107,7 @@ std::vector<std::string> state_lines(const RecoveredModule& module) {
   return lines;
 }
 
-void print_result(const Recovery& recovery) {
+void print_table(const Recovery& recovery) {
   std::printf(row, "module", "serial", "program", "state");
   for (const RecoveredModule& module : recovery.modules()) {
     std::string node = node_text(module.now);
@@ -156,7 +157,7 @@ Json module_json(const RecoveredModule& module) {
           {"problem", module.problem.empty() ? Json() : Json(module.problem)}};
 }
 
-void print_json(const RecoverOptions& options, BusAccess& bus, const Recovery& recovery) {
+Json result_json(const RecoverOptions& options, BusAccess& bus, const Recovery& recovery) {
   Json modules = Json::empty_array();
   for (const RecoveredModule& module : recovery.modules()) {
     modules.append(module_json(module));
@@ -165,34 +166,52 @@ void print_json(const RecoverOptions& options, BusAccess& bus, const Recovery& r
   for (const std::uint32_t serial : recovery.missing()) {
     missing.append(serial);
   }
-  std::cout << Json{{"bus", bus.connection().description()}, {"image", options.image}, {"dry_run", options.dry_run},
-                    {"well", recovery.are_all_well()},       {"modules", modules},     {"missing", missing}}
-                   .text()
-            << '\n';
+  return {{"bus", bus.connection().description()}, {"image", options.image}, {"dry_run", options.dry_run},
+          {"well", recovery.are_all_well()},       {"modules", modules},     {"missing", missing}};
+}
+
+void report_wait(const ProgramReport& report, const RecoverySettings& settings) {
+  const double seconds = static_cast<double>(settings.wait_us) / 1e6;
+  if (settings.wait_us == 0) {
+    return;
+  }
+  if (!report.has_events()) {
+    std::cerr << "proleg recover: waits up to " << number_text(seconds)
+              << " s for modules whose program does not start: they are silent most of the time\n";
+  }
+  report.print_event("waits", {{"seconds", seconds}});
+}
+
+void report_found(const ProgramReport& report, const Recovery& recovery) {
+  if (report.is_text()) {
+    print_plan(recovery);
+  }
+  Json modules = Json::empty_array();
+  for (const RecoveredModule& module : recovery.modules()) {
+    modules.append({{"node", unsigned{module.before.node}},
+                    {"serial", module.before.program.serial},
+                    {"found", faults_json(module.first_faults)}});
+  }
+  report.print_event("found", {{"modules", modules}});
 }
 
 int run(const RecoverOptions& options) {
   const RecoverySettings settings = parse(options);
   BusAccess bus(options);
   catch_interrupts();
+  options.report.begin();
   require_no_host(bus);
-  if (settings.wait_us > 0) {
-    std::cerr << "proleg recover: waits up to " << number_text(static_cast<double>(settings.wait_us) / 1e6)
-              << " s for modules whose program does not start: they are silent most of the time\n";
-  }
+  report_wait(options.report, settings);
   Recovery recovery(bus, settings);
   recovery.examine();
-  if (!options.json) {
-    print_plan(recovery);
-  }
+  report_found(options.report, recovery);
   if (!options.dry_run) {
     recovery.recover();
   }
-  if (options.json) {
-    print_json(options, bus, recovery);
-  } else if (!options.dry_run) {
-    print_result(recovery);
+  if (options.report.is_text() && !options.dry_run) {
+    print_table(recovery);
   }
+  options.report.print_result(result_json(options, bus, recovery));
   for (const std::uint8_t node : recovery.silent()) {
     print_warning("proleg recover", "node " + std::to_string(node) +
                                         " sends, and answers nothing: it is no module of Proleg, or has lost its "
@@ -224,7 +243,7 @@ int main(int argc, char** argv) {
                         "settings that only a later program knows are lost, all but the node id");
   command_line.add_flag("--dry-run", options.dry_run,
                         "only say what is wrong with each module, and what would be done");
-  command_line.add_flag("--json", options.json, "print one JSON object");
+  options.report.add_options(command_line);
   add_bus_option(command_line, options);
   return command_line.run(argc, argv, [&] { return run(options); });
 }

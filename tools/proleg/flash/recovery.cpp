@@ -91,7 +91,7 @@ void Recovery::wait() {
   const Microseconds end = begin + settings_.wait_us;
   TerminalLine line(std::chrono::milliseconds(0));
   for (Microseconds now = bus_.connection().now(); now < end; now = bus_.connection().now()) {
-    if (line.is_due()) {
+    if (!settings_.report.has_events() && line.is_due()) {
       line.draw("waits for modules whose program does not start: " + std::to_string((now - begin) / second) + " s of " +
                 std::to_string(settings_.wait_us / second) + "; " + std::to_string(modules_.size()) +
                 " modules were seen");
@@ -346,7 +346,7 @@ void Recovery::flash_at_once(const std::vector<RecoveredModule*>& modules, bool 
   for (const RecoveredModule* const module : modules) {
     candidates.push_back(module->now);
   }
-  const UpdateRun run = run_update(bus_, settings_.image->bytes, candidates, through_its_line);
+  const UpdateRun run = run_update(bus_, settings_.image->bytes, candidates, through_its_line, settings_.report);
   for (std::size_t i = 0; i < modules.size(); ++i) {
     const host::UpdatedModule& result = run.modules[i];
     if (result.outcome == host::UpdateOutcome::runs) {

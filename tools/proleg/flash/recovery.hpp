@@ -10,6 +10,7 @@
 
 #include "host/flash/image_file.hpp"
 #include "host/flash/module_fault.hpp"
+#include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
 namespace proleg::tools {
@@ -21,6 +22,7 @@ struct RecoverySettings {
   std::vector<std::uint32_t> serials;  ///< the wait ends when these modules were seen; empty: it does not end before
   std::optional<host::ImageFile> image;
   bool resets_settings = false;
+  ProgramReport report;  ///< of what takes long
 };
 
 struct RecoveredModule {

@@ -3,6 +3,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <stdexcept>
@@ -19,12 +20,12 @@ namespace {
 using host::RobotUpdate;
 
 /// A bar for each module on standard error, drawn again and again. Nothing if standard error is no terminal.
-class FlashProgress {
+class Bars {
  public:
-  FlashProgress() : line_(std::chrono::milliseconds(0)) {}
-  ~FlashProgress() { erase(); }
-  FlashProgress(const FlashProgress&) = delete;
-  FlashProgress& operator=(const FlashProgress&) = delete;
+  Bars() : line_(std::chrono::milliseconds(0)) {}
+  ~Bars() { erase(); }
+  Bars(const Bars&) = delete;
+  Bars& operator=(const Bars&) = delete;
 
   struct Bar {
     std::string name;
@@ -54,7 +55,7 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
-void FlashProgress::draw(const std::vector<Bar>& bars) {
+void Bars::draw(const std::vector<Bar>& bars) {
   if (!line_.is_visible()) {
     return;
   }
@@ -78,7 +79,7 @@ void FlashProgress::draw(const std::vector<Bar>& bars) {
   drawn_ = lines;
 }
 
-void FlashProgress::erase() {
+void Bars::erase() {
   if (drawn_ != 0) {
     // Back to the first of them, and away with all below.
     std::cerr << "\033[" << drawn_ << "A\r\033[J" << std::flush;
@@ -100,9 +101,86 @@ std::string state_of(const RobotUpdate& update, const host::UpdatedModule& modul
   }
 }
 
-void follow(host::BusConnection& bus, const RobotUpdate& update, std::span<const host::FlashCandidate> modules,
-            bool through_its_line, const std::string& hint) {
-  FlashProgress progress;
+/// Shows how far an update is: as bars, or with --json-lines as events.
+class UpdateProgress {
+ public:
+  /// All must outlive this.
+  UpdateProgress(const ProgramReport& report, const RobotUpdate& update, std::span<const host::FlashCandidate> modules)
+      : report_(report), update_(update), modules_(modules) {}
+
+  /// Cheap; shows it at most ten times a second.
+  void show();
+  /// To be called when the update is done.
+  void show_end();
+
+ private:
+  void draw_bars();
+  void print_progress() const;
+  void print_ended() const;
+  /// 0 to 1.
+  [[nodiscard]] double part(const host::UpdatedModule& module) const {
+    return module.has_image ? 1.0 : update_.progress();
+  }
+
+  const ProgramReport& report_;
+  const RobotUpdate& update_;
+  std::span<const host::FlashCandidate> modules_;
+  Bars bars_;
+  LogInterval event_interval_{std::chrono::steady_clock::now(), std::chrono::milliseconds(100)};
+};
+
+void UpdateProgress::show() {
+  if (!report_.has_events()) {
+    draw_bars();
+  } else if (event_interval_.is_due(std::chrono::steady_clock::now())) {
+    print_progress();
+  }
+}
+
+void UpdateProgress::show_end() {
+  bars_.erase();
+  print_progress();
+  print_ended();
+}
+
+void UpdateProgress::draw_bars() {
+  if (!bars_.is_due()) {
+    return;
+  }
+  std::vector<Bars::Bar> bars;
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const host::UpdatedModule& module = update_.modules()[i];
+    bars.push_back({name_of(modules_[i]), part(module), state_of(update_, module)});
+  }
+  bars_.draw(bars);
+}
+
+void UpdateProgress::print_progress() const {
+  Json list = Json::empty_array();
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const host::UpdatedModule& module = update_.modules()[i];
+    list.append({{"node", modules_[i].node},
+                 {"serial", module.serial},
+                 {"part", part(module)},
+                 {"state", state_of(update_, module)}});
+  }
+  report_.print_event("progress", {{"modules", list}});
+}
+
+void UpdateProgress::print_ended() const {
+  Json list = Json::empty_array();
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const host::UpdatedModule& module = update_.modules()[i];
+    list.append({{"node", modules_[i].node},
+                 {"serial", module.serial},
+                 {"outcome", describe(module.outcome, module.detail)},
+                 {"good", module.outcome == host::UpdateOutcome::runs}});
+  }
+  report_.print_event("ended", {{"modules", list}});
+}
+
+void follow(host::BusConnection& bus, const RobotUpdate& update, UpdateProgress& progress, bool through_its_line,
+            const std::string& hint) {
   constexpr Microseconds longest = 300'000'000;  // it ends by itself; this bounds one with a fault
   constexpr Microseconds drawing_period = 50'000;
   // A connection may come back: the line of a gateway ends for a while, and a plug may be loose.
@@ -126,15 +204,9 @@ void follow(host::BusConnection& bus, const RobotUpdate& update, std::span<const
     if (bus.now() > end) {
       throw std::runtime_error("no end after 5 minutes");
     }
-    if (progress.is_due()) {
-      std::vector<FlashProgress::Bar> bars;
-      for (std::size_t i = 0; i < modules.size(); ++i) {
-        const host::UpdatedModule& module = update.modules()[i];
-        bars.push_back({name_of(modules[i]), module.has_image ? 1.0 : update.progress(), state_of(update, module)});
-      }
-      progress.draw(bars);
-    }
+    progress.show();
   }
+  progress.show_end();
 }
 
 }  // namespace
@@ -145,7 +217,7 @@ std::uint8_t new_session(BusAccess& bus) {
 }
 
 UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image, std::span<const host::FlashCandidate> modules,
-                     bool through_its_line, const std::string& hint) {
+                     bool through_its_line, const ProgramReport& report, const std::string& hint) {
   std::vector<std::uint32_t> serials;
   for (const host::FlashCandidate& module : modules) {
     serials.push_back(module.program.serial);
@@ -157,7 +229,8 @@ UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image, std::s
   RobotUpdate update(connection, image, serials, options);
   const host::BusAttachment attachment(connection, update);
   update.start(connection.now());
-  follow(connection, update, modules, through_its_line, hint);
+  UpdateProgress progress(report, update, modules);
+  follow(connection, update, progress, through_its_line, hint);
   const auto seconds = [&update](RobotUpdate::Step step) { return static_cast<double>(update.duration(step)) / 1e6; };
   return {update.modules(),
           {seconds(RobotUpdate::Step::transfer), seconds(RobotUpdate::Step::installation),

@@ -9,6 +9,7 @@
 
 #include "host/flash/module_program.hpp"
 #include "host/flash/robot_update.hpp"
+#include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
 namespace proleg::tools {
@@ -29,11 +30,11 @@ struct UpdateRun {
 /// The number of a session: of the clock, so that two hosts rarely have the same one.
 [[nodiscard]] std::uint8_t new_session(BusAccess& bus);
 
-/// Brings an image to modules at once, and shows a bar for each until all have ended. through_its_line: as
-/// host::UpdateOptions has it. Throws std::runtime_error if the user interrupts; hint: the end of that message, with a
-/// separator, or empty.
+/// Brings an image to modules at once, and shows a bar for each until all have ended, or reports the events `progress`
+/// and `ended`. through_its_line: as host::UpdateOptions has it. Throws std::runtime_error if the user interrupts;
+/// hint: the end of that message, with a separator, or empty.
 [[nodiscard]] UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image,
                                    std::span<const host::FlashCandidate> modules, bool through_its_line,
-                                   const std::string& hint = {});
+                                   const ProgramReport& report, const std::string& hint = {});
 
 }  // namespace proleg::tools

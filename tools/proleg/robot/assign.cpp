@@ -14,8 +14,10 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
+#include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/robot/assign_report.hpp"
 #include "tools/proleg/robot/assign_steps.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/robot/node_numbering.hpp"
@@ -30,6 +32,7 @@ struct AssignOptions : ScenarioOptions {
   std::optional<std::string> places;
   std::string amplitude = "5";
   bool yes = false;
+  ProgramReport report;
 };
 
 /// The options, checked.
@@ -37,7 +40,7 @@ struct AssignSettings {
   std::vector<Place> places;
   host::JointMotionOptions motion;
   bool asks = true;  ///< whether the user is asked before node ids are changed
-  bool json = false;
+  ProgramReport report;
 };
 
 std::int32_t parse_amplitude(const std::string& word) {
@@ -74,7 +77,8 @@ class Assignment {
         scenario_(scenario),
         bus_(bus),
         presence_(bus.connection()),
-        dialogue_(bus, presence_, scenario.robot) {
+        report_(settings.report, scenario.robot),
+        dialogue_(bus, presence_, scenario.robot, report_) {
     for (const sim::ModulePlace& module : scenario.modules) {
       nodes_.push_back(module.node);
       serials_.push_back(module.serial.value_or(0));
@@ -85,6 +89,7 @@ class Assignment {
     find_named_nodes();
     reset_all(bus_);
     numbered_ = number_fresh_modules(bus_, nodes_, serials_);
+    report_.show_numbered(numbered_);
     find();
     take_serials();
     if (settings_.places.empty()) {
@@ -98,8 +103,9 @@ class Assignment {
     }
     steps_ = std::move(*steps);
     if (!steps_.empty()) {
-      show_changes();
-      if (settings_.asks && !dialogue_.ask_to_agree("Give the modules these node ids?")) {
+      const std::vector<NodeChange> changes = node_changes();
+      report_.show_changes(changes);
+      if (settings_.asks && !dialogue_.ask_to_agree(changes)) {
         throw std::runtime_error("ended by the user");
       }
       has_renumbered_ = true;
@@ -123,10 +129,9 @@ class Assignment {
       }
       const bool is_uncertain = unfinished != steps_.end() && unfinished->address == module.address;
       const std::string serial = hexadecimal(module.address.back(), 8);
-      AssignDialogue::say("the module with the serial number " + serial + " (" +
-                          (module.joint ? joint_name(*module.joint) : "no joint of this robot") + ") has the node id " +
-                          std::to_string(node) +
-                          (is_uncertain ? ", or " + std::to_string(unfinished->node) + " already" : "") + "\n");
+      std::cerr << "the module with the serial number " << serial << " ("
+                << (module.joint ? joint_name(*module.joint) : "no joint of this robot") << ") has the node id " << node
+                << (is_uncertain ? ", or " + std::to_string(unfinished->node) + " already" : "") << '\n';
       if (module.joint) {
         places += (places.empty() ? "" : ",") + serial + "=" + joint_name(*module.joint);
       }
@@ -140,7 +145,7 @@ class Assignment {
   }
 
  private:
-  [[nodiscard]] const std::string& joint_name(unsigned joint) const { return scenario_.robot.joints[joint].name; }
+  [[nodiscard]] const std::string& joint_name(unsigned joint) const { return report_.joint_name(joint); }
 
   [[nodiscard]] host::PlacedModule* module_of(unsigned joint) {
     const auto module = std::ranges::find(modules_, std::optional(joint), &host::PlacedModule::joint);
@@ -237,27 +242,28 @@ class Assignment {
   }
 
   void ask_for_places() {
+    report_.show_places(modules_);
     if (std::ranges::all_of(modules_, [](const auto& module) { return module.joint.has_value(); })) {
       return;
     }
     host::JointMotionOptions motion = settings_.motion;
     motion.limits = common_limits(scenario_);
-    AssignDialogue::say("One joint after the other moves to and fro; all others have no power. Answer with its name (" +
-                        listed(sim::joint_names(scenario_.robot)) +
-                        "), none if no joint of this robot moves, more for a larger motion, or quit.\n");
+    report_.explain_questions();
     for (host::PlacedModule& module : modules_) {
       if (!module.joint && !joints_without_module().empty()) {
-        module.joint = dialogue_.ask_for_joint(module.node, motion, [this](unsigned joint) {
+        module.joint = dialogue_.ask_for_joint(module, motion, [this](unsigned joint) {
           const host::PlacedModule* other = module_of(joint);
           return other == nullptr
                      ? std::nullopt
                      : std::optional(joint_name(joint) + " is node " + std::to_string(other->node) + " already");
         });
+        report_.show_places(modules_);
       }
     }
   }
 
-  void show_changes() {
+  [[nodiscard]] std::vector<NodeChange> node_changes() const {
+    std::vector<NodeChange> changes;
     for (const host::PlacedModule& module : modules_) {
       // A module that is listed twice has the last node id.
       std::optional<unsigned> node;
@@ -265,11 +271,10 @@ class Assignment {
         node = step.address == module.address ? std::optional(unsigned{step.node}) : node;
       }
       if (node) {
-        AssignDialogue::say("node " + std::to_string(module.node) + " gets the node id " + std::to_string(*node) +
-                            (module.joint ? " (" + joint_name(*module.joint) + ")" : " (no joint of this robot)") +
-                            "\n");
+        changes.push_back({module.address.back(), module.node, *node, module.joint});
       }
     }
+    return changes;
   }
 
   /// Throws std::runtime_error if a joint does not have its module now.
@@ -289,28 +294,35 @@ class Assignment {
     }
   }
 
+  [[nodiscard]] Json result_json(bool has_changed) {
+    Json joints = Json::empty_array();
+    for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
+      const host::PlacedModule* module = module_of(joint);
+      joints.append({{"joint", joint_name(joint)},
+                     {"node", module != nullptr ? Json(unsigned{module->node}) : Json()},
+                     {"serial", module != nullptr ? Json(module->address.back()) : Json()}});
+    }
+    return {{"joints", joints}, {"changed", has_changed}, {"new_modules", numbered_}};
+  }
+
+  void print_table() {
+    std::printf("%-8s %-5s %s\n", "joint", "node", "serial");
+    for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
+      if (const host::PlacedModule* module = module_of(joint)) {
+        std::printf("%-8s %-5u %s\n", joint_name(joint).c_str(), unsigned{module->node},
+                    hexadecimal(module->address.back(), 8).c_str());
+      } else {
+        std::printf("%-8s -\n", joint_name(joint).c_str());
+      }
+    }
+  }
+
   void print_result(bool has_changed) {
-    if (settings_.json) {
-      Json joints = Json::empty_array();
-      for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
-        const host::PlacedModule* module = module_of(joint);
-        joints.append({{"joint", joint_name(joint)},
-                       {"node", module != nullptr ? Json(unsigned{module->node}) : Json()},
-                       {"serial", module != nullptr ? Json(module->address.back()) : Json()}});
-      }
-      std::cout << Json{{"joints", joints}, {"changed", has_changed}, {"new_modules", numbered_}}.text() << '\n';
-    } else {
-      std::printf("%-8s %-5s %s\n", "joint", "node", "serial");
-      for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
-        if (const host::PlacedModule* module = module_of(joint)) {
-          std::printf("%-8s %-5u %s\n", joint_name(joint).c_str(), unsigned{module->node},
-                      hexadecimal(module->address.back(), 8).c_str());
-        } else {
-          std::printf("%-8s -\n", joint_name(joint).c_str());
-        }
-      }
+    if (settings_.report.is_text()) {
+      print_table();
       std::printf("%s\n", has_changed ? "all modules have booted with these node ids" : changes().c_str());
     }
+    settings_.report.print_result(result_json(has_changed));
     if (const std::vector<std::string> missing = joints_without_module(); !missing.empty()) {
       std::cerr << "proleg assign: no module was found for " << listed(missing) << '\n';
     }
@@ -320,6 +332,7 @@ class Assignment {
   const sim::Scenario& scenario_;
   BusAccess& bus_;
   HostPresence presence_;
+  AssignReport report_;
   AssignDialogue dialogue_;
   std::vector<std::uint8_t> nodes_;     ///< by joint, as the robot's file says
   std::vector<std::uint32_t> serials_;  ///< by joint
@@ -340,10 +353,10 @@ int assign(const AssignOptions& options) {
     settings.places = parse_places(run.scenario.robot, *options.places);
   }
   settings.asks = !options.yes && !options.places;
-  settings.json = options.json;
+  settings.report = options.report;
   BusAccess bus(options.bus);
   catch_interrupts();
-  // A reader of the questions that ends must not end this program while a joint moves.
+  // A reader of the questions or the events that ends must not end this program while a joint moves.
   std::signal(SIGPIPE, SIG_IGN);
   require_no_host(bus);
   Assignment assignment(settings, run.scenario, bus);
@@ -380,7 +393,7 @@ int main(int argc, char** argv) {
   command_line.add_option("--amplitude", options.amplitude, "how far a joint moves to each side, 1 to 30 degrees (5)")
       .value_name("DEGREES");
   command_line.add_flag("--yes", options.yes, "do not ask before the node ids are changed");
-  command_line.add_flag("--json", options.json, "print one JSON object");
+  options.report.add_options(command_line);
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return assign(options); });
 }

@@ -36,14 +36,6 @@ std::optional<unsigned> only_joint(const sim::RobotModel& robot, IsMeant&& is_me
   return found;
 }
 
-constexpr const char* which = "Which joint is it? ";
-
-std::string degrees_text(std::int32_t angle) {
-  constexpr double tenths = 10.0;
-  const double degrees = 90.0 * angle / quarter_turn;
-  return number_text(static_cast<double>(static_cast<int>(degrees * tenths + 0.5)) / tenths);
-}
-
 /// While a joint moves, its master sends the heartbeats of this host.
 class Pause {
  public:
@@ -257,8 +249,6 @@ std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view w
   return places;
 }
 
-void AssignDialogue::say(const std::string& text) { std::cerr << text << std::flush; }
-
 std::string AssignDialogue::choices() const { return listed(sim::joint_names(robot_)) + ", none, more, quit"; }
 
 std::string AssignDialogue::next_line(MovingJoint* moving) {
@@ -281,16 +271,17 @@ std::string AssignDialogue::next_line(MovingJoint* moving) {
 }
 
 AssignDialogue::Answer AssignDialogue::ask_while(
-    MovingJoint* moving, const std::function<std::optional<std::string>(unsigned joint)>& why_not) {
+    MovingJoint* moving, const host::PlacedModule& module,
+    const std::function<std::optional<std::string>(unsigned joint)>& why_not) {
   for (;;) {
-    say(which);
+    report_.ask_for_joint(module);
     const std::string word = next_line(moving);
     if (const auto joint = joint_of(robot_, word)) {
       const auto reason = why_not(*joint);
       if (!reason) {
         return joint;
       }
-      say(*reason + ". ");
+      report_.refuse(*reason);
     } else if (const std::string command = lower_case(word); command == "none") {
       return std::optional<unsigned>();
     } else if (command == "more") {
@@ -298,28 +289,32 @@ AssignDialogue::Answer AssignDialogue::ask_while(
     } else if (command == "quit" || command == "q") {
       throw std::runtime_error("ended by the user");
     } else {
-      say(in_quotes(word) + " is none of " + choices() + ". ");
+      report_.refuse(in_quotes(word) + " is none of " + choices());
     }
   }
 }
 
 std::optional<unsigned> AssignDialogue::ask_for_joint(
-    std::uint8_t node, host::JointMotionOptions options,
+    const host::PlacedModule& module, host::JointMotionOptions options,
     const std::function<std::optional<std::string>(unsigned joint)>& why_not) {
   const Pause pause(presence_);
-  const std::string name = "Node " + std::to_string(node);
   for (;;) {
     std::optional<MovingJoint> moving;
+    std::string problem;
     try {
-      moving.emplace(bus_, node, options);
-      say(name + " moves by " + degrees_text(moving->motion().amplitude()) + " degrees. ");
+      moving.emplace(bus_, module.node, options);
     } catch (const std::runtime_error& error) {
       if (interrupted() || !bus_.connection().state().is_connected) {
         throw;
       }
-      say(name + " cannot move (" + error.what() + "). If you know its joint, say it; else none. ");
+      problem = error.what();
     }
-    const Answer answer = ask_while(moving ? &*moving : nullptr, why_not);
+    if (moving) {
+      report_.show_motion(module, moving->motion().amplitude());
+    } else {
+      report_.show_standstill(module, problem);
+    }
+    const Answer answer = ask_while(moving ? &*moving : nullptr, module, why_not);
     if (moving) {
       moving->stop();
     }
@@ -330,9 +325,9 @@ std::optional<unsigned> AssignDialogue::ask_for_joint(
   }
 }
 
-bool AssignDialogue::ask_to_agree(const std::string& question) {
+bool AssignDialogue::ask_to_agree(std::span<const NodeChange> changes) {
   for (;;) {
-    say(question + " [y/n] ");
+    report_.ask_to_agree(changes);
     const std::string word = lower_case(next_line(nullptr));
     if (word == "y" || word == "yes") {
       return true;
@@ -340,6 +335,7 @@ bool AssignDialogue::ask_to_agree(const std::string& question) {
     if (word == "n" || word == "no") {
       return false;
     }
+    report_.refuse(in_quotes(word) + " is none of yes, no");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -14,6 +15,7 @@
 #include "host/robot/node_plan.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/robot/assign_report.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
 namespace proleg::tools {
@@ -75,39 +77,39 @@ struct Place {
 /// "3=J1,0x1A2B3C4D=J2". Throws InputError, which names --places; also if a module or a joint is named twice.
 [[nodiscard]] std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view words);
 
-/// The questions of proleg assign. They are on standard error, answers come by standard input, from a person or from a
-/// program in the place of one.
+/// The questions of proleg assign. Answers come by standard input, from a person or from a program in the place of one.
 class AssignDialogue {
  public:
   static constexpr std::int32_t largest_amplitude = raw(Unit::degree, 30);
 
-  /// robot: must outlive this, as bus and presence.
-  AssignDialogue(BusAccess& bus, HostPresence& presence, const sim::RobotModel& robot)
-      : bus_(bus), presence_(presence), robot_(robot) {}
-
-  static void say(const std::string& text);
+  /// All must outlive this.
+  AssignDialogue(BusAccess& bus, HostPresence& presence, const sim::RobotModel& robot, const AssignReport& report)
+      : bus_(bus), presence_(presence), robot_(robot), report_(report) {}
 
   /// Moves the joint of a module until the user says which one it is. Returns the joint; nothing: it is none of this
   /// robot. why_not: says why a joint cannot be the answer ("J3 is node 4 already"), or nothing. Throws
   /// std::runtime_error if the user ends the program, input ends, or the servo may still have power.
-  std::optional<unsigned> ask_for_joint(std::uint8_t node, host::JointMotionOptions options,
+  std::optional<unsigned> ask_for_joint(const host::PlacedModule& module, host::JointMotionOptions options,
                                         const std::function<std::optional<std::string>(unsigned joint)>& why_not);
 
   /// Whether the user agrees. Throws as ask_for_joint().
-  bool ask_to_agree(const std::string& question);
+  bool ask_to_agree(std::span<const NodeChange> changes);
 
  private:
   /// The user wants a larger motion.
   struct More {};
   using Answer = std::variant<More, std::optional<unsigned>>;
 
-  Answer ask_while(MovingJoint* moving, const std::function<std::optional<std::string>(unsigned joint)>& why_not);
+  /// moving: null if the joint cannot move.
+  Answer ask_while(MovingJoint* moving, const host::PlacedModule& module,
+                   const std::function<std::optional<std::string>(unsigned joint)>& why_not);
   std::string next_line(MovingJoint* moving);
   [[nodiscard]] std::string choices() const;
 
   BusAccess& bus_;
   HostPresence& presence_;
   const sim::RobotModel& robot_;
+  const AssignReport& report_;
   InputLines lines_;
 };
 

@@ -5,11 +5,13 @@
 #include <iostream>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/robot/object_word.hpp"
 #include "host/robot/state_text.hpp"
 #include "shared/canopen/object_name.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
@@ -167,6 +169,11 @@ void print_module(const Module& module, bool has_groups) {
   }
 }
 
+/// By SDO.
+bool is_writable(const canopen::Object& object) {
+  return object.access == canopen::Access::read_write || object.access == canopen::Access::write_only;
+}
+
 void add_to(Json& list, const Module& module) {
   for (const Line& line : module.lines) {
     if (line.result.is_good()) {
@@ -174,7 +181,9 @@ void add_to(Json& list, const Module& module) {
                    {"object", host::address_text(line.object.address)},
                    {"name", std::string(canopen::full_name(line.object.address).view())},
                    {"group", line.group},
-                   {"value", value_of(line)}});
+                   {"value", value_of(line)},
+                   {"writable", is_writable(line.object)},
+                   {"help", one_line(std::string_view(line.object.help))}});
     }
   }
 }

@@ -16,6 +16,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/kernel_configuration.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
 namespace {
@@ -29,6 +30,7 @@ struct ParamsOptions : BusOptions {
   std::string nodes = "all";
   bool store = false;
   bool any_module = false;
+  bool json = false;
 };
 
 std::string read_file(const std::string& name) {
@@ -117,17 +119,6 @@ class Modules {
   std::string failure_;
 };
 
-int save(const ParamsOptions& options, BusAccess& bus) {
-  Modules modules(bus);
-  std::vector<host::ModuleParameters> all;
-  for (const std::uint8_t node : nodes_of(bus, options.nodes)) {
-    all.push_back(modules.read(node));
-  }
-  write_file(options.file, host::parameters_text(all));
-  std::cout << "saved the settings of " << all.size() << " modules in " << options.file << '\n';
-  return exit_success;
-}
-
 struct Difference {
   const host::ModuleParameters* wanted;
   host::ParameterValue value;
@@ -139,6 +130,8 @@ struct Comparison {
   std::vector<std::string> other_modules;  ///< a line for each node with another serial number than in the file
   /// Nodes whose module does not have the gait of the file now, so that it has no such parameters.
   std::vector<std::string> without_gait;
+
+  [[nodiscard]] std::size_t count() const { return differences.size() + other_modules.size(); }
 };
 
 /// The values of the file that the modules do not have. Throws std::runtime_error if a module cannot take the file.
@@ -173,6 +166,68 @@ Comparison compare(const std::vector<host::ModuleParameters>& file, Modules& mod
   return comparison;
 }
 
+std::string entry_text(const Difference& difference) {
+  return std::string(canopen::entry_name(difference.value.object.address).view());
+}
+
+std::string wanted_text(const Difference& difference) {
+  return host::value_text(difference.value.object, difference.value.bytes);
+}
+
+Json list_of(const std::vector<std::string>& texts) {
+  Json list = Json::empty_array();
+  for (const std::string& text : texts) {
+    list.append(text);
+  }
+  return list;
+}
+
+/// What was written into modules.
+struct Written {
+  std::size_t changed = 0;  ///< values
+  bool is_stored = false;
+};
+
+void print_json(const ParamsOptions& options, const std::vector<host::ModuleParameters>& file,
+                const Comparison& comparison, const Written& written) {
+  Json modules = Json::empty_array();
+  for (const host::ModuleParameters& module : file) {
+    modules.append(unsigned{module.node});
+  }
+  Json differences = Json::empty_array();
+  for (const Difference& difference : comparison.differences) {
+    differences.append({{"node", unsigned{difference.wanted->node}},
+                        {"object", host::address_text(difference.value.object.address)},
+                        {"name", entry_text(difference)},
+                        {"found", difference.found},
+                        {"wanted", wanted_text(difference)}});
+  }
+  std::cout << Json{{"file", options.file},
+                    {"modules", modules},
+                    {"differences", differences},
+                    {"other_modules", list_of(comparison.other_modules)},
+                    {"without_gait", list_of(comparison.without_gait)},
+                    {"changed", written.changed},
+                    {"stored", written.is_stored}}
+                   .text()
+            << '\n';
+}
+
+int save(const ParamsOptions& options, BusAccess& bus) {
+  Modules modules(bus);
+  std::vector<host::ModuleParameters> all;
+  for (const std::uint8_t node : nodes_of(bus, options.nodes)) {
+    all.push_back(modules.read(node));
+  }
+  write_file(options.file, host::parameters_text(all));
+  if (options.json) {
+    print_json(options, all, {}, {});
+  } else {
+    std::cout << "saved the settings of " << all.size() << " modules in " << options.file << '\n';
+  }
+  return exit_success;
+}
+
 void print_without_gait(const Comparison& comparison) {
   if (!comparison.without_gait.empty()) {
     std::cout << "not compared: the parameters of the gait, which node"
@@ -201,6 +256,10 @@ int load(const ParamsOptions& options, const std::vector<host::ModuleParameters>
     }
     modules.wait();
   }
+  if (options.json) {
+    print_json(options, file, comparison, {comparison.differences.size(), options.store});
+    return exit_success;
+  }
   print_without_gait(comparison);
   std::cout << "changed " << comparison.differences.size() << " values of " << file.size() << " modules"
             << (options.store ? ", and stored them" : "; they are lost at the next reset, unless --store is given")
@@ -208,22 +267,28 @@ int load(const ParamsOptions& options, const std::vector<host::ModuleParameters>
   return exit_success;
 }
 
-int diff(const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
-  Modules modules(bus);
-  const Comparison comparison = compare(file, modules);
+void print_differences(const Comparison& comparison) {
   for (const std::string& line : comparison.other_modules) {
     std::cout << line << '\n';
   }
   for (const Difference& difference : comparison.differences) {
-    const canopen::Object& object = difference.value.object;
-    std::cout << "node " << unsigned{difference.wanted->node} << "  " << host::address_text(object.address) << "  "
-              << canopen::entry_name(object.address).view() << ": found " << difference.found << ", the file has "
-              << host::value_text(object, difference.value.bytes) << '\n';
+    std::cout << "node " << unsigned{difference.wanted->node} << "  "
+              << host::address_text(difference.value.object.address) << "  " << entry_text(difference) << ": found "
+              << difference.found << ", the file has " << wanted_text(difference) << '\n';
   }
   print_without_gait(comparison);
-  const std::size_t count = comparison.differences.size() + comparison.other_modules.size();
-  std::cout << count << " differences\n";
-  return count == 0 ? exit_success : exit_failed;
+  std::cout << comparison.count() << " differences\n";
+}
+
+int diff(const ParamsOptions& options, const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
+  Modules modules(bus);
+  const Comparison comparison = compare(file, modules);
+  if (options.json) {
+    print_json(options, file, comparison, {});
+  } else {
+    print_differences(comparison);
+  }
+  return comparison.count() == 0 ? exit_success : exit_failed;
 }
 
 int run(const ParamsOptions& options) {
@@ -242,7 +307,7 @@ int run(const ParamsOptions& options) {
   const std::vector<host::ModuleParameters> file = host::read_parameters(options.file, read_file(options.file));
   BusAccess bus(options);
   catch_interrupts();
-  return options.action == "load" ? load(options, file, bus) : diff(file, bus);
+  return options.action == "load" ? load(options, file, bus) : diff(options, file, bus);
 }
 
 }  // namespace
@@ -261,6 +326,7 @@ int main(int argc, char** argv) {
   command_line.add_flag("--store", options.store, "with load: the modules keep the settings in their flash");
   command_line.add_flag("--any-module", options.any_module,
                         "with load: also into modules with other serial numbers than in the file");
+  command_line.add_flag("--json", options.json, "print one JSON object");
   add_bus_option(command_line, options);
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return run(options); });

@@ -57,10 +57,10 @@ struct ServoReadings {
   std::uint16_t current_ma = 0;  ///< of the servo: the mean since the readings before
   /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
   std::optional<std::int32_t> angle;
-  /// Reading of the feedback potentiometer by the ADC, 0 to 4095; noise if none is fitted.
-  std::optional<std::uint16_t> feedback_reading{};
   std::int8_t temperature_c = 0;  ///< of the chip
   bool are_new = true;            ///< measured since the readings before; else they are those of an earlier time
+  /// Reading of the feedback potentiometer by the ADC, 0 to 4095; noise if none is fitted.
+  std::optional<std::uint16_t> feedback_reading{};
 };
 
 /// Debounces the touch sensors of a joint module: a sensor that bounces as it closes or opens counts once.

@@ -44,6 +44,7 @@ constexpr std::array subcommands{
     Subcommand{"drive", "move a robot of modules as its scenario says"},
     Subcommand{"scan", "list the modules on a bus"},
     Subcommand{"assign", "give the modules on a bus their places in a robot"},
+    Subcommand{"calibrate", "teach a module the feedback potentiometer of its joint"},
     Subcommand{"doctor", "say what is wrong with a bus and the robot on it"},
     Subcommand{"info", "show what a module says of itself"},
     Subcommand{"get", "read objects of modules"},

@@ -166,8 +166,8 @@ std::optional<int> ModuleJob::status() const {
   return status_ && *status_ < first_signal_status ? status_ : std::nullopt;
 }
 
-std::string ModuleJob::error() const {
-  if (!status_ || *status_ == 0 || result_.is_object()) {
+std::string ModuleJob::failure() const {
+  if (!status_ || *status_ == 0) {
     return {};
   }
   return lines_.empty() ? "the program has ended with status " + std::to_string(*status_) : message_of(lines_.back());
@@ -212,7 +212,7 @@ json ModuleJob::document() const {
           {"lines", lines_},
           {"result", result_},
           {"status", status() ? json(*status()) : json()},
-          {"error", text_or_null(error())},
+          {"error", result_.is_object() ? json() : text_or_null(failure())},
           {"ended_by", text_or_null(ended_by_)}};
 }
 

@@ -55,8 +55,8 @@ class ModuleJob {
   [[nodiscard]] std::optional<int> status() const;
   /// What it has printed: the result, or null; as text if it is not JSON.
   [[nodiscard]] const nlohmann::json& result() const { return result_; }
-  /// Its last line for people if it has failed without a result.
-  [[nodiscard]] std::string error() const;
+  /// Why it has failed: its last line for people.
+  [[nodiscard]] std::string failure() const;
 
   /// Answers its question. Throws std::runtime_error if there is another question, or none.
   void answer(std::uint64_t question, const std::string& word);

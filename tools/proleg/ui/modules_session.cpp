@@ -439,17 +439,17 @@ void ModulesSession::look_at_job() {
   if (!job_ || !job_->look()) {
     return;
   }
-  publish_job();
-  if (!job_->has_ended()) {
-    return;
+  if (job_->has_ended()) {
+    if (job_->kind() == "scan") {
+      take_found(job_->result());
+    }
+    files_.look();  // it may have written settings
+    publish();      // who sees the end of the job finds its files
   }
-  if (job_->kind() == "scan") {
-    take_found(job_->result());
-  } else {
+  publish_job();
+  if (job_->has_ended() && job_->kind() != "scan") {
     look_for_modules_again();
   }
-  files_.look();  // a job may have written settings
-  publish();
 }
 
 /// A job may have given modules other node ids or programs.
@@ -485,8 +485,7 @@ void ModulesSession::look_at_quiet_job() {
     take_found(quiet.job->result());
     publish();
   } else if (quiet.job->status() != 0) {
-    const std::string error = quiet.job->error();
-    output_.refuse(*quiet.request, error.empty() ? "the program has failed" : error);
+    output_.refuse(*quiet.request, quiet.job->failure());
   } else if (quiet.then.empty()) {
     const json& result = quiet.job->result();
     output_.answer(*quiet.request, result.is_string() ? json{{"text", result}} : result);

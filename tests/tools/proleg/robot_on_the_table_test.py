@@ -694,7 +694,7 @@ class RobotOnTheTable(unittest.TestCase):
             other.end()
             self.assertEqual(assign.names(), ["places", "moves", "question", "places", "cannot_move", "question", "places",
                                               "moves", "question"])
-            self.assertEqual(assign.errors, "proleg assign: ended by the user; no node id was changed\n")
+            self.assertIn("proleg assign: ended by the user; no node id was changed\n", assign.errors)
             self.assertEqual(set(states(bus.tcp).values()), {"no power"})
 
     def test_params_keep_the_settings_of_modules(self):

@@ -18,7 +18,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, Listener, proleg, start_drive, wait_until
+from robot_on_the_table_test import Bus, LONGEST, Listener, proleg, run_events, start_drive, wait_until
 
 SLOT = 0x08020200
 ALL = [1, 2, 3, 4, 5]
@@ -103,6 +103,61 @@ class Flash(unittest.TestCase):
             self.assertEqual(self.files(), [], "the settings are as before, so that their file is not needed")
             text = proleg("flash", "--bus", bus.tcp, self.images["0.2.0"]).stdout
             self.assertIn("node 3                 same    runs 0.2.0 (22222222) already", text)
+
+    def follow(self, bus, version, *options, status=0):
+        """The events of a run with this exit status."""
+        events = run_events("flash", "--bus", bus, self.images.get(version, version), *options, folder=self.work.name)
+        self.assertEqual(events.process.returncode, status, events.errors)
+        return events
+
+    def test_a_program_follows_an_update(self):
+        with Bus() as bus:
+            tried = self.flash(bus.tcp, "0.2.0", "--dry-run")
+            events = self.follow(bus.tcp, "0.2.0", "--dry-run")
+            self.assertEqual(events.names(), ["verdicts", "result"])
+            self.assertEqual(events.result(), tried)
+            self.assertEqual(events.all[0], {
+                "event": "verdicts", "version": "0.2.0", "sha256": tried["sha256"], "modules": [
+                    {"node": module["node"], "serial": module["serial"], "board": 1, "before": {"version": "0.0.0"},
+                     "action": "flash", "reason": module["reason"]} for module in tried["modules"]]})
+
+            events = self.follow(bus.tcp, "0.2.0")
+            self.assertEqual(events.errors, "")
+            report = events.result()
+            self.assert_all_run(report, "0.2.0")
+            progress = events.all[1:-2]
+            self.assertEqual({event["event"] for event in progress}, {"progress"})
+            self.assertEqual(events.names()[-2], "ended")
+            places = [(module["node"], module["serial"]) for module in report["modules"]]
+            for event in (*progress, events.all[-2]):
+                self.assertEqual([(module["node"], module["serial"]) for module in event["modules"]], places)
+            duration_s = report["transfer_s"] + report["installation_s"] + report["restart_s"]
+            self.assertLessEqual(len(progress), 10 * duration_s + 2, "ten times a second, and at the end")
+            self.assertGreaterEqual(len(progress), duration_s, "it is followed all the time")
+            for index in range(len(ALL)):
+                parts = [event["modules"][index]["part"] for event in progress]
+                self.assertEqual(parts, sorted(parts))
+                self.assertTrue(0 <= parts[0] and parts[-1] == 1, parts)
+                states = list(dict.fromkeys(event["modules"][index]["state"] for event in progress))
+                self.assertEqual([states[0], states[-1]], ["receives the image", "runs the image"])
+                self.assertIn("installs it", states)
+                self.assertEqual(events.all[-2]["modules"][index],
+                                 {"node": ALL[index], "serial": places[index][1], "outcome": "runs the image", "good": True})
+            self.assertEqual(self.files(), [])
+
+    def test_each_update_has_its_end_and_a_refusal_is_a_result(self):
+        foreign = self.make_image("0.3.0", board=2)
+        with Bus() as bus:
+            events = self.follow(bus.tcp, "0.2.0", "--canary", "--node", "1-3")
+            updates = [event["modules"] for event in events.all if event["event"] == "ended"]
+            self.assertEqual([[module["node"] for module in modules] for modules in updates], [[1], [2, 3]])
+            events = self.follow(bus.tcp, foreign, "--node", "1", status=1)
+            self.assertEqual(events.names(), ["verdicts", "result"])
+            self.assertEqual([module["action"] for module in events.all[0]["modules"]], ["refuse"])
+            self.assertEqual(events.all[0]["modules"][0]["before"], {"version": "0.2.0"})
+            self.assertIn("is board 1", events.result()["modules"][0]["reason"])
+            self.assertEqual(self.flash(bus.tcp, foreign, "--node", "1", status=1), events.result())
+            self.assertEqual(self.errors, events.errors)
 
     def test_virtual_chips_take_another_version_of_their_program(self):
         image = (table.SOURCE / "build/stm32f405/bin/proleg_stm32f405.pimg").read_bytes()
@@ -265,6 +320,8 @@ class Flash(unittest.TestCase):
             for options in (("--node", "1", "--all"), ("--node", "0"), ("--node", "x"), ("--probe", "stlink"),
                             ("--bare", "--all", "--probe", "dfu")):
                 self.flash(bus.tcp, "0.2.0", *options, status=2)
+            for options in (("--json",), ("--bare", "--probe", "dfu")):
+                self.assertEqual(self.follow(bus.tcp, "0.2.0", *options, status=2).all, [])
             report = self.flash(bus.tcp, "0.2.0", "--dry-run")
             self.assertEqual({module["before"]["version"] for module in report["modules"]}, {"0.0.0"})
         self.flash("tcp:127.0.0.1:1", "0.2.0", status=1)

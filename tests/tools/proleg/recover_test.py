@@ -6,6 +6,7 @@ Usage: recover_test.py SOURCE_FOLDER PROGRAM_FOLDER
 
 import json
 import random
+import signal
 import struct
 import sys
 import tempfile
@@ -14,7 +15,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 import robot_on_the_table_test as table
-from robot_on_the_table_test import Bus, LONGEST, proleg, start_drive, wait_for_drives
+from robot_on_the_table_test import Bus, Events, LONGEST, proleg, run_events, start_drive, wait_for_drives
 
 SEED = 7
 ADDRESS = 0x08020200
@@ -86,6 +87,45 @@ class Recover(unittest.TestCase):
             status, report = recover(bus.tcp, "--wait", "0")
             self.assertEqual((status, codes(report, "found")), (0, [[]] * 5), report)
 
+    def test_a_program_follows_what_is_found_and_done(self):
+        later = self.image(schema=3)
+        with Bus("--broken", "2=no-program", "--broken", "5=duplicate:4") as bus:
+            events = run_events("recover", later, "--wait", "2", "--bus", bus.tcp)
+            self.assertEqual((events.process.returncode, events.errors), (0, ""))
+            names = list(dict.fromkeys(events.names()))
+            self.assertEqual(names, ["waits", "found", "progress", "ended", "result"])
+            self.assertEqual(events.names().count("ended"), 1)
+            self.assertEqual(events.all[0], {"event": "waits", "seconds": 2.0})
+            result = events.result()
+            self.assertTrue(result["well"])
+            found = sorted(events.all[1]["modules"], key=lambda module: module["serial"])
+            self.assertEqual(found, [{"node": module["node_before"], "serial": module["serial"], "found": module["found"]}
+                                     for module in sorted(result["modules"], key=lambda module: module["serial"])])
+            ended = events.all[-2]["modules"]
+            self.assertEqual([(module["node"], module["outcome"], module["good"]) for module in ended],
+                             [(2, "runs the image", True)])
+
+            status, report = recover(bus.tcp, "--wait", "0")
+            events = run_events("recover", "--wait", "0", "--bus", bus.tcp)
+            self.assertEqual((events.process.returncode, events.result()), (status, report))
+            self.assertEqual(events.names(), ["found", "result"])
+
+    def test_a_module_that_stays_broken_is_a_result_too(self):
+        with Bus("--broken", "2=no-program") as bus:
+            events = run_events("recover", "--wait", "0", "--bus", bus.tcp)
+            self.assertEqual((events.process.returncode, events.names()[-1]), (1, "result"))
+            self.assertEqual(events.result(), recover(bus.tcp, "--wait", "0")[1])
+            self.assertFalse(events.result()["well"])
+
+    def test_a_signal_ends_the_wait(self):
+        with Bus() as bus:
+            for number in (signal.SIGTERM, signal.SIGINT):
+                with Events("recover", "--wait", "600", "--bus", bus.tcp) as recovery:
+                    self.assertEqual(recovery.next()["event"], "waits")
+                    recovery.process.send_signal(number)
+                    self.assertEqual((recovery.end(), recovery.names()), (1, ["waits"]))
+                    self.assertIn("interrupted", recovery.errors)
+
     def test_a_person_reads_what_is_missing(self):
         with Bus("--broken", "2=no-program", "--fresh", "3") as bus:
             text = proleg("recover", "--wait", "2", "--bus", bus.tcp)
@@ -139,7 +179,7 @@ class Recover(unittest.TestCase):
     def test_bad_words_end_it(self):
         (self.folder / "text").write_text("no image")
         for words in (("--serial", "front"), ("--wait", "-1"), ("--wait", "1000"), (str(self.folder / "text"),),
-                      (str(self.folder / "missing.pimg"),), ("--bus", "nonsense:x"), ("one", "two")):
+                      (str(self.folder / "missing.pimg"),), ("--bus", "nonsense:x"), ("one", "two"), ("--json", "--json-lines")):
             result = proleg("recover", *words)
             self.assertEqual(result.returncode, 2, words)
             self.assertEqual(len(result.stderr.splitlines()), 1, words)

@@ -163,6 +163,73 @@ def proleg_json(name, *arguments):
     return json.loads(finished.stdout)
 
 
+class Events:
+    """A program that reports events (--json-lines), and what it has reported."""
+
+    def __init__(self, name, *arguments, folder=None):
+        self.process = subprocess.Popen([PROGRAMS / f"proleg-{name}", *arguments, "--json-lines"], cwd=folder, text=True,
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.all = []
+        self.errors = ""
+
+    def next(self):
+        """The next event; None at the end. Each line is an object."""
+        line = self.process.stdout.readline()
+        if not line:
+            return None
+        event = json.loads(line)
+        self.all.append(event)
+        return event
+
+    def until(self, name):
+        while event := self.next():
+            if event["event"] == name:
+                return event
+        raise AssertionError(f"no event {name!r} in {self.all}; {self.process.stderr.read()!r}")
+
+    def answer(self, word):
+        self.process.stdin.write(word + "\n")
+        self.process.stdin.flush()
+
+    def close_input(self):
+        self.process.stdin.close()
+        self.process.stdin = None
+
+    def end(self):
+        """Takes the rest; the exit status."""
+        while self.next():
+            pass
+        self.errors = self.process.communicate(timeout=LONGEST)[1]
+        return self.process.returncode
+
+    def names(self):
+        return [event["event"] for event in self.all]
+
+    def result(self):
+        if "result" not in self.names()[-1:]:
+            raise AssertionError(f"no result at the end of {self.all}; {self.errors!r}")
+        return self.all[-1]["value"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            if stream:
+                stream.close()
+        self.process.wait(timeout=LONGEST)
+
+
+def run_events(name, *arguments, folder=None):
+    """A program that asks nothing, when it has ended."""
+    with Events(name, *arguments, folder=folder) as events:
+        events.close_input()
+        events.end()
+        return events
+
+
 def drive_json(drive):
     """What a 'proleg drive' printed at its end."""
     output, errors = drive.communicate(timeout=LONGEST)
@@ -242,6 +309,11 @@ class RobotOnTheTable(unittest.TestCase):
             for line in ("Proleg joint module", "(no power)", "Max motor speed = 720 deg/s", "none: a host configures"):
                 self.assertIn(line, info)
             self.assertNotIn("0x2003:1", info)
+            values = {value["object"]: value for value in proleg_json("info", "3", "--bus", bus.tcp, "--json")["values"]}
+            self.assertEqual(values["0x200A:1"], {
+                "node": 3, "object": "0x200A:1", "name": "Over-current: Current limit", "group": "joint",
+                "value": "2000 mA", "writable": True, "help": "of the servo, in mA; 0: off"})
+            self.assertEqual((values["0x6041"]["writable"], values["0x1018:4"]["writable"]), (False, False))
             everything = proleg("info", "3", "--all", "--bus", bus.tcp).stdout
             self.assertIn("0x2003:1  Unique id", everything)
             self.assertNotIn("Highest sub-index", everything)
@@ -492,6 +564,139 @@ class RobotOnTheTable(unittest.TestCase):
             after = proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]
             self.assertEqual([node["serial"] for node in before], [node["serial"] for node in after])
 
+    def test_a_program_gives_modules_their_places(self):
+        """It knows what happens from events only, and sees which joint moves."""
+        with Bus("--shuffle", "7", "--fresh", "2,4", "--verbose") as bus, \
+                Events("assign", SOURCE / SCENARIO, "--bus", bus.tcp) as assign:
+            self.assertEqual(assign.next(), {"event": "numbered", "count": 2})
+            places = assign.next()
+            self.assertEqual([(module["node"], module["joint"]) for module in places["modules"]],
+                             [(node, None) for node in range(1, 6)])
+            serials = {module["node"]: module["serial"] for module in places["modules"]}
+            joints = {}
+            for node in range(1, 6):
+                self.assertEqual(assign.next(), {"event": "moves", "node": node, "serial": serials[node], "degrees": 5.0})
+                question = {"event": "question", "question": "joint", "node": node, "serial": serials[node]}
+                self.assertEqual(assign.next(), question)
+                joint = bus.joint_with_power()
+                if node == 1:
+                    for wrong in ("J9", "", "yes"):
+                        assign.answer(wrong)
+                        refused = assign.next()
+                        self.assertEqual((refused["event"], refused["text"].split(" is none of ")[0]),
+                                         ("refused", f"'{wrong}'"))
+                        self.assertEqual(assign.next(), question)
+                    assign.answer("more")
+                    self.assertEqual(assign.next(), {"event": "moves", "node": node, "serial": serials[node], "degrees": 10.0})
+                    self.assertEqual(assign.next(), question)
+                    self.assertEqual(bus.joint_with_power(), joint)
+                elif node == 2:
+                    assign.answer(joints[serials[1]])
+                    self.assertEqual(assign.next(), {"event": "refused", "text": f"{joints[serials[1]]} is node 1 already"})
+                    self.assertEqual(assign.next(), question)
+                joints[serials[node]] = joint
+                assign.answer(joint)
+                self.assertEqual(assign.next(), {"event": "places", "modules": [
+                    {"serial": serials[one], "node": one, "joint": joints.get(serials[one])} for one in range(1, 6)]})
+            question = assign.next()
+            self.assertEqual((question["event"], question["question"]), ("question", "agree"))
+            node_of = {"J5": 1, "J4": 2, "J3": 3, "J2": 4, "J1": 5}  # the map of the robot's file
+            self.assertEqual(question["changes"], [
+                {"serial": serial, "from": node, "to": node_of[joints[serial]], "joint": joints[serial]}
+                for node, serial in serials.items() if node != node_of[joints[serial]]])
+            assign.answer("perhaps")
+            self.assertEqual(assign.next()["event"], "refused")
+            self.assertEqual(assign.next(), question)
+            assign.answer("yes")
+            self.assertEqual((assign.end(), assign.errors), (0, ""))
+            self.assertEqual(assign.result(), {
+                "joints": [{"joint": joint, "node": node_of[joint],
+                            "serial": next(serial for serial, name in joints.items() if name == joint)}
+                           for joint in node_of], "changed": True, "new_modules": 2})
+            self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+
+    def test_events_end_with_the_object_of_json(self):
+        results = []
+        for run in (proleg_json, run_events):
+            with Bus("--shuffle", "7") as bus:
+                word = ("--json",) if run == proleg_json else ()
+                results.append(run("assign", SOURCE / SCENARIO, "--bus", bus.tcp, "--places", "1=J1,2=J2", *word))
+        self.assertEqual(results[1].all, [{"event": "result", "value": results[0]}])
+        self.assertTrue(results[0]["changed"])
+
+    def test_a_joint_that_the_robot_file_gives_a_module_is_known_before_the_first_question(self):
+        with Bus() as bus, tempfile.TemporaryDirectory() as folder:
+            named = Path(folder) / "named"
+            shutil.copytree((SOURCE / SCENARIO).parent, named)
+            nodes = {node["node"]: node["serial"] for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
+            robot = named / "caterpillar.robot.xml"
+            modules = f'<module joint="J5" node="1" serial="{nodes[1]:#x}"/>' + "".join(
+                f'<module joint="J{6 - node}" node="{node}"/>' for node in range(2, 6))
+            robot.write_text(robot.read_text().replace("</Robot>", modules + "</Robot>"))
+            with Events("assign", named / Path(SCENARIO).name, "--bus", bus.tcp) as assign:
+                joints = {module["node"]: module["joint"] for module in assign.until("places")["modules"]}
+                self.assertEqual(joints, {1: "J5", 2: None, 3: None, 4: None, 5: None})
+                self.assertEqual(assign.until("question")["node"], 2)
+                assign.answer("quit")
+                self.assertEqual(assign.end(), 1)
+                self.assertEqual(assign.names(), ["places", "moves", "question"])
+                self.assertEqual(assign.errors, "proleg assign: ended by the user; no node id was changed\n")
+
+    def test_a_joint_that_moves_for_a_question_has_no_power_when_assign_has_ended(self):
+        """By a signal, because nobody answers any more, or because nobody reads."""
+        def close_output(assign):
+            assign.process.stdout.close()
+            assign.answer("J9")  # it reads this, and cannot write its next question
+
+        with Bus("--verbose") as bus:
+            for end, expected in ((lambda assign: assign.process.send_signal(signal.SIGTERM), "interrupted"),
+                                  (lambda assign: assign.process.send_signal(signal.SIGINT), "interrupted"),
+                                  (lambda assign: assign.process.send_signal(signal.SIGHUP), "interrupted"),
+                                  (Events.close_input, "standard input has ended"),
+                                  (close_output, "cannot write to standard output")):
+                with Events("assign", SOURCE / SCENARIO, "--bus", bus.tcp) as assign:
+                    assign.until("question")
+                    bus.joint_with_power()
+                    end(assign)
+                    self.assertEqual(assign.process.wait(timeout=LONGEST), 1)
+                    self.assertEqual(set(states(bus.pty).values()), {"no power"}, expected)
+                    errors = assign.process.stderr.read()
+                    self.assertIn(expected, errors)
+                    self.assertEqual(len(errors.splitlines()), 1, errors)
+
+    def test_a_module_that_cannot_move_is_asked_for(self):
+        with Bus() as bus, Events("assign", SOURCE / SCENARIO, "--bus", bus.tcp) as assign:
+            assign.until("question")
+            other = Listener(bus.tcp)
+            is_over = threading.Event()
+
+            def stop_node_2():
+                """A module that is Stopped answers no request. It is stopped again after each reset."""
+                while not is_over.wait(0.005):
+                    other.line.write(b"t00020202\r")
+
+            thread = threading.Thread(target=stop_node_2, daemon=True)
+            thread.start()
+            try:
+                assign.answer("J5")
+                problem = assign.until("cannot_move")
+            finally:
+                is_over.set()
+                thread.join(LONGEST)
+            self.assertEqual(problem["node"], 2)
+            self.assertIn("node 2", problem["problem"])
+            self.assertEqual(assign.next(),
+                             {"event": "question", "question": "joint", "node": 2, "serial": problem["serial"]})
+            assign.answer("4")
+            self.assertEqual(assign.until("question")["node"], 3)
+            assign.answer("quit")
+            self.assertEqual(assign.end(), 1)
+            other.end()
+            self.assertEqual(assign.names(), ["places", "moves", "question", "places", "cannot_move", "question", "places",
+                                              "moves", "question"])
+            self.assertIn("proleg assign: ended by the user; no node id was changed\n", assign.errors)
+            self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+
     def test_params_keep_the_settings_of_modules(self):
         with Bus() as bus, tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "settings.txt"
@@ -501,11 +706,24 @@ class RobotOnTheTable(unittest.TestCase):
             diff = proleg("params", "diff", file, "--bus", bus.tcp)
             self.assertEqual(diff.returncode, 1)
             self.assertIn("node 2  0x6080  Max motor speed: found 300 deg/s, the file has 720 deg/s", diff.stdout)
+            difference = {"node": 2, "object": "0x6080", "name": "Max motor speed", "found": "300 deg/s", "wanted": "720 deg/s"}
+            self.assertEqual(proleg_json("params", "diff", file, "--bus", bus.tcp, "--json"), {
+                "file": str(file), "modules": [1, 2, 3, 4, 5], "differences": [difference], "other_modules": [],
+                "without_gait": [], "changed": 0, "stored": False})
             file.write_text(file.read_text().replace("3\t0x200A:1\t2000", "3\t0x200A:1\t1500"))
             self.assertIn("changed 2 values of 5 modules",
                           proleg("params", "load", file, "--store", "--bus", bus.tcp).stdout)
             proleg("nmt", "reset-node", "all", "--bus", bus.tcp)
             self.assertEqual(proleg("params", "diff", file, "--bus", bus.tcp).stdout, "0 differences\n")
+            proleg("set", "3", "0x200A:1", "1600", "--bus", bus.tcp)
+            load = proleg_json("params", "load", file, "--store", "--bus", bus.tcp, "--json")
+            self.assertEqual(load["differences"], [{"node": 3, "object": "0x200A:1", "name": "Current limit", "found": "1600 mA",
+                                                    "wanted": "1500 mA"}])
+            self.assertEqual((load["changed"], load["stored"]), (1, True))
+            again = Path(folder) / "again.txt"
+            self.assertEqual(proleg_json("params", "save", again, "--nodes", "2-3", "--bus", bus.tcp, "--json"), {
+                "file": str(again), "modules": [2, 3], "differences": [], "other_modules": [], "without_gait": [],
+                "changed": 0, "stored": False})
             text = file.read_text()
             file.write_text(re.sub(r"(module\t1\t\S+\t)\S+", r"\g<1>0x00000001", text))
             other = proleg("params", "load", file, "--bus", bus.tcp)
@@ -531,6 +749,10 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertIn("nothing was written", other.stderr)
             self.assertEqual(proleg("params", "load", file, "--any-module", "--bus", bus.tcp).returncode, 0)
             self.assertIn("node 2: found the serial number", proleg("params", "diff", file, "--bus", bus.tcp).stdout)
+            diff = proleg_json("params", "diff", file, "--bus", bus.tcp, "--json")
+            self.assertEqual(diff["without_gait"], ["1", "2", "3", "4", "5"])
+            self.assertRegex(diff["other_modules"][0],
+                             "^node 2: found the serial number 0x[0-9A-F]{8}, the file has 0x00000001$")
 
     def test_nmt_reports_a_node_that_is_not_there(self):
         with Bus() as bus:
@@ -583,6 +805,10 @@ class RobotOnTheTable(unittest.TestCase):
             info = proleg("info", "3", "--bus", bus.pty).stdout
             self.assertIn("(PatternGenerator_sinusoidal)", info)
             self.assertIn("amplitude: slot 1 = 40 deg", info)
+            amplitude = [value for value in proleg_json("info", "3", "--bus", bus.pty, "--json")["values"]
+                         if value["name"] == "PatternGenerator_sinusoidal amplitude: slot 1"]
+            self.assertEqual([(value["writable"], value["help"]) for value in amplitude],
+                             [(True, "How far the joint swings to each side.")])
             drive.send_signal(signal.SIGINT)
             drive.communicate(timeout=LONGEST)
             self.assertEqual(drive.returncode, 0)
@@ -653,7 +879,10 @@ class RobotOnTheTable(unittest.TestCase):
             (2, ("assign", scenario, "--bus", "can0", "--places", "1=J9"), "the joints are J1"),
             (2, ("assign", scenario, "--bus", "can0", "--places", "1=J1,1=J2"), "each module and each joint once"),
             (2, ("assign", scenario, "--bus", "can0", "--amplitude", "90"), "from 1 to 30"),
+            (2, ("assign", scenario, "--bus", "can0", "--json", "--json-lines"), "--json"),
+            (2, ("assign", scenario, "--bus", "can0", "--json-lines", "--places", "1=J9"), "the joints are J1"),
             (1, ("assign", scenario, "--bus", "can77"), "can77"),
+            (1, ("assign", scenario, "--bus", "can77", "--json-lines"), "can77"),
             (2, ("drive", scenario, "--bus", "can0", "--fast"), "--bus sim:FILE"),
             (2, ("bus", scenario), "no way to reach the robot"),
             (2, ("bus", scenario, "--tcp", "x"), "--tcp"),

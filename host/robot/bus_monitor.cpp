@@ -57,6 +57,8 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
   } else if (identifier::base_of(frame.identifier) != identifier::sdo_answer) {
     readings_.receive(now, frame);
     return;  // this is a request to the node, not an answer
+  } else if (node.state == canopen::NmtState::boot_up) {
+    node.state = canopen::NmtState::pre_operational;  // it follows by itself (CiA 301, figure 48)
   }
   node.last_heard = now;
   readings_.receive(now, frame);

@@ -138,6 +138,14 @@ TEST_F(BusMonitorTest, ReadsTheTouchSensorsTenTimesASecondIfTheyAreWanted) {
   bus.detach(touch);
 }
 
+TEST_F(BusMonitorTest, AModuleThatAnswersAfterItHasBootedIsPreOperational) {
+  bus.run_for(2 * second);
+  monitor.receive(bus.now(), canopen::encode(canopen::Heartbeat{1, canopen::NmtState::boot_up}));
+  EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::boot_up);
+  bus.run_for(second);
+  EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::pre_operational);
+}
+
 TEST_F(BusMonitorTest, ForgetsNodesThatAreSilentOnlyWhenAsked) {
   bus.run_for(2 * second);
   monitor.forget_silent(bus.now());

@@ -218,6 +218,22 @@ class UserAlgorithms(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertIn("0 differences", done.stdout)
 
+    def test_modules_that_run_it_describe_its_parameters(self):
+        declared = re.search(r'\{"steepness".*?"([^"]+)"\}', self.source, re.DOTALL).group(1)
+        bus = subprocess.Popen([PROGRAMS / "proleg-bus", self.scenario, "--tcp", "0", "--algorithms", self.library],
+                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        try:
+            address = re.search(r"--bus (tcp:\S+)", bus.stdout.readline()).group(1)
+            done = proleg("drive", self.scenario, "--algorithms", self.library, "--bus", address, "--seconds", "1")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            info = proleg("info", "1", "--algorithms", self.library, "--bus", address, "--json")
+            values = {value["name"]: value for value in json.loads(info.stdout)["values"]}
+            steepness = values[f"{NAME} steepness: slot 1"]
+            self.assertEqual((steepness["writable"], steepness["help"]), (True, declared))
+        finally:
+            bus.send_signal(signal.SIGINT)
+            bus.communicate(timeout=LONGEST)
+
     # Commands that are printed so that the user repeats them.
 
     def run_printed(self, command):

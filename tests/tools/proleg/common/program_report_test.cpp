@@ -20,6 +20,7 @@ struct Printed {
 Printed run(std::vector<std::string> words, const Json& event_value = 3) {
   words.insert(words.begin(), "test");
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) {
     arguments.push_back(word.data());
   }

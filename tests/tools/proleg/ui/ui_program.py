@@ -10,13 +10,13 @@ from web_client import Viewer
 class UiProgram:
     """`proleg ui` with the scenario of a folder, and a viewer that has control."""
 
-    def __init__(self, programs, folder):
+    def __init__(self, programs, folder, options=("--paused",)):
         self.folder = folder
         page = folder / "page"
-        page.mkdir()
+        page.mkdir(exist_ok=True)
         (page / "index.html").write_text("<!doctype html><title>page</title>")
-        self.command = [programs / "proleg", "ui", folder / "uniform.simulation.xml", "--page", page, "--no-browser", "--paused",
-                        "--recordings", folder]
+        self.command = [programs / "proleg", "ui", folder / "uniform.simulation.xml", "--page", page, "--no-browser",
+                        "--recordings", folder, *options]
         self.start()
 
     def start(self):

@@ -87,6 +87,12 @@ export function BusBar({ app }: { app: ModulesApp }) {
   return (
     <section class="panel modules-panel" aria-label="Bus" data-testid="modules-bus">
       <div class="fields">{app.isOpen.value ? <OpenBus app={app} /> : <ChooseBus app={app} />}</div>
+      {!app.isOpen.value && (
+        <p class="hint">
+          Then you see the modules on it, give them their places in a robot, change their settings, flash them, and find out what is wrong with them. The robot on the
+          page Live stays what it is.
+        </p>
+      )}
       {problem !== null && (
         <p class="problem" role="alert">
           {problem}

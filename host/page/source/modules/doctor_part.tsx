@@ -1,7 +1,20 @@
 // What is wrong with the bus and the robot, the most important fault first.
 import { resultOf } from '../wire/module_messages.js';
 import { JobButton, JobObstacle } from './job_controls.js';
-import type { ModulesApp } from './modules_app.js';
+import type { ModulesApp, TaskName } from './modules_app.js';
+
+// The tasks of this page that do what a finding says is to be done.
+const places = ['places', 'Places'] as const;
+const recover = ['recover', 'Recover'] as const;
+const flash = ['flash', 'Flash'] as const;
+const helpers: Partial<Record<string, readonly (readonly [TaskName, string])[]>> = {
+  module_without_node_id: [places, recover],
+  duplicate_node_id: [recover],
+  stopped_module: [recover],
+  restarting_module: [recover],
+  other_protocol: [flash],
+  other_core: [flash],
+};
 
 // Numbers and short texts; lists are for programs.
 function observationLines(observations: Record<string, unknown>): string[] {
@@ -33,15 +46,18 @@ export function DoctorPart({ app }: { app: ModulesApp }) {
                 <li key={`${code} ${what}`}>
                   <strong>{what}</strong>
                   <p>{to_do}</p>
-                  {nodes.length > 0 && (
-                    <p class="fields">
-                      {nodes.map((node) => (
-                        <button key={node} type="button" onClick={() => app.choose(node)}>
-                          node {node}
-                        </button>
-                      ))}
-                    </p>
-                  )}
+                  <p class="fields">
+                    {nodes.map((node) => (
+                      <button key={node} type="button" title="Shows the module" onClick={() => app.choose(node)}>
+                        node {node}
+                      </button>
+                    ))}
+                    {helpers[code]?.map(([task, title]) => (
+                      <button key={task} type="button" title="Shows what does it" onClick={() => app.show(task)}>
+                        {title}
+                      </button>
+                    ))}
+                  </p>
                 </li>
               ))}
             </ol>

@@ -57,7 +57,7 @@ export function FlashPart({ app }: { app: ModulesApp }) {
       {rows.length > 0 && <FlashTable rows={rows} isGoing={isRunning(job)} />}
       {refused > 0 && (
         <p class="announcement">
-          {refused === 1 ? 'One module is refused' : `${refused} modules are refused`}; the table has the reason. Only if you are sure that it does not matter:
+          {refused === 1 ? 'One module is refused' : `${refused} modules are refused`}: the table has the reason. The options below force it.
         </p>
       )}
       <details open={forceBoard.value || allowDowngrade.value}>

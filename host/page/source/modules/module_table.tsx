@@ -1,6 +1,7 @@
 // The modules on the bus, as they are now.
 import { currentState } from '../state/module_text.js';
-import { JobButton, CheckBox, TableFrame } from './job_controls.js';
+import { CheckBox, JobButton, TableFrame } from './job_controls.js';
+import { isRunning } from './job_text.js';
 import { hasFreshModules, serialText, type ModuleRow } from './module_rows.js';
 import type { ModulesApp } from './modules_app.js';
 import { driveText, measured, stateText, troubleOf } from './row_text.js';
@@ -37,13 +38,15 @@ function Row({ app, row }: { app: ModulesApp; row: ModuleRow }) {
       <td>
         <TouchDots row={row} />
       </td>
-      <td title={found?.name ?? ''}>{[found?.software, found?.hardware].filter(Boolean).join('; ') || '–'}</td>
-      <td class={trouble === null ? '' : 'module bad'}>{trouble?.text ?? ''}</td>
+      <td class={`text ${trouble === null ? '' : 'module bad'}`}>{trouble?.text ?? ''}</td>
+      <td class="text" title={found?.name ?? ''}>
+        {[found?.hardware, found?.software].filter(Boolean).join('; ') || '–'}
+      </td>
     </tr>
   );
 }
 
-const titles = ['node', 'serial number', 'joint', 'state', 'drive', 'angle °', 'current mA', '°C', 'touch', 'program', 'errors'];
+const titles = ['node', 'serial number', 'joint', 'state', 'drive', 'angle °', 'current mA', '°C', 'touch', 'errors', 'program'];
 const numeric = new Set(['angle °', 'current mA', '°C']);
 
 // What is to be done before anything else.
@@ -58,24 +61,25 @@ function Announcements({ app }: { app: ModulesApp }) {
     <>
       {modules !== null && hasFreshModules(modules) && (
         <p class="announcement" role="status" data-testid="fresh-modules">
-          <strong>There are modules without a node id.</strong> They come so from the factory.{' '}
-          <button type="button" onClick={() => (app.task.value = 'places')}>
+          <span>
+            <strong>There are modules without a node id.</strong> They come so from the factory. Places gives each its place in a robot, Recover only a free node id.
+          </span>
+          <button type="button" onClick={() => app.show('places')}>
             Places
-          </button>{' '}
-          gives each its place in a robot,{' '}
-          <button type="button" onClick={() => (app.task.value = 'recover')}>
+          </button>
+          <button type="button" onClick={() => app.show('recover')}>
             Recover
-          </button>{' '}
-          only a free node id.
+          </button>
         </p>
       )}
       {duplicates.length > 0 && (
         <p class="announcement bad" role="alert">
-          <strong>Several modules have the node id {duplicates.join(', ')}.</strong>{' '}
-          <button type="button" onClick={() => (app.task.value = 'recover')}>
+          <span>
+            <strong>Several modules have the node id {duplicates.join(', ')}.</strong> Recover gives all but one of them another one.
+          </span>
+          <button type="button" onClick={() => app.show('recover')}>
             Recover
-          </button>{' '}
-          gives all but one of them another one.
+          </button>
         </p>
       )}
       {troubled.length > 0 && (
@@ -108,7 +112,7 @@ export function ModuleTable({ app }: { app: ModulesApp }) {
           Scan
         </JobButton>
       </div>
-      <Announcements app={app} />
+      {!isRunning(app.job.value) && <Announcements app={app} />}
       {rows.length === 0 ? (
         <p class="hint">{found === null ? 'Nothing was heard yet. Scan asks all nodes.' : 'No module answers. Look at power and cable, then scan again.'}</p>
       ) : (

@@ -49,6 +49,7 @@ export class ModulesApp {
   readonly objects: ModuleObjects;
   readonly places: PlaceAnswers;
   readonly actions: ActionList;
+  readonly revealed = signal(0); // counts when the task must come into view
   private scannedBus: string | null = null;
 
   constructor(readonly page: ModulesStores) {
@@ -103,6 +104,12 @@ export class ModulesApp {
     if (node !== null) this.task.value = 'module';
   }
 
+  // Shows a task, where it can be seen.
+  show(task: TaskName): void {
+    this.task.value = task;
+    this.revealed.value += 1;
+  }
+
   check(node: number, isOn: boolean): void {
     const nodes = new Set(this.checkedNodes.peek());
     if (isOn) nodes.add(node);
@@ -138,7 +145,7 @@ export class ModulesApp {
       if (job.number === shown) return;
       shown = job.number;
       const task = taskOfKind[job.kind];
-      if (task !== undefined && isRunning(job)) untracked(() => (this.task.value = task));
+      if (task !== undefined && isRunning(job)) untracked(() => this.show(task));
     });
   }
 

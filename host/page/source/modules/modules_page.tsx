@@ -1,4 +1,5 @@
 // The page Modules: the bus, the modules on it, and what can be done with them.
+import { useEffect } from 'preact/hooks';
 import { BusBar } from './bus_bar.js';
 import { DoctorPart } from './doctor_part.js';
 import { FlashPart } from './flash_part.js';
@@ -67,9 +68,19 @@ function Task({ app }: { app: ModulesApp }) {
   }
 }
 
+// Below a long table a task is not in sight.
+function useReveal(app: ModulesApp): void {
+  const revealed = app.revealed.value;
+  useEffect(() => {
+    const tabs = revealed === 0 ? null : document.querySelector('.modules-tasks');
+    if (tabs !== null && tabs.getBoundingClientRect().top > innerHeight / 2) tabs.scrollIntoView({ block: 'start' });
+  }, [revealed]);
+}
+
 export function ModulesPage({ app: page }: { app: ModulesStores }) {
   modules ??= new ModulesApp(page);
   const app = modules;
+  useReveal(app);
   if (app.modules.value === null) return <p class="wait">This program has no modules.</p>;
   return (
     <div class="modules">

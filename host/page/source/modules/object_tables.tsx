@@ -1,5 +1,6 @@
 // The objects of a module in groups. What can be written has a form.
 import { useSignal } from '@preact/signals';
+import { TableHead } from '../panels/table_head.js';
 import type { ObjectValue } from '../wire/messages.js';
 import { CheckBox, TableFrame } from './job_controls.js';
 import { unitOf, valueWithoutUnit, valueWord } from './job_text.js';
@@ -118,27 +119,25 @@ export function ObjectTables({ app }: { app: ModulesApp }) {
         </p>
       )}
       {reading !== null && objects.groups.value.length === 0 && <p class="hint">No object has these words.</p>}
-      {objects.groups.value.map(({ name, values }) => (
-        <section key={name}>
-          <h3>{name}</h3>
-          <TableFrame label={`Objects: ${name}`}>
-            <table class="object-table">
-              <thead class="only-spoken">
-                <tr>
-                  <th scope="col">object</th>
-                  <th scope="col">index</th>
-                  <th scope="col">value</th>
+      {objects.groups.value.length > 0 && (
+        <TableFrame label="Table of objects">
+          <table class="object-table" data-testid="objects">
+            <TableHead titles={['object', 'index', 'value']} />
+            {objects.groups.value.map(({ name, values }) => (
+              <tbody key={name}>
+                <tr class="group">
+                  <th scope="rowgroup" colSpan={3}>
+                    {name}
+                  </th>
                 </tr>
-              </thead>
-              <tbody>
                 {values.map((value) => (
                   <ObjectRow key={`${reading?.node} ${value.object} ${value.name}`} app={app} value={value} />
                 ))}
               </tbody>
-            </table>
-          </TableFrame>
-        </section>
-      ))}
+            ))}
+          </table>
+        </TableFrame>
+      )}
     </>
   );
 }

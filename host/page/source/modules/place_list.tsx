@@ -2,6 +2,8 @@
 import type { ModulesApp } from './modules_app.js';
 import { serialText } from './module_rows.js';
 
+const manyJoints = 12; // from then on in several columns
+
 function Answers({ app }: { app: ModulesApp }) {
   const { places } = app;
   const why = places.obstacle.value;
@@ -45,7 +47,7 @@ export function PlaceList({ app }: { app: ModulesApp }) {
   const hovered = places.view.selection.hoveredJoint;
   return (
     <section class="place-list" aria-label="Joints of the robot">
-      <ol aria-label="Joints, from the head to the tail">
+      <ol aria-label="Joints, from the head to the tail" class={joints.length > manyJoints ? 'many' : ''}>
         {joints.map(({ name, node }, i) => {
           const module = placed.get(name);
           const state = module === undefined ? '' : `has its module: ${serialText(module.serial)}`;
@@ -68,7 +70,7 @@ export function PlaceList({ app }: { app: ModulesApp }) {
         })}
       </ol>
       {isAsked && <Answers app={app} />}
-      <p class="hint">In the picture, joints that have their module are lit. The head is at the top of this list.</p>
+      <p class="hint">In the picture the head is blue, and joints that have their module are lit. A click there is an answer, too.</p>
     </section>
   );
 }

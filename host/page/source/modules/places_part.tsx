@@ -132,7 +132,7 @@ export function PlacesPart({ app }: { app: ModulesApp }) {
     <>
       {goesOn ? asked?.question === 'agree' ? <Agreement app={app} changes={asked.changes} /> : <Question app={app} job={job} /> : <Start app={app} />}
       {!goesOn && job !== null && <Ended app={app} job={job} />}
-      {places.refused.value !== null && goesOn && (
+      {places.refused.value !== null && asked?.question === 'joint' && (
         <p class="problem" role="alert">
           {places.refused.value}
         </p>

@@ -3,11 +3,10 @@ import { useSignal } from '@preact/signals';
 import type { ModulesApp } from './modules_app.js';
 
 function busState(app: ModulesApp): { text: string; tone: string } {
-  const modules = app.modules.value;
-  if (modules?.connected !== true) return { text: 'no connection', tone: 'bad' };
   const bus = app.bus.value;
-  if (bus?.other_host === true) return { text: 'another host drives modules here', tone: 'bad' };
-  return { text: bus === null ? 'open' : `open, load ${(100 * bus.load).toFixed(1)} %`, tone: 'good' };
+  if (bus?.connected !== true) return { text: 'no connection', tone: 'bad' };
+  if (bus.other_host) return { text: 'another host drives modules here', tone: 'bad' };
+  return { text: `open, load ${(100 * bus.load).toFixed(1)} %`, tone: 'good' };
 }
 
 function OpenBus({ app }: { app: ModulesApp }) {
@@ -83,7 +82,7 @@ function ChooseBus({ app }: { app: ModulesApp }) {
 }
 
 export function BusBar({ app }: { app: ModulesApp }) {
-  const problem = app.modules.value?.problem ?? null;
+  const problem = app.bus.value?.problem ?? null;
   return (
     <section class="panel modules-panel" aria-label="Bus" data-testid="modules-bus">
       <div class="fields">{app.isOpen.value ? <OpenBus app={app} /> : <ChooseBus app={app} />}</div>

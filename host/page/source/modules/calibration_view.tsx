@@ -1,6 +1,7 @@
 // A person turns the joint by hand to both ends; the module measures its potentiometer there.
 import { useSignal } from '@preact/signals';
 import type { ModuleJob } from '../wire/messages.js';
+import { resultOf } from '../wire/module_messages.js';
 import { isRunning } from './job_text.js';
 import type { ModulesApp } from './modules_app.js';
 
@@ -42,6 +43,11 @@ function Step({ app, job }: { app: ModulesApp; job: ModuleJob }) {
         ))}
       </ol>
       <Reading job={job} />
+      {job.latest.refused !== undefined && (
+        <p class="problem" role="alert">
+          The last time: {job.latest.refused.text}
+        </p>
+      )}
       {now >= 0 && (
         <p class="instruction" role="status">
           Turn the joint by hand to <strong>{steps[now]?.degrees}</strong> and hold it there.
@@ -65,7 +71,7 @@ export function CalibrationView({ app }: { app: ModulesApp }) {
   const job = app.job.value;
   if (job === null || job.kind !== 'calibrate' || closed.value === job.number) return null;
   const node = job.latest.reading?.node ?? (job.question !== null && 'node' in job.question ? job.question.node : null);
-  const last = job.lines.at(-1);
+  const now = resultOf(job, 'calibrate')?.now;
   return (
     <section class="calibration" aria-label="Calibrate" data-testid="calibration">
       <h3>Potentiometer{node === null ? '' : ` of node ${node}`}</h3>
@@ -74,7 +80,7 @@ export function CalibrationView({ app }: { app: ModulesApp }) {
       ) : (
         <div class="fields">
           <p class={job.status === 0 ? 'verdict good' : 'verdict bad'} role="status">
-            {job.status === 0 ? `The module has stored it. ${last ?? ''}` : `Nothing is stored. ${job.error ?? job.ended_by ?? ''}`}
+            {job.status === 0 ? 'The module has stored it.' : 'Nothing is stored.'} {now === undefined ? (job.error ?? job.ended_by) : `It reads ${now.at_minus_90} at −90° and ${now.at_plus_90} at +90°.`}
           </p>
           <button type="button" onClick={() => (closed.value = job.number)}>
             Close

@@ -24,7 +24,7 @@ export function moduleRows(live: readonly BusModule[], modules: Pick<ModulesDocu
     const place = joints.findIndex((candidate) => candidate.node === node);
     const joint = joints[place] ?? null;
     const serial = scanned?.serial ?? null;
-    const touch = module?.touch ?? null;
+    const touch = module?.contacts ?? null;
     return {
       node,
       serial,

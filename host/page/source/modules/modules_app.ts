@@ -81,7 +81,7 @@ export class ModulesApp {
     if (!state.isConnected.value) return 'No connection to the program.';
     if (needsControl && !state.isHolder.value) return 'Take control first (C).';
     if (!this.isOpen.value) return 'Open a bus first.';
-    if (this.modules.value?.connected !== true) return 'No connection to the bus.';
+    if (this.bus.value?.connected !== true) return 'No connection to the bus.';
     const session = state.busSession.value;
     if (session !== null && session.state !== 'off' && session.state !== 'failed') return 'The servos have power: Power off first, on the page Live.';
     return job !== null && isRunning(job) ? `Wait until “${jobTitle(job.kind)}” has ended, or cancel it.` : null;

@@ -221,7 +221,7 @@ export interface BusModule {
   advice: string | null; // what to do
   silent: boolean;
   stop_confirmed: boolean | null; // whether the module has confirmed the last STOP
-  touch?: number | null; // bits 0, 1: rear and front sensor of the link behind the joint; 2, 3: of the link in front, at the head
+  contacts?: number | null; // bits 0, 1: rear and front sensor of the link behind the joint; 2, 3: of the link in front, at the head
 }
 
 export interface BusDocument {

@@ -39,8 +39,6 @@ export interface ModulesDocument {
   bus: string | null; // null: none is open
   is_fixed: boolean; // the program was started with this bus
   description: string | null;
-  connected: boolean;
-  problem: string | null;
   offers: { address: string; text: string }[];
   robot: { document: 'robot' | 'draft_robot'; name: string; joints: PlacedJoint[] } | null; // whose places are given
   images: ImageFile[];
@@ -169,7 +167,7 @@ export interface JobResults {
   compare: { differences: SettingsDifference[]; other_modules: string[]; without_gait: string[] };
   load: unknown;
   assign: { joints: { joint: string; node: number | null; serial: number | null }[]; changed: boolean; new_modules: number };
-  calibrate: unknown;
+  calibrate: { node: number; now: { at_minus_90: number; at_plus_90: number } };
   flash: { dry_run: boolean; version: string; modules: FlashedModule[] };
   recover: { dry_run: boolean; well: boolean; modules: RecoveredModule[]; missing: (number | string)[] };
 }

@@ -26,7 +26,7 @@ describe('the objects of a module', () => {
     assert.equal(objects.isReading.value, true);
     asked[1]?.resolve({ values: [valueOf(4, 'speed'), valueOf(5, 'of another')] });
     await second;
-    assert.deepEqual(objects.reading.value?.values.map(({ name }) => name), ['speed']);
+    assert.deepEqual(objects.groups.value.flatMap(({ values }) => values.map(({ name }) => name)), ['speed']);
     await objects.readIfNew();
     assert.equal(asked.length, 2);
   });

@@ -70,7 +70,7 @@ export function PlaceList({ app }: { app: ModulesApp }) {
         })}
       </ol>
       {isAsked && <Answers app={app} />}
-      <p class="hint">In the picture the head is blue, and joints that have their module are lit. A click there is an answer, too.</p>
+      <p class="hint">The list begins at the head. In the picture, joints that have their module are lit; a click on a joint, or on the link in front of it, is an answer, too.</p>
     </section>
   );
 }

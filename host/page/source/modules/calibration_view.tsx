@@ -25,14 +25,9 @@ function Reading({ job }: { job: ModuleJob }) {
 }
 
 function Step({ app, job }: { app: ModulesApp; job: ModuleJob }) {
-  const sent = useSignal(-1); // number of the question that was answered last
-  const question = job.question;
-  const now = steps.findIndex((step) => step.question === question?.question);
-  const why = app.answerObstacle() ?? (question === null || sent.value === question.number ? 'Wait for the module.' : null);
-  const answer = async (word: string) => {
-    sent.value = question?.number ?? -1;
-    if (!(await app.answer(word))) sent.value = -1;
-  };
+  const { obstacle, refused } = app.answers;
+  const now = steps.findIndex((step) => step.question === job.question?.question);
+  const why = obstacle.value;
   return (
     <>
       <ol class="steps" aria-label="Steps">
@@ -43,9 +38,9 @@ function Step({ app, job }: { app: ModulesApp; job: ModuleJob }) {
         ))}
       </ol>
       <Reading job={job} />
-      {job.latest.refused !== undefined && (
+      {refused.value !== null && (
         <p class="problem" role="alert">
-          The last time: {job.latest.refused.text}
+          {refused.value}
         </p>
       )}
       {now >= 0 && (
@@ -54,10 +49,10 @@ function Step({ app, job }: { app: ModulesApp; job: ModuleJob }) {
         </p>
       )}
       <div class="fields">
-        <button type="button" class="primary large" disabled={why !== null} title={why ?? 'The joint is there'} onClick={() => void answer('here')}>
+        <button type="button" class="primary large" disabled={why !== null} title={why ?? 'The joint is there'} onClick={() => void app.answers.answer('here')}>
           Here
         </button>
-        <button type="button" disabled={why !== null} title={why ?? 'Nothing is changed'} onClick={() => void answer('quit')}>
+        <button type="button" disabled={why !== null} title={why ?? 'Nothing is changed'} onClick={() => void app.answers.answer('quit')}>
           End
         </button>
         {why !== null && <span class="hint">{why}</span>}

@@ -2,7 +2,7 @@
 import { useSignal } from '@preact/signals';
 import type { ModuleOperations } from '../wire/messages.js';
 import { FlashTable } from './flash_table.js';
-import { flashRows } from './flash_rows.js';
+import { flashRows, flashWarnings } from './flash_rows.js';
 import { ImageChoice, imageOf } from './image_choice.js';
 import { CheckBox, JobButton, JobObstacle } from './job_controls.js';
 import { isRunning } from './job_text.js';
@@ -19,6 +19,7 @@ export function FlashPart({ app }: { app: ModulesApp }) {
   const job = app.lastOf('flash');
   const rows = flashRows(job, app.flashAdvance.value);
   const refused = rows.filter(({ action }) => action === 'refuse').length;
+  const warnings = flashWarnings(job);
   const obstacle = image === null ? 'There is no image.' : image.problem;
   const words = (dryRun: boolean): ModuleOperations['modules.flash'] => ({
     image: image?.file ?? '',
@@ -55,6 +56,11 @@ export function FlashPart({ app }: { app: ModulesApp }) {
         <JobObstacle app={app} />
       </div>
       {rows.length > 0 && <FlashTable rows={rows} isGoing={isRunning(job)} />}
+      {warnings.map((text) => (
+        <p key={text} class="problem">
+          {text}
+        </p>
+      ))}
       {refused > 0 && (
         <p class="announcement">
           {refused === 1 ? 'One module is refused' : `${refused} modules are refused`}: the table has the reason. The options below force it.

@@ -31,6 +31,14 @@ function outcomeOf({ outcome, good }: FlashOutcome): Advance {
   return { part: 1, text: outcome ?? '', isGood: good };
 }
 
+// What a person must know beside the rows: settings that are others now, nodes that do not answer.
+export function flashWarnings(job: ModuleJob | null): string[] {
+  const result = resultOf(job, 'flash');
+  const changed = result?.modules.flatMap(({ node, changed_settings }) => (changed_settings ?? []).map((line) => `node ${node}: ${line}`)) ?? [];
+  const silent = result?.silent_nodes ?? [];
+  return [...changed, ...(silent.length === 0 ? [] : [`No answer from node ${silent.join(', ')}: Recover looks what it has.`])];
+}
+
 export interface FlashRow extends FlashVerdict {
   advance: Advance | null;
   now: string | null; // version that runs in the end

@@ -21,6 +21,10 @@ export function isRunning(job: ModuleJob | null): boolean {
   return job !== null && job.state !== 'ended';
 }
 
+function isDryRun(result: unknown): boolean {
+  return typeof result === 'object' && result !== null && (result as { dry_run?: unknown }).dry_run === true;
+}
+
 // Jobs that only read say with status 1 that they have found something.
 const findsWithStatus1: readonly JobKind[] = ['scan', 'examine', 'compare'];
 
@@ -31,7 +35,8 @@ export function jobState(job: ModuleJob): { text: string; tone: 'good' | 'quiet'
   if (job.status === 0) return { text: 'done', tone: 'good' };
   if (job.status === 1 && findsWithStatus1.includes(job.kind) && job.result !== null) return { text: 'done', tone: 'good' };
   if (job.status === null) return { text: 'ended by a signal', tone: 'bad' };
-  return { text: job.status === 1 && job.result !== null ? 'ended: not all is well' : 'failed', tone: 'bad' };
+  if (job.status !== 1 || job.result === null) return { text: 'failed', tone: 'bad' };
+  return isDryRun(job.result) ? { text: 'done, nothing was changed', tone: 'quiet' } : { text: 'ended: not all is well', tone: 'bad' };
 }
 
 // The word of an answer for what a person has typed: the name of a joint, whatever its case, or what the program knows.

@@ -14,17 +14,28 @@ export interface ModuleRow {
 
 const frontSensors = 0b1100;
 
-export function moduleRows(live: readonly BusModule[], modules: Pick<ModulesDocument, 'found' | 'robot'>): ModuleRow[] {
+// What of the live modules is known while a job has the bus: a module that nobody asks is not silent, and its sensors are not read.
+export interface Watch {
+  knowsSilence: boolean;
+  readsTouch: boolean;
+}
+
+export function moduleRows(
+  live: readonly BusModule[],
+  modules: Pick<ModulesDocument, 'found' | 'robot'>,
+  watch: Watch = { knowsSilence: true, readsTouch: true },
+): ModuleRow[] {
   const found = modules.found?.nodes ?? [];
   const joints = modules.robot?.joints ?? [];
   const nodes = [...new Set([...live, ...found].map(({ node }) => node))].sort((a, b) => a - b);
   return nodes.map((node) => {
-    const module = live.find((candidate) => candidate.node === node) ?? null;
+    const known = live.find((candidate) => candidate.node === node) ?? null;
+    const module = known === null ? null : { ...known, silent: known.silent && watch.knowsSilence };
     const scanned = found.find((candidate) => candidate.node === node) ?? null;
     const place = joints.findIndex((candidate) => candidate.node === node);
     const joint = joints[place] ?? null;
     const serial = scanned?.serial ?? null;
-    const touch = module?.contacts ?? null;
+    const touch = watch.readsTouch ? (module?.contacts ?? null) : null;
     return {
       node,
       serial,

@@ -8,6 +8,7 @@ import { isRunning, jobTitle } from './job_text.js';
 import { moduleRows, nodeList } from './module_rows.js';
 import { ModuleObjects } from './module_objects.js';
 import { PlaceAnswers } from './place_answers.js';
+import { QuestionAnswers } from './question_answers.js';
 
 export type ModulesStores = Stores<'actions' | 'modulesActions' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -25,6 +26,10 @@ const taskOfKind: Partial<Record<string, TaskName>> = {
   recover: 'recover',
 };
 
+// Jobs during which the program does not ask the modules for their sensors.
+const keepsBus: readonly JobKind[] = ['assign', 'calibrate', 'flash', 'recover'];
+const settlingTime = 4000; // milliseconds
+
 export class ModulesApp {
   readonly task = signal<TaskName>('module');
   readonly chosenNode = signal<number | null>(null);
@@ -38,7 +43,9 @@ export class ModulesApp {
   readonly bus = computed(() => (this.isOpen.value ? this.page.state.bus.value : null));
   readonly rows = computed(() => {
     const modules = this.modules.value;
-    return modules === null || !this.isOpen.value ? [] : moduleRows(this.bus.value?.modules ?? [], modules);
+    const job = this.job.value;
+    const watch = { knowsSilence: this.isWatched.value, readsTouch: job === null || !isRunning(job) || !keepsBus.includes(job.kind) };
+    return modules === null || !this.isOpen.value ? [] : moduleRows(this.bus.value?.modules ?? [], modules, watch);
   });
   readonly chosenRow = computed(() => this.rows.value.find(({ node }) => node === this.chosenNode.value) ?? null);
   // The checked rows that are still there; null: none.
@@ -47,14 +54,17 @@ export class ModulesApp {
     return nodes.length === 0 ? null : nodeList(nodes);
   });
   readonly objects: ModuleObjects;
+  readonly answers: QuestionAnswers;
   readonly places: PlaceAnswers;
   readonly actions: ActionList;
+  private readonly isWatched = signal(true); // false during a job, and until the modules can have been asked again
   readonly revealed = signal(0); // counts when the task must come into view
   private scannedBus: string | null = null;
 
   constructor(readonly page: ModulesStores) {
     this.actions = new ActionList(page.actions, ({ group }) => group === 'Page' || group === 'Robot');
     this.objects = new ModuleObjects(page.operations, this.chosenNode);
+    this.answers = new QuestionAnswers(this);
     this.places = new PlaceAnswers(this);
     page.modulesActions.value = this.actions;
     this.followJob();
@@ -69,6 +79,7 @@ export class ModulesApp {
       if (page.shownPage.value === 'modules' && page.state.isConnected.value) untracked(() => void page.operations.ask('modules.look', {}).catch(() => {}));
     });
     effect(() => this.noteTouch());
+    this.watchAfterJobs();
   }
 
   // The reason why objects cannot be read now; null: they can.
@@ -128,7 +139,7 @@ export class ModulesApp {
   }
 
   // Answers the question of the running job. Returns whether the program has taken it.
-  async answer(word: string): Promise<boolean> {
+  async sendAnswer(word: string): Promise<boolean> {
     const job = this.job.peek();
     if (job === null || job.question === null) return false;
     return this.tell('modules.answer', { job: job.number, question: job.question.number, word });
@@ -162,6 +173,18 @@ export class ModulesApp {
     if (this.page.state.otherHolder.value !== null) return;
     this.scannedBus = modules.bus;
     untracked(() => void this.page.operations.ask('modules.scan', {}).catch(() => {}));
+  }
+
+  private watchAfterJobs(): void {
+    const goesOn = computed(() => isRunning(this.job.value));
+    effect(() => {
+      if (goesOn.value) {
+        this.isWatched.value = false;
+        return undefined;
+      }
+      const timer = setTimeout(() => (this.isWatched.value = true), settlingTime);
+      return () => clearTimeout(timer);
+    });
   }
 
   private noteTouch(): void {

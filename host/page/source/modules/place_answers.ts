@@ -1,27 +1,25 @@
-// The answers of a person who looks at the table while one joint after the other moves.
-import { computed, effect, signal, type ReadonlySignal } from '@preact/signals-core';
+// What a person says who looks at the table while one joint after the other moves.
+import { computed, signal, type ReadonlySignal } from '@preact/signals-core';
 import type { ActionList } from '../state/actions.js';
 import type { Stores } from '../view/robot_view.js';
 import { resultOf } from '../wire/module_messages.js';
 import type { ModuleJob, ModulesDocument, PlacedModule } from '../wire/messages.js';
 import { isRunning, placeWord } from './job_text.js';
 import { PlaceView } from './place_view.js';
+import type { QuestionAnswers } from './question_answers.js';
 
-// What the answers need of the page Modules.
+// What the places need of the page Modules.
 export interface PlaceHost {
   readonly page: Stores<'startSceneWorker' | 'state'>;
   readonly job: ReadonlySignal<ModuleJob | null>;
   readonly modules: ReadonlySignal<ModulesDocument | null>;
   readonly task: ReadonlySignal<string>;
   readonly actions: ActionList;
-  answerObstacle(): string | null;
-  answer(word: string): Promise<boolean>;
+  readonly answers: Pick<QuestionAnswers, 'answer' | 'obstacle'>;
 }
 
 export class PlaceAnswers {
   readonly typed = signal(''); // digits, or the name of a joint
-  private readonly sent = signal(''); // the question that was answered last
-  readonly refused = signal<string | null>(null); // why the last answer was not taken; null: it was
   readonly run = computed(() => (this.host.job.value?.kind === 'assign' ? this.host.job.value : null));
   readonly question = computed(() => (isRunning(this.run.value) ? (this.run.value?.question ?? null) : null));
   // The modules whose joint is known, by the name of the joint.
@@ -35,45 +33,21 @@ export class PlaceAnswers {
     });
     this.view = new PlaceView(host.page.state, host.actions, () => host.page.startSceneWorker(), placedJoints, (joint) => {
       const name = host.modules.peek()?.robot?.joints[joint]?.name;
-      if (name !== undefined && this.canPlace.peek()) void this.answer(name);
+      if (name !== undefined && this.canPlace.peek()) this.answer(name);
     });
-    this.noteRefusals();
     this.addKeys();
   }
 
-  readonly obstacle = computed(() => {
-    const isSent = this.sent.value !== '' && this.sent.value === questionKey(this.run.value);
-    return this.host.answerObstacle() ?? (isSent ? 'The program has the answer.' : null);
-  });
-
   // Whether a joint can be named now.
-  readonly canPlace = computed(() => this.question.value?.question === 'joint' && this.obstacle.value === null);
+  readonly canPlace = computed(() => this.question.value?.question === 'joint' && this.host.answers.obstacle.value === null);
 
-  async answer(word: string): Promise<void> {
-    const key = questionKey(this.run.peek());
-    if (word === '' || this.obstacle.peek() !== null) return;
-    this.sent.value = key;
+  answer(word: string): void {
     this.typed.value = '';
-    this.refused.value = null;
-    if (!(await this.host.answer(word))) this.sent.value = '';
+    void this.host.answers.answer(word);
   }
 
   answerTyped(): void {
-    void this.answer(placeWord(this.typed.peek(), this.host.modules.peek()?.robot?.joints ?? []));
-  }
-
-  // An event is there as long as the job: only one that is new is about the last answer.
-  private noteRefusals(): void {
-    let known: string | null = null;
-    effect(() => {
-      const run = this.run.value;
-      const text = run === null ? null : `${run.number} ${JSON.stringify(run.latest.refused ?? null)}`;
-      const refused = known !== null && text !== known ? run?.latest.refused : undefined;
-      known = text;
-      if (refused === undefined) return;
-      this.refused.value = refused.text;
-      this.sent.value = '';
-    });
+    this.answer(placeWord(this.typed.peek(), this.host.modules.peek()?.robot?.joints ?? []));
   }
 
   // Digits and Enter are an answer wherever the focus is; else digits would show another page.
@@ -99,10 +73,6 @@ export class PlaceAnswers {
       },
     );
   }
-}
-
-function questionKey(job: ModuleJob | null): string {
-  return job?.question == null ? '' : `${job.number}/${job.question.number}`;
 }
 
 export function placedModules(job: ModuleJob | null): Map<string, Pick<PlacedModule, 'node' | 'serial'>> {

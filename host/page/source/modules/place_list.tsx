@@ -6,7 +6,7 @@ const manyJoints = 12; // from then on in several columns
 
 function Answers({ app }: { app: ModulesApp }) {
   const { places } = app;
-  const why = places.obstacle.value;
+  const why = app.answers.obstacle.value;
   return (
     <>
       <form
@@ -25,13 +25,13 @@ function Answers({ app }: { app: ModulesApp }) {
         </button>
       </form>
       <div class="fields">
-        <button type="button" disabled={why !== null} title={why ?? 'What has moved is no joint of this robot'} onClick={() => void places.answer('none')}>
+        <button type="button" disabled={why !== null} title={why ?? 'What has moved is no joint of this robot'} onClick={() => places.answer('none')}>
           No joint of this robot
         </button>
-        <button type="button" disabled={why !== null} title={why ?? 'The joint moves farther'} onClick={() => void places.answer('more')}>
+        <button type="button" disabled={why !== null} title={why ?? 'The joint moves farther'} onClick={() => places.answer('more')}>
           Larger motion
         </button>
-        <button type="button" disabled={why !== null} title={why ?? 'Nothing is changed'} onClick={() => void places.answer('quit')}>
+        <button type="button" disabled={why !== null} title={why ?? 'Nothing is changed'} onClick={() => places.answer('quit')}>
           End
         </button>
       </div>
@@ -56,8 +56,8 @@ export function PlaceList({ app }: { app: ModulesApp }) {
               <button
                 type="button"
                 disabled={!places.canPlace.value}
-                title={places.canPlace.value ? 'This joint has moved' : isAsked ? (places.obstacle.value ?? '') : 'No joint is asked for now.'}
-                onClick={() => void places.answer(name)}
+                title={places.canPlace.value ? 'This joint has moved' : isAsked ? (app.answers.obstacle.value ?? '') : 'No joint is asked for now.'}
+                onClick={() => places.answer(name)}
               >
                 {name}
               </button>

@@ -75,7 +75,7 @@ function Question({ app, job }: { app: ModulesApp; job: ModuleJob }) {
 
 function Agreement({ app, changes }: { app: ModulesApp; changes: readonly NodeChange[] }) {
   const { places } = app;
-  const why = places.obstacle.value;
+  const why = app.answers.obstacle.value;
   return (
     <div data-testid="agreement">
       <p class="instruction" role="status">
@@ -103,10 +103,10 @@ function Agreement({ app, changes }: { app: ModulesApp; changes: readonly NodeCh
         </TableFrame>
       )}
       <div class="fields">
-        <button type="button" class="primary large" disabled={why !== null} title={why ?? 'The modules store them, and restart'} onClick={() => void places.answer('yes')}>
+        <button type="button" class="primary large" disabled={why !== null} title={why ?? 'The modules store them, and restart'} onClick={() => places.answer('yes')}>
           Give them these node ids
         </button>
-        <button type="button" disabled={why !== null} title={why ?? 'Nothing is changed'} onClick={() => void places.answer('no')}>
+        <button type="button" disabled={why !== null} title={why ?? 'Nothing is changed'} onClick={() => places.answer('no')}>
           No
         </button>
       </div>
@@ -132,9 +132,9 @@ export function PlacesPart({ app }: { app: ModulesApp }) {
     <>
       {goesOn ? asked?.question === 'agree' ? <Agreement app={app} changes={asked.changes} /> : <Question app={app} job={job} /> : <Start app={app} />}
       {!goesOn && job !== null && <Ended app={app} job={job} />}
-      {places.refused.value !== null && asked?.question === 'joint' && (
+      {app.answers.refused.value !== null && asked?.question === 'joint' && (
         <p class="problem" role="alert">
-          {places.refused.value}
+          {app.answers.refused.value}
         </p>
       )}
       {hasRobot && (

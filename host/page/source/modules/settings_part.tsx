@@ -114,12 +114,31 @@ function FileForm({ app }: { app: ModulesApp }) {
   );
 }
 
+// What was saved or loaded last.
+function Done({ app }: { app: ModulesApp }) {
+  const saved = resultOf(app.job.value, 'save');
+  const loaded = resultOf(app.job.value, 'load');
+  const count = (number: number, what: string) => `${number} ${what}${number === 1 ? '' : 's'}`;
+  const text =
+    saved !== null
+      ? `The settings of ${count(saved.modules.length, 'module')} are saved.`
+      : loaded !== null && typeof loaded.changed === 'number'
+        ? `${count(loaded.changed, 'value')} changed${loaded.stored ? ', and kept in flash' : '; lost at the next reset'}.`
+        : null;
+  return text === null ? null : (
+    <p class="verdict good" role="status">
+      {text}
+    </p>
+  );
+}
+
 export function SettingsPart({ app }: { app: ModulesApp }) {
   return (
     <>
       <p class="hint">What modules keep in flash, but for the node id, and the parameters of their algorithms.</p>
       <SaveForm app={app} />
       <FileForm app={app} />
+      <Done app={app} />
       <JobObstacle app={app} />
     </>
   );

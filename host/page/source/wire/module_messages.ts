@@ -129,7 +129,7 @@ export interface ModuleJob {
 // What the programs print with --json, as far as the page shows it.
 export interface FlashedModule extends FlashVerdict, FlashOutcome {
   now: { version: string } | null;
-  changed_settings?: unknown[];
+  changed_settings?: string[]; // those that the new program has changed
 }
 
 export interface RecoveredModule {
@@ -163,12 +163,12 @@ export interface SettingsDifference {
 export interface JobResults {
   scan: ScanResult;
   examine: { findings: Finding[]; observations: Record<string, unknown> };
-  save: unknown;
+  save: { modules: number[] }; // node ids
   compare: { differences: SettingsDifference[]; other_modules: string[]; without_gait: string[] };
-  load: unknown;
+  load: { changed: number; stored: boolean };
   assign: { joints: { joint: string; node: number | null; serial: number | null }[]; changed: boolean; new_modules: number };
   calibrate: { node: number; now: { at_minus_90: number; at_plus_90: number } };
-  flash: { dry_run: boolean; version: string; modules: FlashedModule[] };
+  flash: { dry_run: boolean; version: string; modules: FlashedModule[]; silent_nodes?: number[] };
   recover: { dry_run: boolean; well: boolean; modules: RecoveredModule[]; missing: (number | string)[] };
 }
 
@@ -176,6 +176,7 @@ export interface JobResults {
 const neededMembers: Partial<Record<JobKind, string>> = {
   scan: 'nodes',
   examine: 'findings',
+  save: 'modules',
   compare: 'differences',
   assign: 'joints',
   flash: 'modules',

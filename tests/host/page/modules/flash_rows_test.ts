@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { advanceWith, flashRows } from '../../../../host/page/source/modules/flash_rows.js';
+import { advanceWith, flashRows, flashWarnings } from '../../../../host/page/source/modules/flash_rows.js';
 import type { JobEvents } from '../../../../host/page/source/wire/messages.js';
 import { jobOf } from './module_job.js';
 
@@ -43,5 +43,12 @@ describe('how far modules are with an image', () => {
     const result = (dryRun: boolean) => flashRows(jobOf({ kind: 'flash', state: 'ended', result: { dry_run: dryRun, version: '2.0.0', modules } }), null)[0];
     assert.deepEqual([result(false)?.advance?.isGood, result(false)?.now], [true, '2.0.0']);
     assert.equal(result(true)?.advance, null);
+  });
+
+  it('ends with a warning for each setting that is another one, and for silent nodes', () => {
+    const modules = [{ ...verdict(1), outcome: 'runs the image', good: true, now: null, changed_settings: ['0x6080: 720, now 300'] }];
+    const job = jobOf({ kind: 'flash', state: 'ended', result: { dry_run: false, version: '2.0.0', modules, silent_nodes: [7] } });
+    assert.deepEqual(flashWarnings(job), ['node 1: 0x6080: 720, now 300', 'No answer from node 7: Recover looks what it has.']);
+    assert.deepEqual(flashWarnings(null), []);
   });
 });

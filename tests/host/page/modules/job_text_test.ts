@@ -17,6 +17,7 @@ describe('a job', () => {
     assert.equal(text({ state: 'ended', status: 0 }), 'done');
     assert.equal(text({ kind: 'examine', state: 'ended', status: 1, result: { findings: [] } }), 'done');
     assert.equal(text({ kind: 'flash', state: 'ended', status: 1, result: { modules: [] } }), 'ended: not all is well');
+    assert.equal(text({ kind: 'recover', state: 'ended', status: 1, result: { dry_run: true, modules: [] } }), 'done, nothing was changed');
     assert.equal(text({ kind: 'load', state: 'ended', status: 1 }), 'failed');
     assert.equal(text({ state: 'ended', status: null }), 'ended by a signal');
     assert.equal(text({ state: 'ended', status: null, ended_by: 'STOP' }), 'ended early: STOP');

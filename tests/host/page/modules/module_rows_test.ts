@@ -74,6 +74,13 @@ describe('the rows of the table of modules', () => {
     assert.deepEqual(troubled.map(stateText), ['Pre-operational', 'silent', 'Pre-operational', 'no answer', 'not driven']);
   });
 
+  it('say of a module that nobody asks during a job neither that it is silent nor what it touches', () => {
+    const module = live(3, { silent: true, contacts: 3 });
+    const during = moduleRows([module], documentOf([]), { knowsSilence: false, readsTouch: false })[0]!;
+    assert.deepEqual([troubleOf(during), touchText(during)], [null, 'not read']);
+    assert.equal(troubleOf(moduleRows([module], documentOf([]))[0]!)?.text, 'silent');
+  });
+
   it('know of modules without a node id, in either form', () => {
     assert.equal(hasFreshModules({ found: null }), false);
     assert.equal(hasFreshModules({ found: { nodes: [], fresh_modules: true } }), true);

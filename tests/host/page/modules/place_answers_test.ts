@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { pageSignal } from '../support/page_signal.js';
 import { PlaceAnswers, placedModules } from '../../../../host/page/source/modules/place_answers.js';
+import { QuestionAnswers } from '../../../../host/page/source/modules/question_answers.js';
 import { ActionList } from '../../../../host/page/source/state/actions.js';
 import { PageState } from '../../../../host/page/source/state/page_state.js';
 import type { JobQuestion, ModuleJob, ModulesDocument } from '../../../../host/page/source/wire/messages.js';
@@ -16,20 +17,24 @@ function places() {
   const words: string[] = [];
   let takes = true;
   const actions = new ActionList();
+  const questions = new QuestionAnswers({
+    job: job as never,
+    answerObstacle: () => null,
+    sendAnswer: (word) => {
+      words.push(word);
+      return Promise.resolve(takes);
+    },
+  });
   const answers = new PlaceAnswers({
     page: { state: new PageState(), startSceneWorker: () => assert.fail('no worker') },
     job: job as never,
     modules: pageSignal(document) as never,
     task: pageSignal('places') as never,
     actions,
-    answerObstacle: () => null,
-    answer: (word) => {
-      words.push(word);
-      return Promise.resolve(takes);
-    },
+    answers: questions,
   });
   const press = (key: string) => actions.forKey({ key, ctrlKey: false, metaKey: false, shiftKey: false, altKey: false }, false)?.run();
-  return { job, words, answers, press, refuse: () => (takes = false) };
+  return { job, words, answers, questions, press, refuse: () => (takes = false) };
 }
 
 describe('the answers to which joint moves', () => {
@@ -47,35 +52,35 @@ describe('the answers to which joint moves', () => {
     assert.equal(answers.typed.value, '');
   });
 
-  it('are given once for each question', async () => {
+  it('are given once for each question', () => {
     const { words, answers, job } = places();
-    void answers.answer('J2');
-    void answers.answer('J3');
+    answers.answer('J2');
+    answers.answer('J3');
     assert.deepEqual(words, ['J2']);
     assert.equal(answers.canPlace.value, false);
     job.value = jobOf({ kind: 'assign', question: asked(2) });
     assert.equal(answers.canPlace.value, true);
-    await answers.answer('J3');
+    answers.answer('J3');
     assert.deepEqual(words, ['J2', 'J3']);
   });
 
   it('can be given again if the connection or the program has refused one', async () => {
-    const { words, answers, refuse } = places();
+    const { words, questions, refuse } = places();
     refuse();
-    await answers.answer('J2');
-    await answers.answer('J2');
+    await questions.answer('J2');
+    await questions.answer('J2');
     assert.deepEqual(words, ['J2', 'J2']);
   });
 
   it('are shown with the reason why the program has not taken one, until the next answer', () => {
-    const { answers, job } = places();
-    void answers.answer('J9');
+    const { questions, job } = places();
+    void questions.answer('J9');
     job.value = jobOf({ kind: 'assign', question: asked(2), latest: { refused: { text: "found 'J9'" } } });
-    assert.equal(answers.refused.value, "found 'J9'");
-    void answers.answer('J2');
-    assert.equal(answers.refused.value, null);
+    assert.equal(questions.refused.value, "found 'J9'");
+    void questions.answer('J2');
+    assert.equal(questions.refused.value, null);
     job.value = jobOf({ kind: 'assign', question: asked(3), latest: { refused: { text: "found 'J9'" } } });
-    assert.equal(answers.refused.value, null);
+    assert.equal(questions.refused.value, null);
   });
 
   it('mark the joints that have their module, at the end those of the result', () => {

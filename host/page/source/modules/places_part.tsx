@@ -3,6 +3,7 @@ import { useSignal } from '@preact/signals';
 import { ScenePanel } from '../panels/scene_panel.js';
 import { TableHead } from '../panels/table_head.js';
 import type { ModuleJob, NodeChange } from '../wire/messages.js';
+import { resultOf } from '../wire/module_messages.js';
 import { JobButton, JobObstacle, TableFrame } from './job_controls.js';
 import { isRunning, numberIn } from './job_text.js';
 import { refText, serialText } from './module_rows.js';
@@ -118,8 +119,9 @@ function Ended({ app, job }: { app: ModulesApp; job: ModuleJob }) {
   const joints = app.modules.value?.robot?.joints ?? [];
   const placed = placedModules(job);
   const missing = joints.filter(({ name }) => !placed.has(name)).map(({ name }) => name);
+  if (resultOf(job, 'assign') === null) return null;
   if (job.status === 0) return <p class="verdict good">Each joint has its module.</p>;
-  return placed.size > 0 && missing.length > 0 ? <p class="verdict bad">No module was found for {missing.join(', ')}.</p> : null;
+  return missing.length > 0 ? <p class="verdict bad">No module was found for {missing.join(', ')}.</p> : null;
 }
 
 export function PlacesPart({ app }: { app: ModulesApp }) {

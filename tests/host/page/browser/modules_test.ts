@@ -11,7 +11,7 @@ import { launchBrowser } from './support/browser.js';
 import { BusProgram } from './support/bus_program.js';
 import { assertNothingIsCut } from './support/layout.js';
 import { useUi } from './support/ui_fixture.js';
-import { program, UiProgram } from './support/ui_program.js';
+import { program, slowTime, UiProgram } from './support/ui_program.js';
 import { Viewer } from './support/viewer.js';
 import { waitUntil } from './support/waiting.js';
 
@@ -81,7 +81,9 @@ class ModulesPage {
 
 describe('a box of modules', () => {
   const folder = makeProject();
-  const ui = useUi(() => UiProgram.start(join(folder, 'mine/uniform.simulation.xml'), ['--recordings', folder]), { takesControl: true });
+  const scenario = join(folder, 'mine/uniform.simulation.xml');
+  // Places end when nobody drives for a second: a reload on a busy computer takes longer.
+  const ui = useUi(() => UiProgram.serve([scenario, '--paused', '--recordings', folder], slowTime), { takesControl: true });
   const modules = new ModulesPage(() => ui.viewer.page);
   const page = () => ui.viewer.page;
   let bus!: BusProgram;

@@ -10,7 +10,8 @@ export function imageOf(images: readonly ImageFile[], chosen: string | null): Im
 }
 
 function imageText({ file, version, board, problem }: ImageFile): string {
-  return `${file}: ${problem === null ? `${version}, board ${board}` : 'cannot be flashed'}`;
+  const name = file.startsWith('/') ? `${file.split('/').at(-1)}, built here` : file;
+  return `${name}: ${problem === null ? `${version}, board ${board}` : 'cannot be flashed'}`;
 }
 
 // `none`: the text of the choice without an image; absent: an image is needed.

@@ -170,7 +170,8 @@ std::string ModuleJob::failure() const {
   if (!status_ || *status_ == 0) {
     return {};
   }
-  return lines_.empty() ? "the program has ended with status " + std::to_string(*status_) : message_of(lines_.back());
+  return lines_.empty() ? "the program has ended with status " + std::to_string(*status_)
+                        : without_program_name(lines_.back());
 }
 
 void ModuleJob::answer(std::uint64_t question, const std::string& word) {

@@ -323,7 +323,7 @@ json ModulesSession::assign(const host::OperationRequest& request) {
     throw std::runtime_error("nobody drives");
   }
   const double amplitude = argument<double>(request.arguments, "amplitude", "degrees").value_or(5);
-  auto files = std::make_unique<TemporaryFolder>();
+  auto files = std::make_unique<ScratchFolder>();
   const std::string top = scenario->sources.front().path;
   const std::string file = copy_sources(scenario->sources, files->path() / "scenario").at(top);
   std::vector<std::string> words{"assign", file, "--json-lines", "--amplitude", number_text(amplitude)};

@@ -24,17 +24,28 @@ class ModuleFilesTest : public ::testing::Test {
     files_.look();
   }
 
+  /// The images of the project: one that was built beside this program has a whole path.
+  [[nodiscard]] nlohmann::json images() const {
+    nlohmann::json found = nlohmann::json::array();
+    for (const nlohmann::json& image : files_.images()) {
+      if (!image["file"].get<std::string>().starts_with("/")) {
+        found.push_back(image);
+      }
+    }
+    return found;
+  }
+
   TemporaryFolder folder_;
   ModuleFiles files_{folder_.path()};
 };
 
 TEST_F(ModuleFilesTest, AnImageThatIsNoneIsShownWithTheReasonAndRefused) {
   write("a/broken.pimg", "PIMG");
-  const nlohmann::json images = files_.images();
-  ASSERT_EQ(images.size(), 1U) << images;
-  EXPECT_EQ(images[0]["file"], "a/broken.pimg");
-  EXPECT_TRUE(images[0]["version"].is_null());
-  EXPECT_TRUE(images[0]["problem"].is_string());
+  const nlohmann::json found = images();
+  ASSERT_EQ(found.size(), 1U) << found;
+  EXPECT_EQ(found[0]["file"], "a/broken.pimg");
+  EXPECT_TRUE(found[0]["version"].is_null());
+  EXPECT_TRUE(found[0]["problem"].is_string());
   EXPECT_THROW(static_cast<void>(files_.image("a/broken.pimg")), InputError);
 }
 
@@ -44,7 +55,7 @@ TEST_F(ModuleFilesTest, OnlyWhatIsListedCanBeNamed) {
   write("below/c.params");
   fs::create_directory(folder_ / "folder.params");
   files_.look();
-  EXPECT_EQ(files_.images().size(), 0U);
+  EXPECT_TRUE(images().empty());
   EXPECT_TRUE(files_.settings().empty());
   for (const char* name : {"b.txt", "below/c.params", "../b.params", "/etc/passwd", "", "folder.params"}) {
     EXPECT_THROW(static_cast<void>(files_.image(name)), InputError) << name;

@@ -6,21 +6,31 @@
 namespace proleg::host {
 
 SharedBus::SharedBus(boost::asio::io_context& context, BusConnection& bus)
-    : bus_(bus), server_(context, *this), attachment_(bus, *this) {}
+    : context_(context), bus_(bus), attachment_(bus, *this) {
+  server_.emplace(context_, static_cast<BusServerListener&>(*this));
+}
 
-void SharedBus::add(Descriptor end) { server_.add_descriptor(end.release()); }
+void SharedBus::add(Descriptor end) { server_->add_descriptor(end.release()); }
 
-void SharedBus::receive(Microseconds now, const CanFrame& frame) { server_.broadcast(now, frame); }
+void SharedBus::look_at_connection() {
+  if (!bus_.state().is_connected) {
+    server_.reset();
+    server_.emplace(context_, static_cast<BusServerListener&>(*this));
+    sent_.clear();
+  }
+}
+
+void SharedBus::receive(Microseconds now, const CanFrame& frame) { server_->broadcast(now, frame); }
 
 void SharedBus::transmitted(Microseconds now, const CanFrame& frame) {
   const auto sent = std::ranges::find(sent_, frame, &Sent::frame);
   if (sent == sent_.end()) {
-    server_.broadcast(now, frame);  // of this program
+    server_->broadcast(now, frame);  // of this program
     return;
   }
   const BusClient client = sent->client;
   sent_.erase(sent_.begin(), sent + 1);  // what was sent before was lost: the bus keeps the order
-  server_.broadcast(now, frame, client);
+  server_->broadcast(now, frame, client);
 }
 
 bool SharedBus::frame_from_client(BusClient client, const CanFrame& frame) {

@@ -3,6 +3,7 @@
 #include <boost/asio/io_context.hpp>
 #include <cstddef>
 #include <deque>
+#include <optional>
 
 #include "host/robot/bus_connection.hpp"
 #include "host/robot/bus_user.hpp"
@@ -13,7 +14,8 @@ namespace proleg::host {
 
 /// Lets other programs take part in a bus that this program has open: each as if it had an slcan adapter of its own,
 /// behind a socket that it inherits (`--bus fd:N`). Some adapters can be opened only once. What one of them or this
-/// program sends, the others receive when the bus has carried it.
+/// program sends, the others receive when the bus has carried it. When the connection to the bus is lost, they lose
+/// theirs.
 class SharedBus final : private BusUser, private BusServerListener {
  public:
   /// context: in which the transport of the bus runs. context, bus: must outlive this.
@@ -25,7 +27,10 @@ class SharedBus final : private BusUser, private BusServerListener {
   /// is closed.
   void add(Descriptor end);
   /// Number of programs that take part.
-  [[nodiscard]] std::size_t programs() const { return server_.open_clients(); }
+  [[nodiscard]] std::size_t programs() const { return server_->open_clients(); }
+  /// Ends the part of all programs if the connection to the bus is lost: they would wait for answers in vain, and name
+  /// a wrong cause. Not to be called within a call of the bus.
+  void look_at_connection();
 
  private:
   /// A frame of a program that the bus has not carried yet.
@@ -42,8 +47,9 @@ class SharedBus final : private BusUser, private BusServerListener {
   // BusServerListener
   [[nodiscard]] bool frame_from_client(BusClient client, const CanFrame& frame) override;
 
+  boost::asio::io_context& context_;
   BusConnection& bus_;
-  BusServer server_;
+  std::optional<BusServer> server_;
   BusAttachment attachment_;
   std::deque<Sent> sent_;
 };

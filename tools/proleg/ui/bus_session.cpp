@@ -146,6 +146,7 @@ void BusSession::look_at_jobs() {
   for (host::Descriptor& end : sharing_.take_programs()) {
     shared_.add(std::move(end));
   }
+  shared_.look_at_connection();
   const bool has_job = sharing_.has_job();
   if (has_job) {
     end_scan();
@@ -494,8 +495,7 @@ void BusSession::publish_bus(Clock::time_point now, const std::vector<host::Moni
   view.is_connected = bus_.state().is_connected;
   view.problem = view.is_connected ? bus_.state().reason : bus_.diagnosis();
   view.now = bus_.now();
-  view.traffic = monitor_.take_traffic(view.now);
-  view.seconds = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
+  traffic_.add_to(view, monitor_, now);
   view.has_other_host = monitor_.has_host(view.now);
   view.nodes = nodes;
   view.stop_confirmed = stops_.confirmed();

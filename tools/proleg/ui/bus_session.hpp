@@ -121,7 +121,7 @@ class BusSession final : private SessionThread {
   bool are_parameters_new_ = true;
   bool is_session_new_ = true;
   Clock::time_point publish_at_{};
-  Clock::time_point traffic_from_ = Clock::now();
+  BusTraffic traffic_;
 };
 
 }  // namespace proleg::tools

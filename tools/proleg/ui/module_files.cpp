@@ -40,6 +40,12 @@ json image_json(const std::string& name, const fs::path& path) {
   return object;
 }
 
+/// A file of a project, also by a link within it. A viewer must not read what is elsewhere.
+bool is_file_of(const fs::path& project, const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && is_inside(fs::canonical(project, error), fs::canonical(path, error));
+}
+
 }  // namespace
 
 void ModuleFiles::look() {
@@ -49,8 +55,7 @@ void ModuleFiles::look() {
   for_each_path(
       project_,
       [this](const fs::path& path) {
-        std::error_code error;
-        if (path.extension() == image_extension && images_.size() < most_files && fs::is_regular_file(path, error)) {
+        if (path.extension() == image_extension && images_.size() < most_files && is_file_of(project_, path)) {
           images_.push_back({path.lexically_relative(project_).string(), path});
         }
       },
@@ -62,7 +67,7 @@ void ModuleFiles::look() {
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(project_, error)) {
     if (entry.path().extension() == settings_extension && settings_.size() < most_files &&
-        entry.is_regular_file(error)) {
+        is_file_of(project_, entry.path())) {
       settings_.push_back(entry.path().filename().string());
     }
   }

@@ -170,8 +170,12 @@ std::string ModuleJob::failure() const {
   if (!status_ || *status_ == 0) {
     return {};
   }
-  return lines_.empty() ? "the program has ended with status " + std::to_string(*status_)
-                        : without_program_name(lines_.back());
+  if (!lines_.empty()) {
+    return without_program_name(lines_.back());
+  }
+  return *status_ < first_signal_status
+             ? "the program has ended with status " + std::to_string(*status_)
+             : "signal " + std::to_string(*status_ - first_signal_status) + " has ended the program";
 }
 
 void ModuleJob::answer(std::uint64_t question, const std::string& word) {

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "host/robot/object_word.hpp"
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -57,6 +58,23 @@ std::string node_in(const json& arguments) {
     throw InputError("node", 0, std::to_string(node), "1 to 126");
   }
   return std::to_string(node);
+}
+
+/// A number that a program takes.
+std::optional<std::string> number_in(const json& arguments, const char* name, const char* unit, double lowest,
+                                     double highest) {
+  const auto number = argument<double>(arguments, name, unit);
+  if (number && !(*number >= lowest && *number <= highest)) {
+    throw InputError(name, 0, number_text(*number), number_text(lowest) + " to " + number_text(highest) + " " + unit);
+  }
+  return number ? std::optional(number_text(*number)) : std::nullopt;
+}
+
+/// Node ids such as 1,3 or all.
+std::string nodes_in(const json& arguments, const char* expected) {
+  std::string word = word_in(arguments, "nodes", expected);
+  static_cast<void>(host::parse_nodes(word, "nodes"));
+  return word;
 }
 
 /// The libraries with algorithms of users that this program has.
@@ -291,7 +309,7 @@ json ModulesSession::save(const host::OperationRequest& request) {
   const fs::path file =
       files_.new_settings(required<std::string>(request.arguments, "file", "a name that ends in .params"));
   const auto nodes =
-      request.arguments.contains("nodes") ? word_in(request.arguments, "nodes", "all, or 1,3") : std::string("all");
+      request.arguments.contains("nodes") ? nodes_in(request.arguments, "all, or 1,3") : std::string("all");
   std::vector<std::string> words{"params", "save", file.string(), "--nodes", nodes, "--json"};
   return begin(plan_of("save", std::move(words), request));
 }
@@ -322,11 +340,13 @@ json ModulesSession::assign(const host::OperationRequest& request) {
   if (absent_since_) {
     throw std::runtime_error("nobody drives");
   }
-  const double amplitude = argument<double>(request.arguments, "amplitude", "degrees").value_or(5);
+  constexpr double smallest = 1;  // of proleg assign
+  constexpr double largest = 30;
+  const std::string amplitude = number_in(request.arguments, "amplitude", "degrees", smallest, largest).value_or("5");
   auto files = std::make_unique<ScratchFolder>();
   const std::string top = scenario->sources.front().path;
   const std::string file = copy_sources(scenario->sources, files->path() / "scenario").at(top);
-  std::vector<std::string> words{"assign", file, "--json-lines", "--amplitude", number_text(amplitude)};
+  std::vector<std::string> words{"assign", file, "--json-lines", "--amplitude", amplitude};
   add_algorithms(words);
   ModuleJobPlan plan = plan_of("assign", std::move(words), request, Output::events);
   plan.shown = shown_command({"assign", fs::path(top).filename().string()}, address());
@@ -344,7 +364,7 @@ json ModulesSession::flash(const host::OperationRequest& request) {
   const fs::path image = files_.image(required<std::string>(arguments, "image", "an image of the list"));
   std::vector<std::string> words{"flash", image.string(), "--json-lines"};
   if (const auto nodes = argument<std::string>(arguments, "nodes", "such as 1,3, or null")) {
-    words.insert(words.end(), {"--node", word_in(arguments, "nodes", "such as 1,3, or null")});
+    words.insert(words.end(), {"--node", nodes_in(arguments, "such as 1,3, or null")});
   }
   for (const auto& [name, option] :
        {std::pair{"canary", "--canary"}, std::pair{"dry_run", "--dry-run"}, std::pair{"force_board", "--force-board"},
@@ -363,8 +383,9 @@ json ModulesSession::recover(const host::OperationRequest& request) {
     words.push_back(files_.image(*image).string());
   }
   words.emplace_back("--json-lines");
-  if (const auto wait = argument<double>(arguments, "wait", "seconds")) {
-    words.insert(words.end(), {"--wait", number_text(*wait)});
+  constexpr double longest_wait = 600;  // of proleg recover
+  if (const auto wait = number_in(arguments, "wait", "seconds", 0, longest_wait)) {
+    words.insert(words.end(), {"--wait", *wait});
   }
   for (const std::uint32_t serial : argument<std::vector<std::uint32_t>>(arguments, "serials", "serial numbers")
                                         .value_or(std::vector<std::uint32_t>())) {

@@ -23,6 +23,15 @@ bool BusDocumentRate::is_due(const std::vector<host::MonitoredNode>& nodes, Cloc
   return true;
 }
 
+void BusTraffic::add_to(BusView& view, host::BusMonitor& monitor, Clock::time_point now) {
+  if (now >= from_ + BusDocumentRate::period) {
+    traffic_ = monitor.take_traffic(view.now);
+    seconds_ = std::chrono::duration<double>(now - std::exchange(from_, now)).count();
+  }
+  view.traffic = traffic_;
+  view.seconds = seconds_;
+}
+
 TableBus::TableBus(std::string address, BusSharing& sharing, host::SessionOutput& output)
     : address_(std::move(address)),
       sharing_(sharing),
@@ -59,6 +68,7 @@ void TableBus::serve() {
   for (host::Descriptor& end : sharing_.take_programs()) {
     shared_.add(std::move(end));
   }
+  shared_.look_at_connection();
   // Two programs that ask one module at a time get each other's answers.
   const bool has_job = sharing_.has_job();
   if (had_job_ && !has_job) {
@@ -92,8 +102,7 @@ void TableBus::publish(Clock::time_point now, const std::vector<host::MonitoredN
   view.is_connected = bus.state().is_connected;
   view.problem = view.is_connected ? bus.state().reason : bus.diagnosis();
   view.now = bus.now();
-  view.traffic = monitor_.take_traffic(view.now);
-  view.seconds = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
+  traffic_.add_to(view, monitor_, now);
   view.has_other_host = monitor_.has_host(view.now);
   view.nodes = nodes;
   output_.publish("bus", bus_document({}, view));

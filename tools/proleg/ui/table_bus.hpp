@@ -29,6 +29,20 @@ class BusDocumentRate {
   std::vector<std::optional<std::uint8_t>> contacts_;  ///< of the last document
 };
 
+/// What is on a bus, over half a second or more: documents come more often, and in a few milliseconds there is one
+/// frame or none.
+class BusTraffic {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  void add_to(BusView& view, host::BusMonitor& monitor, Clock::time_point now);
+
+ private:
+  Clock::time_point from_ = Clock::now();
+  host::BusMonitor::Traffic traffic_{};
+  double seconds_ = 0;
+};
+
 /// A bus with modules on a table that this program has open without a robot that it drives: viewers see what is on it,
 /// and jobs of other programs take part in it. It has a thread of its own.
 class TableBus {
@@ -66,7 +80,7 @@ class TableBus {
   host::SharedBus shared_;
   BusDocumentRate rate_;
   bool had_job_ = false;
-  Clock::time_point traffic_from_ = Clock::now();
+  BusTraffic traffic_;
   std::atomic<bool> stops_ = false;
   std::atomic<bool> ends_ = false;
   std::thread thread_;

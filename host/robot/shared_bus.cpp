@@ -12,8 +12,10 @@ SharedBus::SharedBus(boost::asio::io_context& context, BusConnection& bus)
 
 void SharedBus::add(Descriptor end) { server_->add_descriptor(end.release()); }
 
-void SharedBus::look_at_connection() {
-  if (!bus_.state().is_connected) {
+void SharedBus::look_at_connection(Microseconds longest_loss) {
+  if (bus_.state().is_connected) {
+    connected_at_ = bus_.now();
+  } else if (programs() > 0 && bus_.now() - connected_at_ >= longest_loss) {
     server_.reset();
     server_.emplace(context_, static_cast<BusServerListener&>(*this));
     sent_.clear();

@@ -15,7 +15,7 @@ namespace proleg::host {
 /// Lets other programs take part in a bus that this program has open: each as if it had an slcan adapter of its own,
 /// behind a socket that it inherits (`--bus fd:N`). Some adapters can be opened only once. What one of them or this
 /// program sends, the others receive when the bus has carried it. When the connection to the bus is lost, they lose
-/// theirs.
+/// theirs (look_at_connection()).
 class SharedBus final : private BusUser, private BusServerListener {
  public:
   /// context: in which the transport of the bus runs. context, bus: must outlive this.
@@ -28,9 +28,9 @@ class SharedBus final : private BusUser, private BusServerListener {
   void add(Descriptor end);
   /// Number of programs that take part.
   [[nodiscard]] std::size_t programs() const { return server_->open_clients(); }
-  /// Ends the part of all programs if the connection to the bus is lost: they would wait for answers in vain, and name
-  /// a wrong cause. Not to be called within a call of the bus.
-  void look_at_connection();
+  /// Ends the part of all programs if the connection to the bus has been lost for longer than this: they would wait for
+  /// answers in vain, and name a wrong cause. Not to be called within a call of the bus.
+  void look_at_connection(Microseconds longest_loss);
 
  private:
   /// A frame of a program that the bus has not carried yet.
@@ -52,6 +52,7 @@ class SharedBus final : private BusUser, private BusServerListener {
   std::optional<BusServer> server_;
   BusAttachment attachment_;
   std::deque<Sent> sent_;
+  Microseconds connected_at_ = 0;  ///< when it was looked at last
 };
 
 }  // namespace proleg::host

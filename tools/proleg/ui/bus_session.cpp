@@ -146,7 +146,7 @@ void BusSession::look_at_jobs() {
   for (host::Descriptor& end : sharing_.take_programs()) {
     shared_.add(std::move(end));
   }
-  shared_.look_at_connection();
+  shared_.look_at_connection(sharing_.longest_loss());
   const bool has_job = sharing_.has_job();
   if (has_job) {
     end_scan();

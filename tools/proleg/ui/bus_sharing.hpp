@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 #include "host/transport/descriptor.hpp"
+#include "shared/can/can_port.hpp"
 
 namespace proleg::tools {
 
@@ -12,10 +14,15 @@ namespace proleg::tools {
 /// not both. Any thread may use it.
 class BusSharing {
  public:
-  /// Whether a job may begin now; then it has begun.
-  [[nodiscard]] bool begin_job() {
+  /// Whether a job may begin now; then it has begun. longest_loss: time for which it goes on without the bus.
+  [[nodiscard]] bool begin_job(std::chrono::seconds longest_loss) {
     const std::lock_guard lock(mutex_);
-    return !has_power_ && !std::exchange(has_job_, true);
+    if (has_power_ || has_job_) {
+      return false;
+    }
+    has_job_ = true;
+    longest_loss_ = longest_loss;
+    return true;
   }
   void end_job() {
     const std::lock_guard lock(mutex_);
@@ -24,6 +31,11 @@ class BusSharing {
   [[nodiscard]] bool has_job() const {
     const std::lock_guard lock(mutex_);
     return has_job_;
+  }
+  /// Of the present job, in microseconds, or the last one.
+  [[nodiscard]] Microseconds longest_loss() const {
+    const std::lock_guard lock(mutex_);
+    return static_cast<Microseconds>(std::chrono::microseconds(longest_loss_).count());
   }
   /// Whether servos may get power now; then they are about to.
   [[nodiscard]] bool begin_power() {
@@ -49,6 +61,7 @@ class BusSharing {
  private:
   mutable std::mutex mutex_;
   bool has_job_ = false;
+  std::chrono::seconds longest_loss_{0};
   bool has_power_ = false;
   std::vector<host::Descriptor> programs_;
 };

@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -49,7 +50,7 @@ std::vector<std::string> take_lines(std::string& text) {
 
 ModuleJob::ModuleJob(unsigned number, ModuleJobPlan plan, std::string address, BusSharing& sharing)
     : number_(number), plan_(std::move(plan)), address_(std::move(address)), sharing_(sharing) {
-  if (!sharing_.begin_job()) {
+  if (!sharing_.begin_job(plan_.longest_loss)) {
     throw std::runtime_error("the servos have power; switch it off first");
   }
   try {
@@ -126,8 +127,25 @@ void ModuleJob::take_event(const std::string& line) {
   } else if (name == "question") {
     question_ = std::move(event);
     question_["number"] = ++questions_;
+  } else if (name == "ended") {
+    add_ended(event);
   } else {
     latest_[name] = std::move(event);
+  }
+}
+
+/// An update may have several parts, one module first: who comes later finds all modules that have ended.
+void ModuleJob::add_ended(const json& event) {
+  json& modules = latest_["ended"]["modules"];
+  for (const json& module : event.value("modules", json::array())) {
+    const auto same = std::find_if(modules.begin(), modules.end(), [&module](const json& one) {
+      return one.value("serial", json()) == module.value("serial", json());
+    });
+    if (same == modules.end()) {
+      modules.push_back(module);
+    } else {
+      *same = module;
+    }
   }
 }
 
@@ -186,6 +204,7 @@ void ModuleJob::answer(std::uint64_t question, const std::string& word) {
     throw std::runtime_error("the program takes no answer now");
   }
   question_ = json();
+  latest_.erase("refused");
 }
 
 void ModuleJob::end(const std::string& by) {

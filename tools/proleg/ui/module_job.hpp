@@ -2,6 +2,7 @@
 
 // A job on a bus that this program has open: one of our programs, a process of its own, that takes part in the bus.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -30,7 +31,8 @@ struct ModuleJobPlan {
   std::string shown;               ///< what does the same in a shell
   std::string by;                  ///< the viewer that has begun it
   Output output = Output::object;
-  bool opens_bus = false;  ///< it opens the bus itself; else it takes part in ours
+  bool opens_bus = false;                ///< it opens the bus itself; else it takes part in ours
+  std::chrono::seconds longest_loss{0};  ///< the line of a gateway ends for a while when its module is flashed
   /// With files of the job, and its working directory. Null: it works in `folder`.
   std::unique_ptr<ScratchFolder> files{};
   std::string folder;
@@ -74,6 +76,7 @@ class ModuleJob {
   bool take_output();
   bool take_errors();
   void take_event(const std::string& line);
+  void add_ended(const nlohmann::json& event);
   void finish();
   /// Texts name the bus as viewers know it, not as the program that has inherited it.
   [[nodiscard]] std::string with_address(std::string text) const;

@@ -25,6 +25,8 @@ constexpr std::chrono::milliseconds look_period{20};
 constexpr std::chrono::milliseconds draft_period{1000};
 /// Time without a driver after which a job ends that moves joints.
 constexpr std::chrono::milliseconds longest_absence{1000};
+/// The restart of a gateway with its trials, as `proleg flash` waits for it.
+constexpr std::chrono::seconds longest_loss_of_update{60};
 constexpr const char* store_object = "0x1010:1";
 constexpr const char* save_word = "0x65766173";
 
@@ -196,18 +198,22 @@ json ModulesSession::open(const host::OperationRequest& request) {
   if (options_.bus || table_) {
     throw std::runtime_error("the bus " + address() + " is open");
   }
-  const host::BusAddress::Kind kind = host::parse_bus_address(wanted).kind;
-  if (kind == host::BusAddress::Kind::automatic || kind == host::BusAddress::Kind::descriptor) {
-    throw InputError("bus", 0, in_quotes(wanted), "the address of one bus that this program can open");
-  }
-  if (!options_.opens_any_address && std::ranges::find(offers_, wanted) == offers_.end()) {
-    throw InputError("bus", 0, in_quotes(wanted),
-                     "an adapter of this computer: other computers may open this page, so it opens no other address");
-  }
+  require_openable(wanted);
   table_ = std::make_unique<TableBus>(wanted, sharing_, output_);
   found_ = json();
   publish();
   return json::object();
+}
+
+void ModulesSession::require_openable(const std::string& bus) const {
+  const host::BusAddress::Kind kind = host::parse_bus_address(bus).kind;
+  if (kind == host::BusAddress::Kind::automatic || kind == host::BusAddress::Kind::descriptor) {
+    throw InputError("bus", 0, in_quotes(bus), "the address of one bus that this program can open");
+  }
+  if (!options_.opens_any_address && std::ranges::find(offers_, bus) == offers_.end()) {
+    throw InputError("bus", 0, in_quotes(bus),
+                     "an adapter of this computer: other computers may open this page, so it opens no other address");
+  }
 }
 
 json ModulesSession::close_bus(const host::OperationRequest& /*request*/) {
@@ -220,12 +226,13 @@ json ModulesSession::close_bus(const host::OperationRequest& /*request*/) {
   }
   table_.reset();
   found_ = json();
+  output_.publish("bus", json());
   publish();
   return json::object();
 }
 
-std::unique_ptr<ModuleJob> ModulesSession::make_job(ModuleJobPlan plan) {
-  if (address().empty()) {
+std::unique_ptr<ModuleJob> ModulesSession::make_job(ModuleJobPlan plan, const std::string& bus) {
+  if (bus.empty()) {
     throw std::runtime_error("no bus is open");
   }
   wait_for_quiet_job();
@@ -233,16 +240,18 @@ std::unique_ptr<ModuleJob> ModulesSession::make_job(ModuleJobPlan plan) {
     throw std::runtime_error("another job goes on: " + job_->kind());
   }
   if (plan.shown.empty()) {
-    plan.shown = shown_command(plan.words, address());
+    plan.shown = shown_command(plan.words, bus);
   }
   if (!plan.files && plan.folder.empty()) {
     plan.folder = fs::absolute(options_.folder).string();
   }
-  return std::make_unique<ModuleJob>(last_job_ + 1, std::move(plan), address(), sharing_);
+  return std::make_unique<ModuleJob>(last_job_ + 1, std::move(plan), bus, sharing_);
 }
 
-json ModulesSession::begin(ModuleJobPlan plan) {
-  job_ = make_job(std::move(plan));
+json ModulesSession::begin(ModuleJobPlan plan) { return begin(std::move(plan), address()); }
+
+json ModulesSession::begin(ModuleJobPlan plan, const std::string& bus) {
+  job_ = make_job(std::move(plan), bus);
   last_job_ = job_->number();
   publish_job();
   return {{"job", job_->number()}};
@@ -250,7 +259,7 @@ json ModulesSession::begin(ModuleJobPlan plan) {
 
 json ModulesSession::begin_quietly(const host::OperationRequest& request, ModuleJobPlan plan,
                                    std::vector<std::string> then) {
-  std::unique_ptr<ModuleJob> job = make_job(std::move(plan));
+  std::unique_ptr<ModuleJob> job = make_job(std::move(plan), address());
   quiet_.emplace(QuietJob{std::move(job), request.request, std::move(then)});
   return answered_later();
 }
@@ -275,7 +284,13 @@ json ModulesSession::examine(const host::OperationRequest& request) {
   std::vector<std::string> words{"doctor", "--json"};
   add_algorithms(words);
   ModuleJobPlan plan = plan_of("examine", std::move(words), request);
-  plan.opens_bus = !address().empty() && is_for_several(address());
+  if (address().empty()) {
+    const std::string bus = word_in(request.arguments, "bus", "the address of a bus, since none is open");
+    require_openable(bus);
+    plan.opens_bus = true;
+    return begin(std::move(plan), bus);
+  }
+  plan.opens_bus = is_for_several(address());
   return begin(std::move(plan));
 }
 
@@ -373,7 +388,9 @@ json ModulesSession::flash(const host::OperationRequest& request) {
       words.emplace_back(option);
     }
   }
-  return begin(plan_of("flash", std::move(words), request, Output::events));
+  ModuleJobPlan plan = plan_of("flash", std::move(words), request, Output::events);
+  plan.longest_loss = longest_loss_of_update;
+  return begin(std::move(plan));
 }
 
 json ModulesSession::recover(const host::OperationRequest& request) {
@@ -397,7 +414,9 @@ json ModulesSession::recover(const host::OperationRequest& request) {
   if (flag_in(arguments, "dry_run")) {
     words.emplace_back("--dry-run");
   }
-  return begin(plan_of("recover", std::move(words), request, Output::events));
+  ModuleJobPlan plan = plan_of("recover", std::move(words), request, Output::events);
+  plan.longest_loss = longest_loss_of_update;
+  return begin(std::move(plan));
 }
 
 json ModulesSession::answer(const host::OperationRequest& request) {
@@ -479,7 +498,7 @@ void ModulesSession::look_for_modules_again() {
     return;
   }
   try {
-    quiet_.emplace(QuietJob{make_job(plan_of("scan", {"scan", "--json"}, {})), std::nullopt, {}});
+    quiet_.emplace(QuietJob{make_job(plan_of("scan", {"scan", "--json"}, {}), address()), std::nullopt, {}});
   } catch (const std::runtime_error&) {
     // The robot has got power meanwhile.
   }
@@ -488,7 +507,8 @@ void ModulesSession::look_for_modules_again() {
 void ModulesSession::take_found(const json& result) {
   if (result.is_object()) {
     found_ = {{"nodes", result.value("nodes", json::array())},
-              {"fresh_modules", result.value("modules_without_node_id", false)}};
+              {"fresh_modules", result.value("modules_without_node_id", false)},
+              {"duplicate_node_ids", result.value("duplicate_node_ids", json::array())}};
   }
 }
 
@@ -517,7 +537,7 @@ void ModulesSession::look_at_quiet_job() {
 
 void ModulesSession::go_on_quietly(const QuietJob& before) {
   try {
-    quiet_.emplace(QuietJob{make_job(plan_of("set", before.then, {}, Output::text)), before.request, {}});
+    quiet_.emplace(QuietJob{make_job(plan_of("set", before.then, {}, Output::text), address()), before.request, {}});
   } catch (const std::runtime_error& error) {
     output_.refuse(*before.request, error.what());
   }

@@ -80,8 +80,11 @@ class ModulesSession final : private SessionThread {
   [[nodiscard]] std::string address() const;
   /// The robot whose places can be given; null: there is none.
   [[nodiscard]] std::shared_ptr<const sim::Scenario> robot() const;
+  /// Throws InputError for the address of a bus that viewers may not open.
+  void require_openable(const std::string& bus) const;
   [[nodiscard]] nlohmann::json begin(ModuleJobPlan plan);
-  [[nodiscard]] std::unique_ptr<ModuleJob> make_job(ModuleJobPlan plan);
+  [[nodiscard]] nlohmann::json begin(ModuleJobPlan plan, const std::string& bus);
+  [[nodiscard]] std::unique_ptr<ModuleJob> make_job(ModuleJobPlan plan, const std::string& bus);
   nlohmann::json begin_quietly(const host::OperationRequest& request, ModuleJobPlan plan,
                                std::vector<std::string> then = {});
   /// Until the bus is free again of a quiet job, or of one that has just ended.

@@ -68,7 +68,7 @@ void TableBus::serve() {
   for (host::Descriptor& end : sharing_.take_programs()) {
     shared_.add(std::move(end));
   }
-  shared_.look_at_connection();
+  shared_.look_at_connection(sharing_.longest_loss());
   // Two programs that ask one module at a time get each other's answers.
   const bool has_job = sharing_.has_job();
   if (had_job_ && !has_job) {

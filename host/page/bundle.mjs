@@ -18,8 +18,9 @@ const tests = join(room, '../../tests/host/page');
 const largestFirstChunk = 40 * 1024;
 const largestMake = 60 * 1024; // the page Make
 const largestSearch = 30 * 1024; // the part Search of Make
+const largestModules = 30 * 1024; // the page Modules
 const largestEditor = 150 * 1024; // of sources, with CodeMirror
-const largestPage = 220 * 1024 + largestMake + largestSearch + largestEditor;
+const largestPage = 220 * 1024 + largestMake + largestSearch + largestModules + largestEditor;
 
 // Bytes of the player as it is in every exported recording.
 const largestPlayer = 800 * 1024;
@@ -71,6 +72,7 @@ function checkSizes(folder, first) {
   let compressedFirst = 0;
   let compressedMake = 0;
   let compressedSearch = 0;
+  let compressedModules = 0;
   let compressedEditor = 0;
   for (const name of readdirSync(folder).sort()) {
     const bytes = readFileSync(join(folder, name));
@@ -80,6 +82,7 @@ function checkSizes(folder, first) {
     compressedFirst += first.has(name) ? size : 0;
     compressedMake += name.startsWith('chunk-make_page-') ? size : 0;
     compressedSearch += name.startsWith('chunk-search_part-') ? size : 0;
+    compressedModules += name.startsWith('chunk-modules_page-') ? size : 0;
     compressedEditor += name.startsWith('chunk-code_mirror-') ? size : 0;
     print(name + (first.has(name) ? ' (first)' : ''), bytes.length, size);
   }
@@ -91,6 +94,7 @@ function checkSizes(folder, first) {
     ['the first chunk', compressedFirst, largestFirstChunk],
     ['the page Make', compressedMake, largestMake],
     ['the part Search', compressedSearch, largestSearch],
+    ['the page Modules', compressedModules, largestModules],
     ['the editor of sources', compressedEditor, largestEditor],
     ['the page', compressed, largestPage],
   ]) {

@@ -57,6 +57,8 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
   } else if (identifier::base_of(frame.identifier) != identifier::sdo_answer) {
     readings_.receive(now, frame);
     return;  // this is a request to the node, not an answer
+  } else if (node.state == canopen::NmtState::boot_up) {
+    node.state = canopen::NmtState::pre_operational;  // it follows by itself (CiA 301, figure 48)
   }
   node.last_heard = now;
   readings_.receive(now, frame);
@@ -101,6 +103,9 @@ void BusMonitor::read_values(Microseconds now) {
     if (is_silent(node, now)) {
       continue;
     }
+    if (!has_limit_.test(node.node)) {
+      read_limit(node);  // first: what is behind a reading without an answer is not made
+    }
     readings_.read(node.node, canopen::object::position_demand.address, [&node](const SdoResult& result) {
       node.setpoint = result.is_good() ? std::optional(static_cast<std::int32_t>(result.number())) : std::nullopt;
     });
@@ -125,9 +130,6 @@ void BusMonitor::read_values(Microseconds now) {
          [&node](std::uint32_t number) { node.temperature_c = static_cast<std::int32_t>(number); });
     read(canopen::object::error_register,
          [&node](std::uint32_t number) { node.error_register = static_cast<std::uint8_t>(number); });
-    if (!has_limit_.test(node.node)) {
-      read_limit(node);
-    }
   }
 }
 
@@ -139,17 +141,18 @@ void BusMonitor::read_limit(MonitoredNode& node) {
 }
 
 void BusMonitor::poll(Microseconds now) {
+  const bool may_read = reads_ && readings_.is_idle();
+  if (now >= next_touch_) {
+    next_touch_ = now + touch_period_us;
+    if (may_read && reads_touch_) {
+      read_touch(now);
+    }
+  }
   if (now >= next_reading_) {
     next_reading_ = now + reading_period_us;
     traffic_from_ = traffic_from_ == 0 ? now : traffic_from_;
-    if (reads_ && readings_.is_idle()) {
+    if (may_read) {
       read_values(now);
-    }
-  }
-  if (now >= next_touch_) {
-    next_touch_ = now + touch_period_us;
-    if (reads_ && reads_touch_ && readings_.is_idle()) {
-      read_touch(now);
     }
   }
   readings_.poll(now);

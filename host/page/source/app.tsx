@@ -4,6 +4,7 @@ import { render } from 'preact';
 import { addFront, pressEscape } from './view/front.js';
 import { listenToKeys } from './view/keyboard.js';
 import { addActions } from './view/page_actions.js';
+import { followPageHash, isPageHash } from './view/page_hash.js';
 import { addRobotActions } from './view/robot_actions.js';
 import { PageApp } from './page_app.js';
 import { Frame } from './frame.js';
@@ -15,7 +16,8 @@ import './view/theme.js';
 
 const recordingsPage = loadLater<PageStores>(() => import('./recordings/recordings_page.js').then((module) => module.RecordingsPage));
 const root = document.getElementById('app') as HTMLElement;
-const token = takeToken(location, history, sessionStorage);
+const hash = location.hash; // a token, or a page
+const token = takeToken(location, history, sessionStorage, isPageHash);
 
 if (token === null) {
   render(
@@ -39,5 +41,6 @@ if (token === null) {
     space: () => app.stop.press(),
     escape: () => pressEscape(app),
   });
+  followPageHash(app, hash, location, history);
   render(<Frame app={app} recordingsPage={recordingsPage} />, root);
 }

@@ -15,7 +15,9 @@ dialogs();
 // These pages are loaded when they are first shown.
 let wereRecordingsShown = false;
 let wasMakeShown = false;
+let wereModulesShown = false;
 const makePage = loadLater<PageStores>(() => import('./make/make_page.js').then((module) => module.MakePage));
+const modulesPage = loadLater<PageStores>(() => import('./modules/modules_page.js').then((module) => module.ModulesPage));
 
 // A page stays when another one is shown. `recordingsPage`: loads the page Recordings.
 export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage: () => Later<PageStores> }) {
@@ -23,6 +25,7 @@ export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage
   const isAlone = app.state.isAlone.value;
   if (page === 'recordings') wereRecordingsShown = true;
   if (page === 'make') wasMakeShown = true;
+  if (page === 'modules') wereModulesShown = true;
   const robot = app.state.robot.value;
   return (
     <>
@@ -46,6 +49,11 @@ export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage
         {wasMakeShown && (
           <div hidden={page !== 'make'}>
             <LaterView app={app} part={makePage()} wait="Loading …" />
+          </div>
+        )}
+        {wereModulesShown && (
+          <div hidden={page !== 'modules'}>
+            <LaterView app={app} part={modulesPage()} wait="Loading …" />
           </div>
         )}
       </main>

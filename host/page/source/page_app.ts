@@ -31,6 +31,7 @@ export class PageApp implements PageStores {
   readonly shownPage = signal<PageName>('live');
   readonly recordingActions = signal<ActionList | null>(null);
   readonly makeActions = signal<ActionList | null>(null);
+  readonly modulesActions = signal<ActionList | null>(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly mover: MoveTool;
@@ -69,7 +70,7 @@ export class PageApp implements PageStores {
       if (needsAlgorithm.value) this.shownPage.value = 'make';
     });
     effect(() => {
-      if (this.state.isAlone.value) this.shownPage.value = needsAlgorithm.peek() ? 'make' : 'recordings';
+      if (this.state.isAlone.value && this.shownPage.peek() !== 'modules') this.shownPage.value = needsAlgorithm.peek() ? 'make' : 'recordings';
     });
     effect(() => {
       if (!this.poses.isPossible) this.poses.forget();
@@ -88,7 +89,7 @@ export class PageApp implements PageStores {
 
   // The actions of the page that is shown, which keys and the palette find.
   get shownActions(): ActionList {
-    const own = { live: null, recordings: this.recordingActions.value, make: this.makeActions.value };
+    const own = { live: null, recordings: this.recordingActions.value, make: this.makeActions.value, modules: this.modulesActions.value };
     return own[this.shownPage.value] ?? this.actions;
   }
 

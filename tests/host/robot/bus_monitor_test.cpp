@@ -112,5 +112,47 @@ TEST_F(BusMonitorTest, ReadsNothingWhileTheBusBelongsToTheMaster) {
   EXPECT_EQ(bus.sent_frames(), 0U);
 }
 
+TEST_F(BusMonitorTest, ReadsWhatOnlyMonitoringFramesHaveInOperation) {
+  bus.run_for(2 * second);
+  for (const MonitoredNode& node : monitor.nodes()) {
+    EXPECT_EQ(node.temperature_c, 25) << "node " << int{node.node};
+    EXPECT_TRUE(node.current_ma) << "node " << int{node.node};
+    EXPECT_EQ(node.error_register, 0) << "node " << int{node.node};
+    EXPECT_FALSE(node.contacts) << "touch sensors are read only if they are wanted";
+  }
+}
+
+TEST_F(BusMonitorTest, ReadsTheTouchSensorsTenTimesASecondIfTheyAreWanted) {
+  RequestCount touch{canopen::object::touch_sensors.address};
+  bus.attach(touch);
+  monitor.set_reads_touch(true);
+  bus.run_for(10 * second);
+  for (const MonitoredNode& node : monitor.nodes()) {
+    EXPECT_TRUE(node.contacts) << "node " << int{node.node};
+  }
+  EXPECT_NEAR(touch.count(), 500, 60);
+  monitor.set_reads(false);
+  const unsigned before = touch.count();
+  bus.run_for(2 * second);
+  EXPECT_LE(touch.count(), before + 5);
+  bus.detach(touch);
+}
+
+TEST_F(BusMonitorTest, AModuleThatAnswersAfterItHasBootedIsPreOperational) {
+  bus.run_for(2 * second);
+  monitor.receive(bus.now(), canopen::encode(canopen::Heartbeat{1, canopen::NmtState::boot_up}));
+  EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::boot_up);
+  bus.run_for(second);
+  EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::pre_operational);
+}
+
+TEST_F(BusMonitorTest, ForgetsNodesThatAreSilentOnlyWhenAsked) {
+  bus.run_for(2 * second);
+  monitor.forget_silent(bus.now());
+  EXPECT_EQ(monitor.nodes().size(), 5U);
+  monitor.forget_silent(bus.now() + 4 * second);
+  EXPECT_TRUE(monitor.nodes().empty());
+}
+
 }  // namespace
 }  // namespace proleg::test

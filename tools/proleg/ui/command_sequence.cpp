@@ -18,7 +18,7 @@ std::string last_line_of(std::string_view output) {
   return last;
 }
 
-std::string message_of(const std::string& line) {
+std::string without_program_name(const std::string& line) {
   const std::size_t name_end = line.starts_with("proleg ") ? line.find(": ") : std::string::npos;
   return name_end == std::string::npos ? line : line.substr(name_end + 2);
 }

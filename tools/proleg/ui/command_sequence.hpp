@@ -16,7 +16,7 @@ namespace proleg::tools {
 [[nodiscard]] std::string last_line_of(std::string_view output);
 
 /// A message of one of our programs without the name of the program: "TEXT" of "proleg optimise: TEXT".
-[[nodiscard]] std::string message_of(const std::string& line);
+[[nodiscard]] std::string without_program_name(const std::string& line);
 
 /// Programs that run one after the other, up to the first one that fails, within a time.
 class CommandSequence {

@@ -17,7 +17,7 @@ std::optional<JsonProgram::End> JsonProgram::look() {
   if (nlohmann::json object = nlohmann::json::parse(program_->output(), nullptr, false); object.is_object()) {
     return End{std::move(object), ""};
   }
-  const std::string line = message_of(last_line_of(program_->errors()));
+  const std::string line = without_program_name(last_line_of(program_->errors()));
   return End{nullptr, line.empty() ? "it ended with status " + std::to_string(end->status) : line};
 }
 

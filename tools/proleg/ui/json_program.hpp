@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/proleg/common/temporary_folder.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 #include "tools/proleg/ui/command_sequence.hpp"
 
 namespace proleg::tools {
@@ -30,7 +30,7 @@ class JsonProgram {
   [[nodiscard]] std::optional<End> look();
 
  private:
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::unique_ptr<CommandSequence> program_;
 };
 

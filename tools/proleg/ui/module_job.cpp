@@ -171,7 +171,7 @@ std::string ModuleJob::failure() const {
     return {};
   }
   if (!lines_.empty()) {
-    return message_of(lines_.back());
+    return without_program_name(lines_.back());
   }
   return *status_ < first_signal_status
              ? "the program has ended with status " + std::to_string(*status_)

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tools/proleg/common/child_program.hpp"
-#include "tools/proleg/common/temporary_folder.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 #include "tools/proleg/ui/bus_sharing.hpp"
 
 namespace proleg::tools {
@@ -32,7 +32,7 @@ struct ModuleJobPlan {
   Output output = Output::object;
   bool opens_bus = false;  ///< it opens the bus itself; else it takes part in ours
   /// With files of the job, and its working directory. Null: it works in `folder`.
-  std::unique_ptr<TemporaryFolder> files{};
+  std::unique_ptr<ScratchFolder> files{};
   std::string folder;
 };
 

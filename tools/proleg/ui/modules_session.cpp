@@ -343,7 +343,7 @@ json ModulesSession::assign(const host::OperationRequest& request) {
   constexpr double smallest = 1;  // of proleg assign
   constexpr double largest = 30;
   const std::string amplitude = number_in(request.arguments, "amplitude", "degrees", smallest, largest).value_or("5");
-  auto files = std::make_unique<TemporaryFolder>();
+  auto files = std::make_unique<ScratchFolder>();
   const std::string top = scenario->sources.front().path;
   const std::string file = copy_sources(scenario->sources, files->path() / "scenario").at(top);
   std::vector<std::string> words{"assign", file, "--json-lines", "--amplitude", amplitude};

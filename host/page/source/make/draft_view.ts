@@ -1,18 +1,15 @@
 // The robot of the draft for the panels that show a robot: it stands at its start, and its path is the foresight. Or it moves,
 // and beside it a candidate of a search.
 import { computed, effect, signal } from '@preact/signals-core';
-import { TelemetryHistory } from '../data/telemetry_history.js';
+import type { TelemetryHistory } from '../data/telemetry_history.js';
 import { ActionList } from '../state/actions.js';
 import type { PageState } from '../state/page_state.js';
 import { SignalSelection } from '../state/signal_selection.js';
 import { TimeView, type ShownTime } from '../state/time_view.js';
 import type { Choice, RobotView } from '../view/robot_view.js';
-import type { RobotDocument, Signal, TelemetryDocument } from '../wire/messages.js';
-import { rowLayout } from '../wire/subscription.js';
+import { StillRows } from '../view/still_rows.js';
+import type { RobotDocument, TelemetryDocument } from '../wire/messages.js';
 import type { MotionPair } from './search/motion.js';
-
-const micrometre = 1e-6;
-const quaternionUnit = 2 ** 30;
 
 export class DraftView implements RobotView {
   readonly state = {
@@ -34,10 +31,9 @@ export class DraftView implements RobotView {
   readonly selection = new SignalSelection();
   readonly tickRate = 100;
   readonly wholePath = computed<Float64Array | null>(() => this.motion.value?.wholePath ?? this.foresight.value);
-  private readonly start = new TelemetryHistory();
+  private readonly start = new StillRows();
   private readonly noTime = new TimeView();
   private readonly foresight = signal<Float64Array | null>(null);
-  private run = 0;
 
   constructor(
     page: PageState,
@@ -50,7 +46,7 @@ export class DraftView implements RobotView {
       const meshes = page.draftMeshes.value;
       const head = page.draft.value?.head;
       if (robot === null || head === undefined) return;
-      this.place(head, robot.joints.length);
+      this.start.place(head, robot.joints.length);
       this.state.robot.value = { ...robot, meshes: [...meshes] };
     });
     effect(() => {
@@ -64,7 +60,7 @@ export class DraftView implements RobotView {
   }
 
   get history(): TelemetryHistory {
-    return this.motion.peek()?.draft.rows ?? this.start;
+    return this.motion.peek()?.draft.rows ?? this.start.history;
   }
 
   get sampledRows(): TelemetryHistory {
@@ -77,20 +73,5 @@ export class DraftView implements RobotView {
 
   get newestTick(): number {
     return this.motion.peek()?.time.last ?? 0;
-  }
-
-  // One row: the robot at its start, straight.
-  private place(head: readonly number[], joints: number): void {
-    const signals: Signal[] = [
-      { name: 'head', unit: '', scale: 1, count: 7, of: 'robot' },
-      { name: 'angle', unit: 'degree', scale: 1, count: joints, of: 'joint' },
-    ];
-    const values = Int32Array.from([
-      ...head.map((value, i) => Math.round(value / (i < 3 ? micrometre : 1 / quaternionUnit))),
-      ...new Array<number>(joints).fill(0),
-    ]);
-    this.run += 1;
-    const message = { subscription: 0, tick: 0, rows: 1, stride: 1, run: this.run, hasGap: false, width: values.length, values };
-    this.start.append(message, rowLayout(signals));
   }
 }

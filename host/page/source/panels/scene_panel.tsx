@@ -24,6 +24,9 @@ function remedy(reason: string): string {
     : '';
 }
 
+// What keys do with the view that shows a robot now: a page may close its view and open another one.
+const views = new WeakMap<RobotView, { follow(): void; reset(): void }>();
+
 // `problem`: why the robot does not move as it should; null: it does.
 export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: string | null }) {
   const holder = useRef<HTMLDivElement>(null);
@@ -113,6 +116,10 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
       }),
       followPose(app, send, readout),
     ];
+    views.set(app, {
+      follow: () => send({ kind: 'follow', isOn: !isFollowing.peek() }),
+      reset: () => send({ kind: 'reset_view' }),
+    });
     app.actions.find('follow') ??
       app.actions.add(
         {
@@ -120,14 +127,14 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
           title: '3D view: follow the robot, or stay',
           group: 'View',
           keys: ['F'],
-          run: () => post.current({ kind: 'follow', isOn: !isFollowing.peek() }),
+          run: () => views.get(app)?.follow(),
         },
         {
           id: 'reset_view',
           title: '3D view: back to the start',
           group: 'View',
           keys: ['H'],
-          run: () => post.current({ kind: 'reset_view' }),
+          run: () => views.get(app)?.reset(),
         },
       );
     return () => {

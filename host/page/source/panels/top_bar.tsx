@@ -33,11 +33,13 @@ function RobotName({ state }: { state: PageState }) {
   const isConnected = state.isConnected.value;
   const isAlone = state.isAlone.value;
   const badge = robot !== null ? badges[robot.kind] : isAlone ? badges.recording : null;
+  // Beside a simulated robot a bus may be open for its modules only.
+  const address = robot?.kind === 'bus' ? state.bus.value?.address : '';
   return (
     <div class="robot-name">
       {badge !== null && (
-        <strong class={`badge ${robot?.kind ?? 'recording'}`} title={`${badge.title} ${state.bus.value?.address ?? ''}`}>
-          {badge.text} {state.bus.value?.address}
+        <strong class={`badge ${robot?.kind ?? 'recording'}`} title={`${badge.title} ${address ?? ''}`}>
+          {badge.text} {address}
         </strong>
       )}
       <span class="name" title={robot?.file}>
@@ -182,20 +184,22 @@ function PageButton({ app, page, title, number }: { app: Stores<'shownPage'>; pa
 }
 
 export function TopBar({ app }: { app: Stores<'operations' | 'shownPage' | 'state' | 'stop'> }) {
-  // If there are only recordings, there is no robot to stop until one of them is continued.
+  // If there are only recordings, there is nothing to stop until one of them is continued, or modules are on an open bus.
   const isAlone = app.state.isAlone.value;
+  const hasBus = (app.state.modules.value?.bus ?? null) !== null;
   return (
     <header class="top-bar">
       <nav aria-label="Pages">
         {!isAlone && <PageButton app={app} page="live" title="Live" number={1} />}
         <PageButton app={app} page="recordings" title="Recordings" number={2} />
         {app.state.hasMake.value && <PageButton app={app} page="make" title="Make" number={3} />}
+        {app.state.modules.value !== null && <PageButton app={app} page="modules" title="Modules" number={4} />}
       </nav>
       <RobotName state={app.state} />
       <Figures state={app.state} />
       <Control app={app} />
       <PageTools />
-      {!isAlone && <Stop app={app} />}
+      {(!isAlone || hasBus) && <Stop app={app} />}
     </header>
   );
 }

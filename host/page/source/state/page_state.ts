@@ -16,6 +16,8 @@ import type {
   MissingAlgorithms,
   PartsDocument,
   Mesh,
+  ModuleJob,
+  ModulesDocument,
   ControlDocument,
   InternalValue,
   NoticeMessage,
@@ -83,6 +85,9 @@ export class PageState {
   // Searches for a gait; null until somebody has looked.
   readonly searches = signal<SearchesDocument | null>(null);
   readonly searchMethods = signal<SearchMethodsDocument | null>(null);
+  // Modules on a bus, and the last job with them.
+  readonly modules = signal<ModulesDocument | null>(null);
+  readonly moduleJob = signal<ModuleJob | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -211,6 +216,12 @@ export class PageState {
           break;
         case 'search_methods':
           this.searchMethods.value = message.value;
+          break;
+        case 'modules':
+          this.modules.value = message.value;
+          break;
+        case 'module_job':
+          this.moduleJob.value = message.value;
           break;
       }
     }

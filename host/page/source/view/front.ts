@@ -28,6 +28,8 @@ export function closeFront(): boolean {
 }
 
 export function pressEscape({ operations, state, stop }: Stores<'operations' | 'state' | 'stop'>): void {
+  // While joints move on the table, whatever the page shows.
+  if (state.moduleJob.peek()?.kind === 'assign' && state.moduleJob.peek()?.state !== 'ended') return stop.press();
   // In a simulation nothing can be hurt while something is closed first. A program without a robot can only become one.
   const isSimulation = state.robot.peek()?.kind === 'simulation' || state.isAlone.peek();
   if (isSimulation && closeFront()) return;

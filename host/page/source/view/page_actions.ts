@@ -229,6 +229,14 @@ export function addActions(app: PageStores): void {
       run: () => void (app.shownPage.value = 'make'),
     },
     {
+      id: 'modules_page',
+      title: 'Page Modules',
+      group: 'Page',
+      keys: ['4'],
+      isShown: () => state.modules.value !== null,
+      run: () => void (app.shownPage.value = 'modules'),
+    },
+    {
       id: 'value_table',
       title: 'Table of all values: copy and paste as in a spreadsheet',
       group: 'Parameters',

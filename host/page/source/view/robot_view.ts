@@ -57,7 +57,7 @@ export interface RobotView {
   startSceneWorker(): Worker;
 }
 
-export type PageName = 'live' | 'recordings' | 'make';
+export type PageName = 'live' | 'recordings' | 'make' | 'modules';
 
 export interface PageStores extends RobotView {
   readonly state: PageState;
@@ -71,6 +71,7 @@ export interface PageStores extends RobotView {
   readonly shownPage: Signal<PageName>;
   readonly recordingActions: Signal<ActionList | null>; // of the recording on the page Recordings
   readonly makeActions: Signal<ActionList | null>; // of the page Make
+  readonly modulesActions: Signal<ActionList | null>; // of the page Modules
   readonly shownActions: ActionList; // of the page that is shown, for keys and the palette
   // A number for changes that undo takes back together.
   newGesture(): number;

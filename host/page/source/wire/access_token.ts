@@ -3,10 +3,10 @@
 
 const key = 'proleg.token';
 
-// Takes the token; null if neither the address nor the storage has one.
-export function takeToken(location: Location, history: History, storage: Storage): string | null {
+// Takes the token; null if neither the address nor the storage has one. `isOther`: whether a fragment with its # is something else.
+export function takeToken(location: Location, history: History, storage: Storage, isOther: (hash: string) => boolean = () => false): string | null {
   const fragment = location.hash.slice(1);
-  if (fragment !== '') {
+  if (fragment !== '' && !isOther(location.hash)) {
     storage.setItem(key, fragment);
     history.replaceState(null, '', location.pathname + location.search);
   }

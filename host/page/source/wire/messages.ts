@@ -19,10 +19,12 @@ import type {
   RunDocument,
   ServoDocument,
 } from './make_messages.js';
+import type { ModuleJob, ModuleOperations, ModulesDocument } from './module_messages.js';
 import type { InternalValue, Parameter, PoseArray } from './robot_messages.js';
 import type { Experiment, SearchEngine, SearchesDocument, SearchMethodsDocument } from './search_messages.js';
 
 export type * from './make_messages.js';
+export type * from './module_messages.js';
 export type * from './robot_messages.js';
 export type * from './search_messages.js';
 
@@ -219,6 +221,7 @@ export interface BusModule {
   advice: string | null; // what to do
   silent: boolean;
   stop_confirmed: boolean | null; // whether the module has confirmed the last STOP
+  contacts?: number | null; // bits 0, 1: rear and front sensor of the link behind the joint; 2, 3: of the link in front, at the head
 }
 
 export interface BusDocument {
@@ -293,12 +296,14 @@ export interface Documents {
   robot: RobotDocument;
   parameters: (Parameter | InternalValue)[];
   session: SessionDocument;
-  bus: BusDocument;
+  bus: BusDocument | null; // null: no bus is open
   control: ControlDocument;
   telemetry: TelemetryDocument;
   remote: RemoteDocument;
   remote_values: RemoteValues;
   recordings: RecordingsDocument;
+  modules: ModulesDocument;
+  module_job: ModuleJob | null; // null: there was none yet
 }
 
 export type DocumentMessage = {
@@ -355,7 +360,7 @@ export interface FileDiffEntry {
   joints: number[];
 }
 
-export interface Operations {
+export interface Operations extends ModuleOperations {
   'algorithm.refresh': Record<string, never>;
   'algorithm.read': { folder: string };
   'algorithm.create': AlgorithmForm;

@@ -1,7 +1,9 @@
 #include "tools/proleg/common/child_program.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -95,6 +97,22 @@ TEST(ChildProgram, EndsAlsoIfItIgnoresTheRequest) {
   }
   child.end();
   EXPECT_EQ(wait_for(child).status, 128 + SIGKILL);
+}
+
+TEST(ChildProgram, TakesLinesAndADescriptor) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const auto child = ChildProgram::with_input({"sh", "-c", "read word; echo got $word; echo from 3 >&3"}, "/", ends[1]);
+  close(ends[1]);
+  EXPECT_TRUE(child->write_line("a b"));
+  const Ended ended = wait_for(*child);
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.output, "got a b\n");
+  std::array<char, 16> text{};
+  EXPECT_EQ(::read(ends[0], text.data(), text.size()), 7);
+  EXPECT_EQ(std::string(text.data()), "from 3\n");
+  close(ends[0]);
+  EXPECT_FALSE(child->write_line("more")) << "it has ended: this program gets no signal";
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Printed {
 };
 
 /// A program that reports an event and its result.
-Printed run(std::vector<std::string> words, const Json& event_value = 3) {
+Printed output_of_report(std::vector<std::string> words, const Json& event_value = 3) {
   words.insert(words.begin(), "test");
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -37,25 +37,25 @@ Printed run(std::vector<std::string> words, const Json& event_value = 3) {
   return {status, testing::internal::GetCapturedStdout()};
 }
 
-TEST(ProgramReport, IsTextUnlessAnOptionAsksForJson) { EXPECT_EQ(run({}).output, ""); }
+TEST(ProgramReport, IsTextUnlessAnOptionAsksForJson) { EXPECT_EQ(output_of_report({}).output, ""); }
 
-TEST(ProgramReport, IsOneObjectWithJson) { EXPECT_EQ(run({"--json"}).output, "{\n  \"joints\": 2\n}\n"); }
+TEST(ProgramReport, IsOneObjectWithJson) { EXPECT_EQ(output_of_report({"--json"}).output, "{\n  \"joints\": 2\n}\n"); }
 
 TEST(ProgramReport, IsALineForEachEventWithJsonLinesAndTheResultIsTheLast) {
-  EXPECT_EQ(run({"--json-lines"}).output,
+  EXPECT_EQ(output_of_report({"--json-lines"}).output,
             "{\"event\":\"moves\",\"node\":3}\n{\"event\":\"result\",\"value\":{\"joints\":2}}\n");
-  EXPECT_EQ(run({"--json-lines"}).status, exit_failed) << "the result does not change the exit status";
+  EXPECT_EQ(output_of_report({"--json-lines"}).status, exit_failed) << "the result does not change the exit status";
 }
 
 TEST(ProgramReport, TakesOneOfTheTwoOptions) {
-  EXPECT_EQ(run({"--json", "--json-lines"}).status, exit_bad_input);
-  EXPECT_EQ(run({"--json", "--json-lines"}).output, "");
+  EXPECT_EQ(output_of_report({"--json", "--json-lines"}).status, exit_bad_input);
+  EXPECT_EQ(output_of_report({"--json", "--json-lines"}).output, "");
 }
 
 /// Unicode has line ends that some readers of lines take for the end of one; and bytes of a file name may be no text.
 TEST(ProgramReport, AnEventIsOneLineOfAsciiWhateverTheNamesInItAre) {
   for (const char* const name : {"J\n1", "J\xE2\x80\xA8", "J\xC2\x85", "J\xFF", "J\"1\""}) {
-    const std::string output = run({"--json-lines"}, name).output;
+    const std::string output = output_of_report({"--json-lines"}, name).output;
     EXPECT_EQ(std::ranges::count(output, '\n'), 2) << output;
     EXPECT_TRUE(std::ranges::all_of(output, [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); })) << output;
   }

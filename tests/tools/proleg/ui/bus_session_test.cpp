@@ -124,7 +124,7 @@ class BusSessionTest : public ::testing::Test {
   }
   void SetUp() override {
     requests_.holder_changed(true, false);
-    session_.emplace(scenario_, bus_, "a test", BusSessionOptions{folder_ / "", "test"}, requests_, viewers_);
+    session_.emplace(scenario_, bus_, "a test", BusSessionOptions{folder_ / "", "test"}, sharing_, requests_, viewers_);
     wait_for_drives("no power");
   }
 
@@ -137,6 +137,7 @@ class BusSessionTest : public ::testing::Test {
   SessionRequests requests_;
   BusViewers viewers_;
   host::RequestId request_ = 0;
+  BusSharing sharing_;
   std::optional<BusSession> session_;
 };
 

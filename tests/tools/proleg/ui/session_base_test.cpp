@@ -14,9 +14,10 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   SessionRequests gallery;
   SessionRequests algorithms;
   SessionRequests searches;
+  SessionRequests modules;
   SessionRequests remote;
   SessionRequests robot;
-  SessionRouter router(recordings, draft, meshes, gallery, algorithms, searches, remote, robot);
+  SessionRouter router(recordings, draft, meshes, gallery, algorithms, searches, modules, remote, robot);
   router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
   router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
   router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
@@ -26,7 +27,9 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   router.operate({7, "algorithm.build", nlohmann::json::object(), 1, "a test"});
   router.operate({8, "mesh.begin", nlohmann::json::object(), 1, "a test"});
   router.operate({9, "search.open", nlohmann::json::object(), 1, "a test"});
+  router.operate({10, "modules.scan", nlohmann::json::object(), 1, "a test"});
   router.holder_changed(true, false);
+  EXPECT_EQ(modules.take_operation()->request, 10U);
   EXPECT_EQ(searches.take_operation()->request, 9U);
   EXPECT_EQ(meshes.take_operation()->request, 8U);
   EXPECT_EQ(algorithms.take_operation()->request, 7U);
@@ -42,11 +45,13 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   EXPECT_FALSE(recordings.take_operation());
   EXPECT_TRUE(robot.take_holder().is_there);
   EXPECT_TRUE(remote.take_holder().is_there);
+  EXPECT_TRUE(modules.take_holder().is_there);
   router.stop({6, "a test"});
   std::deque<host::OperationRequest> outdated;
   EXPECT_TRUE(recordings.take_stops(outdated).empty());
   EXPECT_EQ(robot.take_stops(outdated).size(), 1U);
   EXPECT_EQ(remote.take_stops(outdated).size(), 1U);
+  EXPECT_EQ(modules.take_stops(outdated).size(), 1U);
 }
 
 TEST(Argument, IsTakenOnlyIfItsTypeHasIt) {

@@ -1,4 +1,4 @@
-#include "tools/proleg/common/temporary_folder.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 
 #include <cstdlib>
 #include <stdexcept>
@@ -7,7 +7,7 @@
 
 namespace proleg::tools {
 
-TemporaryFolder::TemporaryFolder() {
+ScratchFolder::ScratchFolder() {
   const std::filesystem::path parent = std::filesystem::temp_directory_path();
   std::string folder = (parent / "proleg_XXXXXX").string();
   if (mkdtemp(folder.data()) == nullptr) {
@@ -16,7 +16,7 @@ TemporaryFolder::TemporaryFolder() {
   path_ = folder;
 }
 
-TemporaryFolder::~TemporaryFolder() {
+ScratchFolder::~ScratchFolder() {
   std::error_code error;  // what is left does no harm
   std::filesystem::remove_all(path_, error);
 }

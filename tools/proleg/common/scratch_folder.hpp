@@ -5,13 +5,13 @@
 namespace proleg::tools {
 
 /// A new folder for files of this program, among the system's temporary files. It is removed with this object.
-class TemporaryFolder {
+class ScratchFolder {
  public:
   /// Throws std::runtime_error if it cannot be made.
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 

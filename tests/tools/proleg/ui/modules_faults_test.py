@@ -13,6 +13,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -139,7 +140,8 @@ def session(table):
 
 # 1. The robot of the program
 
-def test_the_robot_of_the_program_is_driven_and_its_modules_are_worked_on(_):
+@slow
+def test_the_robot_of_the_program_is_driven_and_its_modules_are_worked_on():
     with page("--shuffle", "3", is_fixed=True) as (table, bus):
         modules = table.document("modules")
         assert modules["is_fixed"] is True and modules["bus"] == bus.address, modules
@@ -182,7 +184,7 @@ def test_the_robot_of_the_program_is_driven_and_its_modules_are_worked_on(_):
                    lambda: table.document("bus"))
 
 
-def test_stop_and_a_page_that_closes_end_an_assign_of_the_robot(_):
+def test_stop_and_a_page_that_closes_end_an_assign_of_the_robot():
     with page(is_fixed=True) as (table, bus):
         wait_until(lambda: len(table.fresh("bus")["modules"]) == 5, lambda: table.document("bus"))
         begin_assign(table, bus)
@@ -206,7 +208,8 @@ def test_stop_and_a_page_that_closes_end_an_assign_of_the_robot(_):
 
 # 2. Virtual chips, flash, recover
 
-def test_virtual_chips_and_native_modules_are_one_bus(_):
+@slow
+def test_virtual_chips_and_native_modules_are_one_bus():
     with page("--modules", "1,3=mcu") as (table, bus):
         scan = table.do("modules.scan")
         assert [node["node"] for node in scan["result"]["nodes"]] == [1, 2, 3, 4, 5], scan
@@ -233,7 +236,8 @@ def test_virtual_chips_and_native_modules_are_one_bus(_):
         assert found, found
 
 
-def test_modules_that_are_broken_come_back(_):
+@slow
+def test_modules_that_are_broken_come_back():
     broken = {1: "hangs", 2: "faults", 3: "no-program", 4: "newer-settings", 5: "duplicate:4"}
     with page(*(word for node, kind in broken.items() for word in ("--broken", f"{node}={kind}"))) as (table, bus):
         image = make_image(table, "0.2.0")
@@ -248,12 +252,12 @@ def test_modules_that_are_broken_come_back(_):
         assert again["status"] == 0 and again["result"]["well"], again
 
 
-def test_a_flash_in_which_a_module_fails_says_which_one(_):
-    with page("--broken", "2=hangs") as (table, bus):
+@slow
+def test_a_flash_in_which_a_module_fails_says_which_one():
+    with page("--broken", "2=hangs") as (table, bus):  # it is there only while its bootloader is
         image = make_image(table, "0.2.0")
         job = table.do("modules.flash", image=image, nodes="1,2,3")
-        assert job["state"] == "ended" and (job["result"] or job["error"]), job
-        print("   flash with a module that hangs:", job["status"], job["error"], job["lines"][-3:])
+        assert job["status"] == 0 and len(job["result"]["modules"]) == 3 or "node 2" in job["error"], job
     with page() as (table, bus):
         foreign = make_image(table, "0.3.0", board=2)
         job = table.do("modules.flash", image=foreign)
@@ -262,7 +266,7 @@ def test_a_flash_in_which_a_module_fails_says_which_one(_):
         assert job["status"] == 1 and job["result"] is None and "node 9" in job["error"], job
 
 
-def test_a_flash_goes_on_without_its_page(_):
+def test_a_flash_goes_on_without_its_page():
     with page() as (table, bus):
         image = make_image(table, "0.4.0", program(4, 80_000))
         table.must("modules.flash", image=image)
@@ -273,6 +277,31 @@ def test_a_flash_goes_on_without_its_page(_):
         job = table.job()
         assert job["status"] == 0 and job["ended_by"] is None, job
         assert all(module["good"] for module in job["result"]["modules"]), job
+
+
+@slow
+def test_stop_does_not_disturb_a_job_in_which_no_joint_moves():
+    with page() as (table, bus):
+        image = make_image(table, "0.4.0", program(4, 80_000))
+        assert table.do("modules.save", file="a.params")["status"] == 0
+        for kind, arguments in (("flash", {"image": image}), ("load", {"file": "a.params", "store": True}),
+                                ("save", {"file": "b.params"}), ("recover", {"wait": 2})):
+            number = table.must(f"modules.{kind}", **arguments)["job"]
+            while table.fresh("module_job")["state"] == "running":
+                table.viewer.send({"type": "stop"})
+                time.sleep(0.1)
+            job = table.job(lambda job: job["number"] == number and job["state"] == "ended")
+            assert job["status"] == 0 and job["ended_by"] is None, job
+        all_without_power(bus)
+
+
+@slow
+def test_a_bus_that_says_nothing_is_no_bus():
+    """The other end takes the connection, and is silent."""
+    with project() as folder, Table(folder) as table, socket.create_server(("127.0.0.1", 0)) as silent:
+        refusal = table.refused("modules.open", bus=f"tcp:127.0.0.1:{silent.getsockname()[1]}")
+        print("  ", refusal)
+        assert table.fresh("modules")["bus"] is None
 
 
 # 3. The doctor
@@ -293,7 +322,6 @@ class Sender:
         self.line = socket.create_connection((host, int(port)))
         self.line.sendall(b"C\rS8\rO\r")
         self.ends = False
-        import threading
         self.thread = threading.Thread(target=self.run, args=(frames, period_s), daemon=True)
         self.thread.start()
 
@@ -335,7 +363,7 @@ def the_same_findings(table, bus, expected):
 
 
 @slow
-def test_the_doctor_says_what_it_says_in_a_shell(_):
+def test_the_doctor_says_what_it_says_in_a_shell():
     heartbeat = lambda _: b"t77F105\r"
     with page("--fresh", "3") as (table, bus):
         the_same_findings(table, bus, "module_without_node_id")
@@ -368,7 +396,8 @@ def vanish(bus):
     bus.process.kill()
 
 
-def test_a_bus_that_vanishes_ends_each_job_with_a_line(_):
+@slow
+def test_a_bus_that_vanishes_ends_each_job_with_a_line():
     with project() as folder, Table(folder) as table:
         image = None
         for kind in ("none", "scan", "read", "save", "assign", "flash", "set", "examine"):
@@ -417,7 +446,8 @@ def test_a_bus_that_vanishes_ends_each_job_with_a_line(_):
 
 # 5. The program is killed
 
-def test_the_program_ends_in_the_middle_of_a_job(_):
+@slow
+def test_the_program_ends_in_the_middle_of_a_job():
     for number in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM):
         for kind in ("assign", "flash"):
             with page() as (table, bus):
@@ -446,7 +476,7 @@ def test_the_program_ends_in_the_middle_of_a_job(_):
 
 # 6. A program of a job is killed
 
-def test_a_program_that_is_killed_ends_its_job_alone(_):
+def test_a_program_that_is_killed_ends_its_job_alone():
     with page("--broken", "2=newer-settings") as (table, bus):
         image = make_image(table, "0.4.0", program(4, 80_000))
         for kind, arguments in (("scan", {}), ("examine", {}), ("save", {"file": "a.params"}), ("save", {"file": "b.params"}),
@@ -497,7 +527,7 @@ GOOD = {"nodes": ("1,3", "all", "1-5", None), "node": (), "bus": (), "file": (),
         "amplitude": (None,), "wait": (None,), "serials": (None,), "job": (), "question": (), "word": ()}
 
 
-def test_words_of_a_malicious_page_begin_nothing(_):
+def test_words_of_a_malicious_page_begin_nothing():
     with page() as (table, bus):
         image = make_image(table, "0.2.0")
         (table.folder / "link.params").symlink_to("/etc/passwd")
@@ -542,7 +572,7 @@ def test_words_of_a_malicious_page_begin_nothing(_):
         all_without_power(bus)
 
 
-def test_without_the_lease_nothing_is_changed(_):
+def test_without_the_lease_nothing_is_changed():
     with page() as (table, bus):
         image = make_image(table, "0.2.0")
         other = Viewer(int(table.port), table.token, "other")
@@ -565,7 +595,8 @@ def test_without_the_lease_nothing_is_changed(_):
 
 # 8. Two viewers
 
-def test_another_viewer_takes_over_an_assign(_):
+@slow
+def test_another_viewer_takes_over_an_assign():
     with page("--shuffle", "5") as (table, bus):
         number = begin_assign(table, bus)
         other = Viewer(int(table.port), table.token, "other")
@@ -594,7 +625,7 @@ def test_another_viewer_takes_over_an_assign(_):
 # 9. Many modules
 
 @slow
-def test_sixty_modules(_):
+def test_sixty_modules():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         shutil.copytree(SOURCE / "sim/scenarios/long_chain", folder, dirs_exist_ok=True)
@@ -616,6 +647,7 @@ def test_sixty_modules(_):
                     loads.append(table.document("bus")["load"])
             print(f"   bus: {documents / 5:.1f} documents a second, load {min(loads):.3f} to {max(loads):.3f}, "
                   f"{len(json.dumps(table.document('bus')))} bytes each")
+            assert 0 < max(loads) < 0.9, loads
             begin = time.monotonic()
             end = assign_all(table, bus, range(60))
             print(f"   assign of all: {time.monotonic() - begin:.0f} s")
@@ -627,7 +659,7 @@ def test_sixty_modules(_):
 # 10. How long a flash takes
 
 @slow
-def test_how_long_a_flash_takes(_):
+def test_how_long_a_flash_takes():
     took = {}
     for way in ("page", "shell", "page again", "shell again"):
         with page() as (table, bus):
@@ -658,7 +690,7 @@ def main():
             continue
         begin = time.monotonic()
         print(name, flush=True)
-        test(None)
+        test()
         print(f"   {time.monotonic() - begin:.1f} s", flush=True)
 
 

@@ -35,6 +35,7 @@ struct MonitoredNode {
 
 class BusMonitor final : public BusUser {
  public:
+  /// Of a few modules. Of many they are longer, so that readings take at most about a sixth of the bus.
   static constexpr Microseconds reading_period_us = 500'000;
   static constexpr Microseconds touch_period_us = 100'000;
 
@@ -73,6 +74,7 @@ class BusMonitor final : public BusUser {
 
  private:
   void count(const CanFrame& frame);
+  [[nodiscard]] std::size_t heard_nodes() const;
   [[nodiscard]] bool is_silent(const MonitoredNode& node, Microseconds now) const;
   void read_values(Microseconds now);
   void read_touch(Microseconds now);

@@ -65,6 +65,10 @@ void ModuleFiles::look() {
   if (const fs::path built = built_image(); fs::is_regular_file(built, error)) {
     images_.push_back({built.string(), built});
   }
+  images_json_ = json::array();
+  for (const Image& image : images_) {
+    images_json_.push_back(image_json(image.name, image.path));
+  }
   for (const fs::directory_entry& entry : fs::directory_iterator(project_, error)) {
     if (entry.path().extension() == settings_extension && settings_.size() < most_files &&
         is_file_of(project_, entry.path())) {
@@ -72,14 +76,6 @@ void ModuleFiles::look() {
     }
   }
   std::ranges::sort(settings_);
-}
-
-json ModuleFiles::images() const {
-  json list = json::array();
-  for (const Image& image : images_) {
-    list.push_back(image_json(image.name, image.path));
-  }
-  return list;
 }
 
 fs::path ModuleFiles::image(const std::string& name) const {

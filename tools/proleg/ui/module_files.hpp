@@ -3,7 +3,7 @@
 // The files of a project that jobs on modules use: images and settings.
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,7 +22,7 @@ class ModuleFiles {
   void look();
 
   /// As in the document `modules`.
-  [[nodiscard]] nlohmann::json images() const;
+  [[nodiscard]] const nlohmann::json& images() const { return images_json_; }
   [[nodiscard]] const std::vector<std::string>& settings() const { return settings_; }
 
   /// The path of an image of the list. Throws InputError for another name, or if it is no intact image.
@@ -40,6 +40,7 @@ class ModuleFiles {
 
   std::filesystem::path project_;
   std::vector<Image> images_;
+  nlohmann::json images_json_ = nlohmann::json::array();
   std::vector<std::string> settings_;
 };
 

@@ -50,7 +50,7 @@ std::vector<std::string> take_lines(std::string& text) {
 
 ModuleJob::ModuleJob(unsigned number, ModuleJobPlan plan, std::string address, BusSharing& sharing)
     : number_(number), plan_(std::move(plan)), address_(std::move(address)), sharing_(sharing) {
-  if (!sharing_.begin_job(plan_.longest_loss)) {
+  if (!sharing_.begin_job(plan_.longest_loss, plan_.gives_way)) {
     throw std::runtime_error("the servos have power; switch it off first");
   }
   try {

@@ -32,6 +32,7 @@ struct ModuleJobPlan {
   std::string by;                  ///< the viewer that has begun it
   Output output = Output::object;
   bool opens_bus = false;                ///< it opens the bus itself; else it takes part in ours
+  bool gives_way = false;                ///< it is to end when servos are to get power
   std::chrono::seconds longest_loss{0};  ///< the line of a gateway ends for a while when its module is flashed
   /// With files of the job, and its working directory. Null: it works in `folder`.
   std::unique_ptr<ScratchFolder> files{};

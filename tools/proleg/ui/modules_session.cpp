@@ -30,6 +30,9 @@ constexpr std::chrono::seconds longest_loss_of_update{60};
 constexpr const char* store_object = "0x1010:1";
 constexpr const char* save_word = "0x65766173";
 
+/// A program that says which modules there are.
+std::vector<std::string> look_words() { return {"scan", "--json"}; }
+
 template <typename Value>
 Value required(const json& arguments, const char* name, const char* expected) {
   const auto value = argument<Value>(arguments, name, expected);
@@ -134,6 +137,9 @@ void ModulesSession::serve() {
   look_at_holder();
   take_operations();
   look_at_job();
+  if (sharing_.must_give_way()) {
+    quiet_.reset();
+  }
   look_at_quiet_job();
   if (is_watched_ && draft_.get().revision != draft_revision_) {
     publish();
@@ -202,6 +208,7 @@ json ModulesSession::open(const host::OperationRequest& request) {
   table_ = std::make_unique<TableBus>(wanted, sharing_, output_);
   found_ = json();
   publish();
+  begin_unasked(look_words(), Output::object);  // modules without a host say nothing of themselves
   return json::object();
 }
 
@@ -487,18 +494,22 @@ void ModulesSession::look_at_job() {
     publish();      // who sees the end of the job finds its files
   }
   publish_job();
-  if (job_->has_ended() && job_->kind() != "scan") {
-    look_for_modules_again();
+  if (job_->has_ended() && job_->kind() == "assign" && !job_->status()) {
+    begin_unasked({"nmt", "pre-operational", "all"}, Output::text);  // it did not take the power from its joint
+  } else if (job_->has_ended() && job_->kind() != "scan") {
+    begin_unasked(look_words(), Output::object);
   }
 }
 
-/// A job may have given modules other node ids or programs.
-void ModulesSession::look_for_modules_again() {
+/// A job may have given modules other node ids or programs, or may have left a joint with power.
+void ModulesSession::begin_unasked(const std::vector<std::string>& words, Output output) {
   if (quiet_ || address().empty()) {
     return;
   }
   try {
-    quiet_.emplace(QuietJob{make_job(plan_of("scan", {"scan", "--json"}, {}), address()), std::nullopt, {}});
+    ModuleJobPlan plan = plan_of(words.front(), words, {}, output);
+    plan.gives_way = true;
+    quiet_.emplace(QuietJob{make_job(std::move(plan), address()), std::nullopt, {}});
   } catch (const std::runtime_error&) {
     // The robot has got power meanwhile.
   }
@@ -525,6 +536,9 @@ void ModulesSession::look_at_quiet_job() {
   if (!quiet.request) {
     take_found(quiet.job->result());
     publish();
+    if (quiet.job->kind() != look_words().front()) {
+      begin_unasked(look_words(), Output::object);
+    }
   } else if (quiet.job->status() != 0) {
     output_.refuse(*quiet.request, quiet.job->failure());
   } else if (quiet.then.empty()) {

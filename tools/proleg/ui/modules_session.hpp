@@ -91,7 +91,7 @@ class ModulesSession final : private SessionThread {
   void wait_for_quiet_job();
   void look_at_job();
   void look_at_quiet_job();
-  void look_for_modules_again();
+  void begin_unasked(const std::vector<std::string>& words, ModuleJobPlan::Output output);
   void go_on_quietly(const QuietJob& before);
   void take_found(const nlohmann::json& result);
   void stop_at_once();

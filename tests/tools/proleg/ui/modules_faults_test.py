@@ -499,6 +499,8 @@ def test_a_program_that_is_killed_ends_its_job_alone():
             job = table.job(lambda job: job["number"] == number and job["state"] == "ended")
             assert not programs or job["status"] is None and job["question"] is None and job["error"], job
             print(f"   {kind}: {job['status']}, {job['error']}")
+            if kind == "assign":
+                all_without_power(bus)
             following = table.do("modules.scan")
             assert following["status"] == 0, following
         wanted = table.viewer.start("modules.read", table.epoch, node=1, all=True)
@@ -506,7 +508,7 @@ def test_a_program_that_is_killed_ends_its_job_alone():
         for process in children(table.process.pid):
             os.kill(process, signal.SIGKILL)
         print("   read:", table.viewer.result(wanted).get("error", "answered")[:100])
-        all_without_power(bus, also=["quick stop"])
+        all_without_power(bus)
 
 
 # 7. Words of a malicious page

@@ -69,6 +69,7 @@ void print_help(std::ostream& out) {
 /// What an unknown word was probably meant to be, as a message ends.
 std::string hint(std::string_view word) {
   std::vector<std::string> names;
+  names.reserve(subcommands.size());
   for (const Subcommand& subcommand : subcommands) {
     names.emplace_back(subcommand.name);
   }

@@ -8,6 +8,7 @@
 #include "host/flash/module_program.hpp"
 #include "host/transport/open_transport.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/ui/folder_walk.hpp"
 

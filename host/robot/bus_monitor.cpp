@@ -34,7 +34,8 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
   MonitoredNode& node = nodes_.at(number);
   if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     node.state = heartbeat->state;
-    if (node.state == canopen::NmtState::boot_up) {
+    if (heartbeat->state == canopen::NmtState::boot_up) {
+      node.state = canopen::NmtState::pre_operational;  // which it has entered (CiA 301, figure 48)
       node.current_limit.reset();
       has_limit_.reset(number);
       lacks_touch_.reset(number);
@@ -57,8 +58,6 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
   } else if (identifier::base_of(frame.identifier) != identifier::sdo_answer) {
     readings_.receive(now, frame);
     return;  // this is a request to the node, not an answer
-  } else if (node.state == canopen::NmtState::boot_up) {
-    node.state = canopen::NmtState::pre_operational;  // it follows by itself (CiA 301, figure 48)
   }
   node.last_heard = now;
   readings_.receive(now, frame);

@@ -17,9 +17,9 @@ namespace proleg::host {
 /// The present knowledge about a node.
 struct MonitoredNode {
   std::uint8_t node = 0;
-  std::optional<canopen::NmtState>
-      state;                             ///< in the last heartbeat of the node; Pre-operational if it has booted since
-  std::optional<std::int32_t> setpoint;  ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
+  /// In the last heartbeat of the node; Pre-operational after a boot-up message.
+  std::optional<canopen::NmtState> state;
+  std::optional<std::int32_t> setpoint;     ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
   std::optional<std::uint16_t> statusword;  ///< 0x6041
   // The newest of what was read and of the monitoring frame.
   std::optional<std::int32_t> position;        ///< 0x6064: 90 degrees = 2^30; nothing: not measured

@@ -138,11 +138,11 @@ TEST_F(BusMonitorTest, ReadsTheTouchSensorsTenTimesASecondIfTheyAreWanted) {
   bus.detach(touch);
 }
 
-TEST_F(BusMonitorTest, AModuleThatAnswersAfterItHasBootedIsPreOperational) {
+TEST_F(BusMonitorTest, AModuleThatHasBootedIsPreOperational) {
   bus.run_for(2 * second);
+  monitor.receive(bus.now(), canopen::encode(canopen::Heartbeat{1, canopen::NmtState::operational}));
+  EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::operational);
   monitor.receive(bus.now(), canopen::encode(canopen::Heartbeat{1, canopen::NmtState::boot_up}));
-  EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::boot_up);
-  bus.run_for(second);
   EXPECT_EQ(monitor.nodes().front().state, canopen::NmtState::pre_operational);
 }
 

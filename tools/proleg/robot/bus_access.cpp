@@ -136,9 +136,12 @@ boost::asio::io_context& BusAccess::context() { return implementation_->context(
 
 void BusAccess::wait_for(const std::string& what, Microseconds at_most, const std::function<bool()>& done) {
   host::BusConnection& bus = connection();
-  const bool is_done =
-      bus.run_until(bus.now() + at_most, [&] { return done() || interrupted() || !bus.state().is_connected; });
-  if (is_done && done()) {
+  bool is_done = false;
+  bus.run_until(bus.now() + at_most, [&] {
+    is_done = done();
+    return is_done || interrupted() || !bus.state().is_connected;
+  });
+  if (is_done) {
     return;
   }
   if (interrupted()) {

@@ -1,5 +1,7 @@
 // Which bus is open, and which ones can be.
 import { useSignal } from '@preact/signals';
+import { Findings } from './doctor_part.js';
+import { isRunning } from './job_text.js';
 import type { ModulesApp } from './modules_app.js';
 
 function busState(app: ModulesApp): { text: string; tone: string } {
@@ -33,6 +35,22 @@ function OpenBus({ app }: { app: ModulesApp }) {
   );
 }
 
+// Says why a bus does not open, or what is wrong with it.
+function ExamineButton({ app, bus }: { app: ModulesApp; bus: string }) {
+  const obstacle = !app.page.state.isConnected.value
+    ? 'No connection to the program.'
+    : bus === ''
+      ? 'Write an address first.'
+      : app.job.value !== null && isRunning(app.job.value)
+        ? 'A job goes on.'
+        : null;
+  return (
+    <button type="button" disabled={obstacle !== null} title={obstacle ?? 'Examines the adapter and the bus; it only reads'} onClick={() => void app.tell('modules.examine', { bus })}>
+      What is wrong?
+    </button>
+  );
+}
+
 function ChooseBus({ app }: { app: ModulesApp }) {
   const typed = useSignal('');
   const isOpening = useSignal(false);
@@ -52,7 +70,7 @@ function ChooseBus({ app }: { app: ModulesApp }) {
             <button type="button" class={offers.length === 1 ? 'primary' : ''} disabled={obstacle !== null} title={obstacle ?? text} onClick={() => void open(address)}>
               {address}
             </button>{' '}
-            <span class="hint">{text}</span>
+            <span class="hint">{text}</span> <ExamineButton app={app} bus={address} />
           </li>
         ))}
       </ul>
@@ -74,6 +92,7 @@ function ChooseBus({ app }: { app: ModulesApp }) {
         <button type="submit" disabled={obstacle !== null || typed.value.trim() === ''} title={obstacle ?? (typed.value.trim() === '' ? 'Write an address first.' : 'Opens this bus')}>
           Open
         </button>
+        <ExamineButton app={app} bus={typed.value.trim()} />
       </form>
       {isOpening.value && <span role="status">Opening …</span>}
       {app.answerObstacle() !== null && <span class="hint">{app.answerObstacle()}</span>}
@@ -92,6 +111,7 @@ export function BusBar({ app }: { app: ModulesApp }) {
           page Live stays what it is.
         </p>
       )}
+      {!app.isOpen.value && <Findings app={app} />}
       {problem !== null && (
         <p class="problem" role="alert">
           {problem}

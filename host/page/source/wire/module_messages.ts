@@ -207,7 +207,7 @@ export interface ModuleOperations {
   'modules.open': { bus: string };
   'modules.close': Record<string, never>;
   'modules.scan': Record<string, never>;
-  'modules.examine': Record<string, never>;
+  'modules.examine': { bus?: string }; // the bus only if none is open
   'modules.read': { node: number; all: boolean };
   'modules.set': { node: number; object: string; value: string; store: boolean };
   'modules.save': { file: string; nodes: string };

@@ -109,6 +109,15 @@ describe('a box of modules', () => {
     return /0x[0-9A-F]{8}/.exec((await question().textContent()) ?? '')?.[0] as string;
   };
 
+  it('is not found at an address where nothing listens, and the page says why', async () => {
+    await modules.show();
+    await page().getByLabel('another address').fill('tcp:127.0.0.1:1');
+    await page().getByRole('button', { name: 'What is wrong?', exact: true }).last().click();
+    await page().getByTestId('findings').locator('li').first().waitFor();
+    assert.equal(await page().getByTestId('findings').locator('li').count(), 1);
+    await modules.screenshot('no_bus');
+  });
+
   it('is found on a bus that is opened, with modules that have no node id', async () => {
     await modules.open(bus.address);
     assert.ok(await waitUntil(async () => (await modules.rows().count()) === 4), String(await modules.rows().count()));

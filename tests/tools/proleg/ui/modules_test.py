@@ -16,6 +16,11 @@ JOINTS = [f"J{number}" for number in range(1, 6)]
 def a_bus_is_opened_and_shows_what_is_on_it(table, bus):
     assert table.document("modules")["bus"] is None
     assert "no bus is open" in table.refused("modules.scan")
+    silent = table.do("modules.examine", bus="tcp:127.0.0.1:1")
+    assert [finding["code"] for finding in silent["result"]["findings"]] == ["bus_not_reached"], silent
+    assert silent["command"] == "proleg doctor --bus tcp:127.0.0.1:1", silent
+    for arguments in ({}, {"bus": "auto"}, {"bus": "fd:3"}, {"bus": "--help"}):
+        table.refused("modules.examine", **arguments)
     for address in ("auto", "fd:0", "tcp:nowhere", "", "--help", 3, None, "tcp:127.0.0.1:1"):
         table.refused("modules.open", bus=address)
     table.must("modules.open", bus=bus.address)

@@ -26,10 +26,11 @@ struct ModuleJobPlan {
     events,  ///< one on each line, of --json-lines; the last one is the result
   };
 
-  std::string kind;                ///< as in the document `module_job`
-  std::vector<std::string> words;  ///< a program without "proleg-", and its arguments but --bus
-  std::string shown;               ///< what does the same in a shell
-  std::string by;                  ///< the viewer that has begun it
+  std::string kind;                        ///< as in the document `module_job`
+  std::vector<std::string> words;          ///< a program without "proleg-", and its arguments but --bus
+  std::string shown;                       ///< what does the same in a shell
+  std::vector<std::string> shown_words{};  ///< for it, without --bus; nothing: `words`
+  std::string by;                          ///< the viewer that has begun it
   Output output = Output::object;
   bool opens_bus = false;                ///< it opens the bus itself; else it takes part in ours
   bool gives_way = false;                ///< it is to end when servos are to get power

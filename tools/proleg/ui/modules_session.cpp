@@ -1,18 +1,14 @@
 #include "tools/proleg/ui/modules_session.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
-#include "host/robot/object_word.hpp"
 #include "host/transport/bus_address.hpp"
-#include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/program_run.hpp"
-#include "tools/proleg/ui/scenario_copy.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -25,70 +21,6 @@ constexpr std::chrono::milliseconds look_period{20};
 constexpr std::chrono::milliseconds draft_period{1000};
 /// Time without a driver after which a job ends that moves joints.
 constexpr std::chrono::milliseconds longest_absence{1000};
-/// The restart of a gateway with its trials, as `proleg flash` waits for it.
-constexpr std::chrono::seconds longest_loss_of_update{60};
-constexpr const char* store_object = "0x1010:1";
-constexpr const char* save_word = "0x65766173";
-
-/// A program that says which modules there are.
-std::vector<std::string> look_words() { return {"scan", "--json"}; }
-
-template <typename Value>
-Value required(const json& arguments, const char* name, const char* expected) {
-  const auto value = argument<Value>(arguments, name, expected);
-  if (!value) {
-    throw InputError(name, 0, "nothing", expected);
-  }
-  return *value;
-}
-
-bool flag_in(const json& arguments, const char* name) {
-  return argument<bool>(arguments, name, "true or false").value_or(false);
-}
-
-/// A word for a program that cannot be taken for an option.
-std::string word_in(const json& arguments, const char* name, const char* expected) {
-  const auto word = required<std::string>(arguments, name, expected);
-  constexpr std::size_t longest = 200;
-  if (word.empty() || word.size() > longest || word.starts_with("-") || !is_visible_line(word)) {
-    throw InputError(name, 0, in_quotes(one_line(word)), expected);
-  }
-  return word;
-}
-
-std::string node_in(const json& arguments) {
-  const auto node = required<std::uint32_t>(arguments, "node", "a node id");
-  constexpr std::uint32_t highest = 126;
-  if (node < 1 || node > highest) {
-    throw InputError("node", 0, std::to_string(node), "1 to 126");
-  }
-  return std::to_string(node);
-}
-
-/// A number that a program takes.
-std::optional<std::string> number_in(const json& arguments, const char* name, const char* unit, double lowest,
-                                     double highest) {
-  const auto number = argument<double>(arguments, name, unit);
-  if (number && !(*number >= lowest && *number <= highest)) {
-    throw InputError(name, 0, number_text(*number), number_text(lowest) + " to " + number_text(highest) + " " + unit);
-  }
-  return number ? std::optional(number_text(*number)) : std::nullopt;
-}
-
-/// Node ids such as 1,3 or all.
-std::string nodes_in(const json& arguments, const char* expected) {
-  std::string word = word_in(arguments, "nodes", expected);
-  static_cast<void>(host::parse_nodes(word, "nodes"));
-  return word;
-}
-
-/// The libraries with algorithms of users that this program has.
-void add_algorithms(std::vector<std::string>& words) {
-  for (const std::string& library : loaded_libraries()) {
-    words.insert(words.end(), {"--algorithms", library});
-  }
-}
-
 /// What does the same as these words in a shell.
 std::string shown_command(const std::vector<std::string>& words, const std::string& address) {
   std::string text = "proleg";
@@ -98,16 +30,6 @@ std::string shown_command(const std::vector<std::string>& words, const std::stri
     }
   }
   return text + " --bus " + shell_argument(address);
-}
-
-ModuleJobPlan plan_of(std::string kind, std::vector<std::string> words, const host::OperationRequest& request,
-                      Output output = Output::object) {
-  ModuleJobPlan plan;
-  plan.kind = std::move(kind);
-  plan.words = std::move(words);
-  plan.by = request.client_name;
-  plan.output = output;
-  return plan;
 }
 
 /// Whether several programs of this computer can open such a bus at the same time.
@@ -124,7 +46,8 @@ ModulesSession::ModulesSession(ModulesSessionOptions options, const PresentDraft
       options_(std::move(options)),
       draft_(draft),
       sharing_(sharing),
-      files_(options_.folder) {
+      files_(options_.folder),
+      plans_(files_) {
   publish();
   publish_job();
   begin_thread();
@@ -169,15 +92,22 @@ void ModulesSession::close() {
 }
 
 json ModulesSession::carry_out(const host::OperationRequest& operation) {
-  static const std::map<std::string_view, Handler> handlers{
-      {"modules.look", &ModulesSession::look},       {"modules.open", &ModulesSession::open},
-      {"modules.close", &ModulesSession::close_bus}, {"modules.scan", &ModulesSession::scan},
-      {"modules.examine", &ModulesSession::examine}, {"modules.read", &ModulesSession::read},
-      {"modules.set", &ModulesSession::set},         {"modules.save", &ModulesSession::save},
-      {"modules.compare", &ModulesSession::compare}, {"modules.load", &ModulesSession::load},
-      {"modules.assign", &ModulesSession::assign},   {"modules.calibrate", &ModulesSession::calibrate},
-      {"modules.flash", &ModulesSession::flash},     {"modules.recover", &ModulesSession::recover},
-      {"modules.answer", &ModulesSession::answer},   {"modules.cancel", &ModulesSession::cancel}};
+  static const std::map<std::string_view, Handler> handlers{{"modules.look", &ModulesSession::look},
+                                                            {"modules.open", &ModulesSession::open},
+                                                            {"modules.close", &ModulesSession::close_bus},
+                                                            {"modules.scan", &ModulesSession::begin_planned},
+                                                            {"modules.examine", &ModulesSession::examine},
+                                                            {"modules.read", &ModulesSession::read},
+                                                            {"modules.set", &ModulesSession::set},
+                                                            {"modules.save", &ModulesSession::begin_planned},
+                                                            {"modules.compare", &ModulesSession::begin_planned},
+                                                            {"modules.load", &ModulesSession::begin_planned},
+                                                            {"modules.assign", &ModulesSession::assign},
+                                                            {"modules.calibrate", &ModulesSession::begin_planned},
+                                                            {"modules.flash", &ModulesSession::begin_planned},
+                                                            {"modules.recover", &ModulesSession::begin_planned},
+                                                            {"modules.answer", &ModulesSession::answer},
+                                                            {"modules.cancel", &ModulesSession::cancel}};
   return (this->*handler_of(handlers, operation.name))(operation);
 }
 
@@ -208,7 +138,7 @@ json ModulesSession::open(const host::OperationRequest& request) {
   table_ = std::make_unique<TableBus>(wanted, sharing_, output_);
   found_ = json();
   publish();
-  begin_unasked(look_words(), Output::object);  // modules without a host say nothing of themselves
+  begin_unasked(plan_of_look());  // modules without a host say nothing of themselves
   return json::object();
 }
 
@@ -246,9 +176,10 @@ std::unique_ptr<ModuleJob> ModulesSession::make_job(ModuleJobPlan plan, const st
   if (job_ && !job_->has_ended()) {
     throw std::runtime_error("another job goes on: " + job_->kind());
   }
-  if (plan.shown.empty()) {
-    plan.shown = shown_command(plan.words, bus);
+  if (plan.shown_words.empty()) {
+    plan.shown_words = plan.words;
   }
+  plan.shown = shown_command(plan.shown_words, bus);
   if (!plan.files && plan.folder.empty()) {
     plan.folder = fs::absolute(options_.folder).string();
   }
@@ -283,14 +214,18 @@ void ModulesSession::wait_for_quiet_job() {
   }
 }
 
-json ModulesSession::scan(const host::OperationRequest& request) {
-  return begin(plan_of("scan", {"scan", "--json"}, request));
+json ModulesSession::begin_planned(const host::OperationRequest& request) {
+  using Plan = ModuleJobPlan (ModulePlans::*)(const host::OperationRequest&) const;
+  static const std::map<std::string_view, Plan> plans{
+      {"modules.scan", &ModulePlans::scan},      {"modules.save", &ModulePlans::save},
+      {"modules.load", &ModulePlans::load},      {"modules.compare", &ModulePlans::compare},
+      {"modules.flash", &ModulePlans::flash},    {"modules.calibrate", &ModulePlans::calibrate},
+      {"modules.recover", &ModulePlans::recover}};
+  return begin((plans_.*plans.at(request.name))(request));
 }
 
 json ModulesSession::examine(const host::OperationRequest& request) {
-  std::vector<std::string> words{"doctor", "--json"};
-  add_algorithms(words);
-  ModuleJobPlan plan = plan_of("examine", std::move(words), request);
+  ModuleJobPlan plan = plans_.examine(request);
   if (address().empty()) {
     const std::string bus = word_in(request.arguments, "bus", "the address of a bus, since none is open");
     require_openable(bus);
@@ -302,55 +237,13 @@ json ModulesSession::examine(const host::OperationRequest& request) {
 }
 
 json ModulesSession::read(const host::OperationRequest& request) {
-  std::vector<std::string> words{"info", node_in(request.arguments), "--json"};
-  if (flag_in(request.arguments, "all")) {
-    words.emplace_back("--all");
-  }
-  add_algorithms(words);
-  return begin_quietly(request, plan_of("read", std::move(words), request));
+  return begin_quietly(request, plans_.read(request));
 }
 
 json ModulesSession::set(const host::OperationRequest& request) {
-  const json& arguments = request.arguments;
-  const std::string node = node_in(arguments);
-  const std::string object = word_in(arguments, "object", "an object, such as 0x6080");
-  const auto value = required<std::string>(arguments, "value", "a value as a text");
-  constexpr std::size_t longest = 100;
-  if (!is_visible_line(value) || value.size() > longest) {
-    throw InputError("value", 0, in_quotes(one_line(value)), "a value in the unit of the object");
-  }
-  std::vector<std::string> words{"set", node, object, "--", value};
-  std::vector<std::string> then;
-  if (flag_in(arguments, "store")) {
-    then = {"set", node, store_object, save_word};
-  }
-  return begin_quietly(request, plan_of("set", std::move(words), request, Output::text), std::move(then));
-}
-
-json ModulesSession::save(const host::OperationRequest& request) {
-  const fs::path file =
-      files_.new_settings(required<std::string>(request.arguments, "file", "a name that ends in .params"));
-  const auto nodes =
-      request.arguments.contains("nodes") ? nodes_in(request.arguments, "all, or 1,3") : std::string("all");
-  std::vector<std::string> words{"params", "save", file.string(), "--nodes", nodes, "--json"};
-  return begin(plan_of("save", std::move(words), request));
-}
-
-json ModulesSession::compare(const host::OperationRequest& request) {
-  const fs::path file = files_.settings(required<std::string>(request.arguments, "file", "a file of the list"));
-  return begin(plan_of("compare", {"params", "diff", file.string(), "--json"}, request));
-}
-
-json ModulesSession::load(const host::OperationRequest& request) {
-  const fs::path file = files_.settings(required<std::string>(request.arguments, "file", "a file of the list"));
-  std::vector<std::string> words{"params", "load", file.string(), "--json"};
-  if (flag_in(request.arguments, "store")) {
-    words.emplace_back("--store");
-  }
-  if (flag_in(request.arguments, "any_module")) {
-    words.emplace_back("--any-module");
-  }
-  return begin(plan_of("load", std::move(words), request));
+  const bool stores = argument<bool>(request.arguments, "store", "true or false").value_or(false);
+  return begin_quietly(request, plans_.set(request),
+                       stores ? store_words(request.arguments) : std::vector<std::string>());
 }
 
 json ModulesSession::assign(const host::OperationRequest& request) {
@@ -362,73 +255,12 @@ json ModulesSession::assign(const host::OperationRequest& request) {
   if (absent_since_) {
     throw std::runtime_error("nobody drives");
   }
-  constexpr double smallest = 1;  // of proleg assign
-  constexpr double largest = 30;
-  const std::string amplitude = number_in(request.arguments, "amplitude", "degrees", smallest, largest).value_or("5");
-  auto files = std::make_unique<ScratchFolder>();
-  const std::string top = scenario->sources.front().path;
-  const std::string file = copy_sources(scenario->sources, files->path() / "scenario").at(top);
-  std::vector<std::string> words{"assign", file, "--json-lines", "--amplitude", amplitude};
-  add_algorithms(words);
-  ModuleJobPlan plan = plan_of("assign", std::move(words), request, Output::events);
-  plan.shown = shown_command({"assign", fs::path(top).filename().string()}, address());
-  plan.files = std::move(files);
-  return begin(std::move(plan));
-}
-
-json ModulesSession::calibrate(const host::OperationRequest& request) {
-  return begin(
-      plan_of("calibrate", {"calibrate", node_in(request.arguments), "--json-lines"}, request, Output::events));
-}
-
-json ModulesSession::flash(const host::OperationRequest& request) {
-  const json& arguments = request.arguments;
-  const fs::path image = files_.image(required<std::string>(arguments, "image", "an image of the list"));
-  std::vector<std::string> words{"flash", image.string(), "--json-lines"};
-  if (const auto nodes = argument<std::string>(arguments, "nodes", "such as 1,3, or null")) {
-    words.insert(words.end(), {"--node", nodes_in(arguments, "such as 1,3, or null")});
-  }
-  for (const auto& [name, option] :
-       {std::pair{"canary", "--canary"}, std::pair{"dry_run", "--dry-run"}, std::pair{"force_board", "--force-board"},
-        std::pair{"allow_downgrade", "--allow-downgrade"}}) {
-    if (flag_in(arguments, name)) {
-      words.emplace_back(option);
-    }
-  }
-  ModuleJobPlan plan = plan_of("flash", std::move(words), request, Output::events);
-  plan.longest_loss = longest_loss_of_update;
-  return begin(std::move(plan));
-}
-
-json ModulesSession::recover(const host::OperationRequest& request) {
-  const json& arguments = request.arguments;
-  std::vector<std::string> words{"recover"};
-  if (const auto image = argument<std::string>(arguments, "image", "an image of the list, or null")) {
-    words.push_back(files_.image(*image).string());
-  }
-  words.emplace_back("--json-lines");
-  constexpr double longest_wait = 600;  // of proleg recover
-  if (const auto wait = number_in(arguments, "wait", "seconds", 0, longest_wait)) {
-    words.insert(words.end(), {"--wait", *wait});
-  }
-  for (const std::uint32_t serial : argument<std::vector<std::uint32_t>>(arguments, "serials", "serial numbers")
-                                        .value_or(std::vector<std::uint32_t>())) {
-    words.insert(words.end(), {"--serial", hexadecimal(serial, 8)});
-  }
-  if (flag_in(arguments, "reset_settings")) {
-    words.emplace_back("--reset-settings");
-  }
-  if (flag_in(arguments, "dry_run")) {
-    words.emplace_back("--dry-run");
-  }
-  ModuleJobPlan plan = plan_of("recover", std::move(words), request, Output::events);
-  plan.longest_loss = longest_loss_of_update;
-  return begin(std::move(plan));
+  return begin(plans_.assign(request, *scenario));
 }
 
 json ModulesSession::answer(const host::OperationRequest& request) {
-  const auto number = required<std::uint32_t>(request.arguments, "job", "the number of a job");
-  const auto question = required<std::uint64_t>(request.arguments, "question", "the number of a question");
+  const auto number = required_argument<std::uint32_t>(request.arguments, "job", "the number of a job");
+  const auto question = required_argument<std::uint64_t>(request.arguments, "question", "the number of a question");
   const std::string word = word_in(request.arguments, "word", "an answer");
   if (!job_ || job_->has_ended() || job_->number() != number) {
     throw std::runtime_error("this job has ended");
@@ -439,7 +271,7 @@ json ModulesSession::answer(const host::OperationRequest& request) {
 }
 
 json ModulesSession::cancel(const host::OperationRequest& request) {
-  const auto number = required<std::uint32_t>(request.arguments, "job", "the number of a job");
+  const auto number = required_argument<std::uint32_t>(request.arguments, "job", "the number of a job");
   if (!job_ || job_->has_ended() || job_->number() != number) {
     throw std::runtime_error("this job has ended");
   }
@@ -495,20 +327,19 @@ void ModulesSession::look_at_job() {
   }
   publish_job();
   if (job_->has_ended() && job_->kind() == "assign" && !job_->status()) {
-    begin_unasked({"nmt", "pre-operational", "all"}, Output::text);  // it did not take the power from its joint
+    begin_unasked(plan_of("nmt", {"nmt", "pre-operational", "all"}, {},
+                          Output::text));  // it did not take the power from its joint
   } else if (job_->has_ended() && job_->kind() != "scan") {
-    begin_unasked(look_words(), Output::object);
+    begin_unasked(plan_of_look());
   }
 }
 
 /// A job may have given modules other node ids or programs, or may have left a joint with power.
-void ModulesSession::begin_unasked(const std::vector<std::string>& words, Output output) {
+void ModulesSession::begin_unasked(ModuleJobPlan plan) {
   if (quiet_ || address().empty()) {
     return;
   }
   try {
-    ModuleJobPlan plan = plan_of(words.front(), words, {}, output);
-    plan.gives_way = true;
     quiet_.emplace(QuietJob{make_job(std::move(plan), address()), std::nullopt, {}});
   } catch (const std::runtime_error&) {
     // The robot has got power meanwhile.
@@ -536,8 +367,8 @@ void ModulesSession::look_at_quiet_job() {
   if (!quiet.request) {
     take_found(quiet.job->result());
     publish();
-    if (quiet.job->kind() != look_words().front()) {
-      begin_unasked(look_words(), Output::object);
+    if (quiet.job->kind() != "scan") {
+      begin_unasked(plan_of_look());
     }
   } else if (quiet.job->status() != 0) {
     output_.refuse(*quiet.request, quiet.job->failure());

@@ -14,6 +14,7 @@
 #include "tools/proleg/ui/bus_sharing.hpp"
 #include "tools/proleg/ui/module_files.hpp"
 #include "tools/proleg/ui/module_job.hpp"
+#include "tools/proleg/ui/module_plans.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 #include "tools/proleg/ui/table_bus.hpp"
@@ -63,17 +64,11 @@ class ModulesSession final : private SessionThread {
   nlohmann::json look(const host::OperationRequest& request);
   nlohmann::json open(const host::OperationRequest& request);
   nlohmann::json close_bus(const host::OperationRequest& request);
-  nlohmann::json scan(const host::OperationRequest& request);
+  nlohmann::json begin_planned(const host::OperationRequest& request);
   nlohmann::json examine(const host::OperationRequest& request);
   nlohmann::json read(const host::OperationRequest& request);
   nlohmann::json set(const host::OperationRequest& request);
-  nlohmann::json save(const host::OperationRequest& request);
-  nlohmann::json compare(const host::OperationRequest& request);
-  nlohmann::json load(const host::OperationRequest& request);
   nlohmann::json assign(const host::OperationRequest& request);
-  nlohmann::json calibrate(const host::OperationRequest& request);
-  nlohmann::json flash(const host::OperationRequest& request);
-  nlohmann::json recover(const host::OperationRequest& request);
   nlohmann::json answer(const host::OperationRequest& request);
   nlohmann::json cancel(const host::OperationRequest& request);
 
@@ -91,7 +86,7 @@ class ModulesSession final : private SessionThread {
   void wait_for_quiet_job();
   void look_at_job();
   void look_at_quiet_job();
-  void begin_unasked(const std::vector<std::string>& words, ModuleJobPlan::Output output);
+  void begin_unasked(ModuleJobPlan plan);
   void go_on_quietly(const QuietJob& before);
   void take_found(const nlohmann::json& result);
   void stop_at_once();
@@ -105,6 +100,7 @@ class ModulesSession final : private SessionThread {
   const PresentDraft& draft_;
   BusSharing& sharing_;
   ModuleFiles files_;
+  ModulePlans plans_;
   std::vector<std::string> offers_;
   std::unique_ptr<TableBus> table_;
   std::unique_ptr<ModuleJob> job_;  ///< that viewers see, also when it has ended

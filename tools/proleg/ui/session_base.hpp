@@ -73,6 +73,16 @@ std::optional<Value> argument(const nlohmann::json& arguments, const char* name,
   }
 }
 
+/// The same of an argument that must be there.
+template <typename Value>
+Value required_argument(const nlohmann::json& arguments, const char* name, const char* expected) {
+  std::optional<Value> value = argument<Value>(arguments, name, expected);
+  if (!value) {
+    throw InputError(name, 0, "nothing", expected);
+  }
+  return std::move(*value);
+}
+
 /// For the documents of sessions: null if the text is empty.
 inline nlohmann::json text_or_null(const std::string& text) {
   return text.empty() ? nlohmann::json() : nlohmann::json(text);

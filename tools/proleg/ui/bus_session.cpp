@@ -46,6 +46,7 @@ BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string ad
       monitor_(bus_),
       monitor_attachment_(bus_, monitor_),
       shared_(bus.context(), bus_),
+      bus_views_(address_, bus_, monitor_),
       stops_(file, bus_, output),
       edits_(file, file),
       delivery_(edits_),
@@ -127,14 +128,7 @@ void BusSession::stop_at_once() {
 
 /// A robot with power needs somebody who drives it.
 void BusSession::look_at_holder() {
-  const SessionRequests::Holder holder = requests_.take_holder();
-  const Clock::time_point now = Clock::now();
-  if (holder.is_there) {
-    absent_since_.reset();
-  } else if (!absent_since_) {
-    absent_since_ = now;
-  }
-  const bool is_absent = holder.is_away || (absent_since_ && now > *absent_since_ + longest_absence);
+  const bool is_absent = driver_.look(requests_.take_holder(), Clock::now());
   if (is_absent && robot_ && robot_->state() != RobotState::stopping && robot_->state() != RobotState::stopped) {
     stop_robot("nobody drives");
     output_.notice(host::NoticeLevel::warning, "the robot stops: nobody drives it");
@@ -308,7 +302,7 @@ void BusSession::start_robot(bool holds) {
                                                                      : "the robot has power already");
   }
   look_at_holder();  // whoever asks for the start may have taken control since the last look
-  if (absent_since_) {
+  if (!driver_.has_driver()) {
     throw std::runtime_error("nobody drives");
   }
   if (!sharing_.begin_power()) {
@@ -459,8 +453,8 @@ void BusSession::publish_all(Clock::time_point now) {
     are_parameters_new_ = false;
   }
   const bool is_due = now >= publish_at_;
-  if (const std::vector<host::MonitoredNode> nodes = monitor_.nodes(); bus_rate_.is_due(nodes, now)) {
-    publish_bus(now, nodes);
+  if (std::optional<BusView> view = bus_views_.due(now)) {
+    publish_bus(std::move(*view));
   }
   if (is_due) {
     publish_at_ = now + publish_period;
@@ -489,15 +483,7 @@ void BusSession::publish_session() {
                               {"gait", gait_}});
 }
 
-void BusSession::publish_bus(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes) {
-  BusView view;
-  view.address = address_;
-  view.is_connected = bus_.state().is_connected;
-  view.problem = view.is_connected ? bus_.state().reason : bus_.diagnosis();
-  view.now = bus_.now();
-  traffic_.add_to(view, monitor_, now);
-  view.has_other_host = monitor_.has_host(view.now);
-  view.nodes = nodes;
+void BusSession::publish_bus(BusView view) {
   view.stop_confirmed = stops_.confirmed();
   if (robot_) {
     view.watch = &robot_->gait().gait_watch();

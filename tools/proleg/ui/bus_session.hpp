@@ -22,7 +22,6 @@
 #include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/robot_stops.hpp"
 #include "tools/proleg/ui/session_base.hpp"
-#include "tools/proleg/ui/table_bus.hpp"
 
 namespace proleg::tools {
 
@@ -45,8 +44,6 @@ class BusSession final : private SessionThread {
 
  private:
   static constexpr std::chrono::milliseconds publish_period{500};  ///< of the session
-  /// Time without a driver after which the robot stops.
-  static constexpr std::chrono::milliseconds longest_absence{1'000};
 
   // SessionThread
   void serve() override;
@@ -87,7 +84,7 @@ class BusSession final : private SessionThread {
   [[nodiscard]] DrivenRobot& powered();
   void publish_all(Clock::time_point now);
   void publish_session();
-  void publish_bus(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes);
+  void publish_bus(BusView view);
   [[nodiscard]] std::string state_name() const;
 
   const sim::Scenario& file_;
@@ -100,7 +97,7 @@ class BusSession final : private SessionThread {
   host::BusMonitor monitor_;
   host::BusAttachment monitor_attachment_;
   host::SharedBus shared_;
-  BusDocumentRate bus_rate_;
+  BusViews bus_views_;
   RobotStops stops_;
   std::optional<host::BusScan> scan_;
   std::optional<host::BusAttachment> scan_attachment_;
@@ -117,11 +114,10 @@ class BusSession final : private SessionThread {
   std::string planned_recording_;
   std::string recording_;
   RobotRows rows_;
-  std::optional<Clock::time_point> absent_since_ = Clock::time_point{};
+  DriverWatch driver_;
   bool are_parameters_new_ = true;
   bool is_session_new_ = true;
   Clock::time_point publish_at_{};
-  BusTraffic traffic_;
 };
 
 }  // namespace proleg::tools

@@ -80,6 +80,34 @@ json bus_document(std::span<const sim::ModulePlace> places, const BusView& view)
           {"modules", std::move(modules)}};
 }
 
+std::optional<BusView> BusViews::due(Clock::time_point now) {
+  std::vector<host::MonitoredNode> nodes = monitor_.nodes();
+  std::vector<std::optional<std::uint8_t>> contacts;
+  contacts.reserve(nodes.size());
+  for (const host::MonitoredNode& node : nodes) {
+    contacts.push_back(node.contacts);
+  }
+  if (now < due_ && contacts == contacts_) {
+    return std::nullopt;
+  }
+  contacts_ = std::move(contacts);
+  due_ = now + period;
+  BusView view;
+  view.address = address_;
+  view.is_connected = bus_.state().is_connected;
+  view.problem = view.is_connected ? bus_.state().reason : bus_.diagnosis();
+  view.now = bus_.now();
+  if (now >= traffic_from_ + period) {
+    traffic_ = monitor_.take_traffic(view.now);
+    seconds_ = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
+  }
+  view.traffic = traffic_;
+  view.seconds = seconds_;
+  view.has_other_host = monitor_.has_host(view.now);
+  view.nodes = std::move(nodes);
+  return view;
+}
+
 RobotRows::RobotRows(const sim::Scenario& scenario)
     : scenario_(scenario), layout_(signals(scenario)), row_(layout_.row_size(), host::no_value) {}
 

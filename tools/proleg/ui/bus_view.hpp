@@ -8,8 +8,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "host/robot/bus_connection.hpp"
 #include "host/robot/bus_monitor.hpp"
 #include "host/robot/gait_watch.hpp"
 #include "host/server/telemetry.hpp"
@@ -35,6 +37,32 @@ struct BusView {
 
 /// places: of the robot's joints; none: it is not known whose modules they are.
 [[nodiscard]] nlohmann::json bus_document(std::span<const sim::ModulePlace> places, const BusView& view);
+
+/// What is known about a bus, as often as viewers need it: twice a second, and at once when a touch sensor of a module
+/// has changed.
+class BusViews {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds period{500};
+
+  /// bus, monitor: must outlive this.
+  BusViews(std::string address, const host::BusConnection& bus, host::BusMonitor& monitor)
+      : address_(std::move(address)), bus_(bus), monitor_(monitor) {}
+
+  /// What is known now, if it is due.
+  [[nodiscard]] std::optional<BusView> due(Clock::time_point now);
+
+ private:
+  std::string address_;
+  const host::BusConnection& bus_;
+  host::BusMonitor& monitor_;
+  Clock::time_point due_{};
+  std::vector<std::optional<std::uint8_t>> contacts_;  ///< of the last view
+  // Of half a second or more: in a few milliseconds there is one frame or none.
+  Clock::time_point traffic_from_ = Clock::now();
+  host::BusMonitor::Traffic traffic_{};
+  double seconds_ = 0;
+};
 
 /// The telemetry of a robot on a bus (docs/page-interface.md): with power a row each tick of the gait, without power as
 /// often, with what is known of the joints.

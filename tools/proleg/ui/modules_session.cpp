@@ -19,8 +19,6 @@ using Output = ModuleJobPlan::Output;
 
 constexpr std::chrono::milliseconds look_period{20};
 constexpr std::chrono::milliseconds draft_period{1000};
-/// Time without a driver after which a job ends that moves joints.
-constexpr std::chrono::milliseconds longest_absence{1000};
 /// What does the same as these words in a shell.
 std::string shown_command(const std::vector<std::string>& words, const std::string& address) {
   std::string text = "proleg";
@@ -252,7 +250,7 @@ json ModulesSession::assign(const host::OperationRequest& request) {
     throw std::runtime_error("there is no robot whose places the modules can get; open a scenario in Make first");
   }
   look_at_holder();  // whoever asks may have taken control since the last look
-  if (absent_since_) {
+  if (!driver_.has_driver()) {
     throw std::runtime_error("nobody drives");
   }
   return begin(plans_.assign(request, *scenario));
@@ -294,14 +292,7 @@ void ModulesSession::stop_at_once() {
 
 /// A joint that moves needs somebody who looks at it.
 void ModulesSession::look_at_holder() {
-  const SessionRequests::Holder holder = requests_.take_holder();
-  const Clock::time_point now = Clock::now();
-  if (holder.is_there) {
-    absent_since_.reset();
-  } else if (!absent_since_) {
-    absent_since_ = now;
-  }
-  const bool is_absent = holder.is_away || (absent_since_ && now > *absent_since_ + longest_absence);
+  const bool is_absent = driver_.look(requests_.take_holder(), Clock::now());
   if (is_absent && job_ && !job_->has_ended() && job_->kind() == "assign") {
     end_job("nobody drives");
   }

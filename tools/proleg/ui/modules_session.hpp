@@ -109,7 +109,7 @@ class ModulesSession final : private SessionThread {
   nlohmann::json found_;     ///< by the last scan
   bool is_watched_ = false;  ///< a viewer has looked
   std::uint64_t draft_revision_ = 0;
-  std::optional<Clock::time_point> absent_since_ = Clock::time_point{};
+  DriverWatch driver_;
 };
 
 }  // namespace proleg::tools

@@ -211,6 +211,28 @@ class SessionRequests final : public host::RobotSession {
   std::atomic<bool> are_there_ = false;
 };
 
+/// Whether somebody drives. A page that is reloaded may be back within a moment.
+class DriverWatch {
+ public:
+  using Clock = SessionRequests::Clock;
+  /// Time without a driver after which what moves must stop.
+  static constexpr std::chrono::milliseconds longest_absence{1'000};
+
+  /// Takes note of the present holder of control. Returns whether what moves must stop.
+  bool look(const SessionRequests::Holder& holder, Clock::time_point now) {
+    if (holder.is_there) {
+      absent_since_.reset();
+    } else if (!absent_since_) {
+      absent_since_ = now;
+    }
+    return holder.is_away || (absent_since_ && now > *absent_since_ + longest_absence);
+  }
+  [[nodiscard]] bool has_driver() const { return !absent_since_; }
+
+ private:
+  std::optional<Clock::time_point> absent_since_ = Clock::time_point{};
+};
+
 /// A thread that does what viewers ask for, and outlives its errors.
 class SessionThread {
  public:

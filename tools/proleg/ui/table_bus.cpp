@@ -9,29 +9,6 @@
 
 namespace proleg::tools {
 
-bool BusDocumentRate::is_due(const std::vector<host::MonitoredNode>& nodes, Clock::time_point now) {
-  std::vector<std::optional<std::uint8_t>> contacts;
-  contacts.reserve(nodes.size());
-  for (const host::MonitoredNode& node : nodes) {
-    contacts.push_back(node.contacts);
-  }
-  if (now < due_ && contacts == contacts_) {
-    return false;
-  }
-  contacts_ = std::move(contacts);
-  due_ = now + period;
-  return true;
-}
-
-void BusTraffic::add_to(BusView& view, host::BusMonitor& monitor, Clock::time_point now) {
-  if (now >= from_ + BusDocumentRate::period) {
-    traffic_ = monitor.take_traffic(view.now);
-    seconds_ = std::chrono::duration<double>(now - std::exchange(from_, now)).count();
-  }
-  view.traffic = traffic_;
-  view.seconds = seconds_;
-}
-
 TableBus::TableBus(std::string address, BusSharing& sharing, host::SessionOutput& output)
     : address_(std::move(address)),
       sharing_(sharing),
@@ -41,7 +18,8 @@ TableBus::TableBus(std::string address, BusSharing& sharing, host::SessionOutput
       monitor_attachment_(bus_.connection(), monitor_),
       queue_(bus_.connection()),
       queue_attachment_(bus_.connection(), queue_),
-      shared_(bus_.context(), bus_.connection()) {
+      shared_(bus_.context(), bus_.connection()),
+      views_(address_, bus_.connection(), monitor_) {
   description_ = bus_.connection().description();
   monitor_.set_reads_touch(true);
   thread_ = std::thread([this] { run(); });
@@ -58,7 +36,7 @@ void TableBus::run() {
       serve();
     } catch (const std::exception& error) {
       output_.notice(host::NoticeLevel::error, address_ + ": " + error.what());
-      std::this_thread::sleep_for(BusDocumentRate::period);
+      std::this_thread::sleep_for(BusViews::period);
     }
   }
 }
@@ -79,10 +57,8 @@ void TableBus::serve() {
   if (stops_.exchange(false)) {
     send_stops();
   }
-  const Clock::time_point now = Clock::now();
-  const std::vector<host::MonitoredNode> nodes = monitor_.nodes();
-  if (rate_.is_due(nodes, now)) {
-    publish(now, nodes);
+  if (const std::optional<BusView> view = views_.due(BusViews::Clock::now())) {
+    output_.publish("bus", bus_document({}, *view));
   }
   host::BusConnection& bus = bus_.connection();
   bus.run_until(bus.now() + look_period_us, [this] { return ends_ || stops_; });
@@ -93,19 +69,6 @@ void TableBus::send_stops() {
     queue_.write(node.node, canopen::object::controlword.address, canopen::object::controlword.type,
                  canopen::quick_stop_controlword, [](const host::SdoResult& /*result*/) {});
   }
-}
-
-void TableBus::publish(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes) {
-  host::BusConnection& bus = bus_.connection();
-  BusView view;
-  view.address = address_;
-  view.is_connected = bus.state().is_connected;
-  view.problem = view.is_connected ? bus.state().reason : bus.diagnosis();
-  view.now = bus.now();
-  traffic_.add_to(view, monitor_, now);
-  view.has_other_host = monitor_.has_host(view.now);
-  view.nodes = nodes;
-  output_.publish("bus", bus_document({}, view));
 }
 
 }  // namespace proleg::tools

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <string>
 #include <thread>
@@ -15,33 +14,6 @@
 #include "tools/proleg/ui/bus_view.hpp"
 
 namespace proleg::tools {
-
-/// When the document `bus` is due: twice a second, and at once when a touch sensor of a module has changed.
-class BusDocumentRate {
- public:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds period{500};
-
-  [[nodiscard]] bool is_due(const std::vector<host::MonitoredNode>& nodes, Clock::time_point now);
-
- private:
-  Clock::time_point due_{};
-  std::vector<std::optional<std::uint8_t>> contacts_;  ///< of the last document
-};
-
-/// What is on a bus, over half a second or more: documents come more often, and in a few milliseconds there is one
-/// frame or none.
-class BusTraffic {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  void add_to(BusView& view, host::BusMonitor& monitor, Clock::time_point now);
-
- private:
-  Clock::time_point from_ = Clock::now();
-  host::BusMonitor::Traffic traffic_{};
-  double seconds_ = 0;
-};
 
 /// A bus with modules on a table that this program has open without a robot that it drives: viewers see what is on it,
 /// and jobs of other programs take part in it. It has a thread of its own.
@@ -61,12 +33,9 @@ class TableBus {
   void stop_modules() { stops_ = true; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void run();
   void serve();
   void send_stops();
-  void publish(Clock::time_point now, const std::vector<host::MonitoredNode>& nodes);
 
   std::string address_;
   std::string description_;
@@ -78,9 +47,8 @@ class TableBus {
   host::SdoQueue queue_;
   host::BusAttachment queue_attachment_;
   host::SharedBus shared_;
-  BusDocumentRate rate_;
+  BusViews views_;
   bool had_job_ = false;
-  BusTraffic traffic_;
   std::atomic<bool> stops_ = false;
   std::atomic<bool> ends_ = false;
   std::thread thread_;

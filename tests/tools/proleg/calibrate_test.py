@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -41,8 +42,10 @@ class Module:
         self.readings = list(readings)
 
     readings = ()
+    count = 0  # of readings
 
     def read(self, address):
+        self.count += address == READING
         if address == READING and self.readings:
             self.objects[READING] = (2, self.readings.pop(0) if len(self.readings) > 1 else self.readings[0])
         return self.objects.get(address)
@@ -86,12 +89,19 @@ class Module:
                 return 0x700 + NODE, b"\0"
         return None
 
+    @staticmethod
+    def next_character(line):
+        try:
+            return line.read(1)
+        except ConnectionResetError:
+            return b""  # the program has ended
+
     def serve(self):
         connection = self.server.accept()[0]
         self.server.close()
         with connection, connection.makefile("rwb", buffering=0) as line:
             word = b""
-            while character := line.read(1):
+            while character := self.next_character(line):
                 if character != b"\r":
                     word += character
                     continue
@@ -119,6 +129,12 @@ class Calibration:
                 return event
         raise AssertionError(f"no {name}: {self.process.stderr.read()}")
 
+    def wait_for_readings(self, reading):
+        """Until all readings that count are this one."""
+        equal = 0
+        while equal < 9:
+            equal = equal + 1 if self.event("reading")["reading"] == reading else 0
+
     def answer(self, word):
         self.process.stdin.write(word + "\n")
         self.process.stdin.flush()
@@ -139,9 +155,11 @@ class CalibrateTest(unittest.TestCase):
         run = Calibration(module, "--json-lines")
         self.assertEqual(run.event("question"), {"event": "question", "question": "lower", "node": NODE})
         module.turn(lower)
+        run.wait_for_readings(lower)
         run.answer("here")
         self.assertEqual(run.event("question")["question"], "upper")
         module.turn(upper)
+        run.wait_for_readings(upper)
         run.answer("here")
         return run
 
@@ -157,13 +175,15 @@ class CalibrateTest(unittest.TestCase):
             self.assertEqual(module.nmt, [0x80, 0x81], "pre-operational, then a reset")
 
     def test_a_person_presses_enter(self):
-        module = Module()
+        module = Module(reading=500)
         run = Calibration(module)
-        module.turn(500)
         run.answer("")
         while run.process.poll() is None and not run.is_asking:
             pass
         module.turn(3000)
+        count = module.count
+        while run.process.poll() is None and module.count < count + 9:
+            time.sleep(0.05)
         run.answer("")
         self.assertEqual(run.end(), 0, run.errors)
         self.assertIn("reads 500 at -90 degrees and 3000 at +90 degrees; stored", run.output)
@@ -172,11 +192,12 @@ class CalibrateTest(unittest.TestCase):
         module = Module()
         run = Calibration(module, "--json-lines")
         run.event("question")
-        module.turn(*[400, 900] * 6, 410)
+        module.turn(*[400, 900] * 500, 410)
         run.answer("here")
         self.assertIn("hold it still", run.event("refused")["text"])
         self.assertEqual(run.event("question")["question"], "lower")
         module.turn(410)
+        run.wait_for_readings(410)
         run.answer("here")
         self.assertEqual(run.event("question")["question"], "upper")
         run.answer("quit")

@@ -385,9 +385,14 @@ int serve(UiOptions& options) {
     std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
   }
   constexpr std::chrono::milliseconds signal_period{100};
-  while (!interrupted()) {
+  constexpr std::chrono::seconds trim_period{10};
+  for (auto trim_at = std::chrono::steady_clock::now() + trim_period; !interrupted();) {
     context.restart();
     context.run_for(signal_period);
+    if (const auto now = std::chrono::steady_clock::now(); now >= trim_at) {
+      malloc_trim(0);  // the place of many small parts, such as those of a large world, goes back to the system
+      trim_at = now + trim_period;
+    }
   }
   page.stop();
   constexpr std::chrono::seconds goodbye{2};

@@ -21,6 +21,12 @@ std::variant<Tcp, Tls> make_stream(boost::asio::ip::tcp::socket socket, boost::a
 
 }  // namespace
 
+std::string address_of(const boost::asio::ip::tcp::socket& socket) {
+  error_code error;
+  const auto end = socket.remote_endpoint(error);
+  return error ? std::string() : end.address().to_string();
+}
+
 struct ClientStream::Layers {
   std::variant<Tcp, Tls> stream;
   Tls* tls() { return std::get_if<Tls>(&stream); }

@@ -9,11 +9,15 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <functional>
 #include <memory>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace proleg::host {
+
+/// The address of the computer at the other end; empty if the connection has ended.
+[[nodiscard]] std::string address_of(const boost::asio::ip::tcp::socket& socket);
 
 /// The stream of a client's connection: TCP, or TLS above it. Handlers and buffers have one type each below, because
 /// Boost takes long to compile for each combination.

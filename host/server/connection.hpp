@@ -5,9 +5,11 @@
 #include <boost/asio/ssl/context.hpp>
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include "host/server/request_policy.hpp"
 #include "host/server/robot_session.hpp"
+#include "host/server/seats.hpp"
 #include "host/server/session_link.hpp"
 
 namespace proleg::host {
@@ -30,8 +32,12 @@ class ConnectionServer {
   [[nodiscard]] virtual const ServerAddress& address() const = 0;
   [[nodiscard]] virtual boost::asio::io_context& context() = 0;
   [[nodiscard]] virtual SessionLink& link() = 0;
-  /// Adds a connection, which ends with this server.
-  virtual void add(const std::shared_ptr<Connection>& connection) = 0;
+  /// The seats behind this server; null: there are none.
+  [[nodiscard]] virtual SeatDirectory* seats() = 0;
+  /// The computers that are connected to them.
+  [[nodiscard]] virtual SeatVisitors& visitors() = 0;
+  /// Adds a connection of this computer, which ends with this server.
+  virtual void add(const std::shared_ptr<Connection>& connection, const std::string& address) = 0;
   /// Sends the pending output and waits for the next deadline. To be called after each event.
   virtual void serve() = 0;
 };

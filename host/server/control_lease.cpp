@@ -24,7 +24,7 @@ void ControlLease::take(ServerTime now, ClientId client, const std::string& name
 
 void ControlLease::give(ServerTime now, ClientId client, const std::string& name) {
   advance(now);
-  if (!holder_) {
+  if (!holder_ || is_away_) {
     begin_epoch(now, {client, name});
   }
 }

@@ -28,7 +28,8 @@ class ControlLease {
   };
 
   void take(ServerTime now, ClientId client, const std::string& name, std::uint64_t operation);
-  /// Gives the lease to a viewer that has requested no operation, if nobody has it. There is no result.
+  /// Gives the lease to a viewer that has requested no operation, if nobody has it or the
+  /// holder is away. There is no result.
   void give(ServerTime now, ClientId client, const std::string& name);
   void answer(ServerTime now, ClientId client, std::uint64_t epoch, std::uint64_t operation, bool is_granted);
   void release(ServerTime now, ClientId client, std::uint64_t epoch, std::uint64_t operation);

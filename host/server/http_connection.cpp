@@ -4,16 +4,21 @@
 #include "host/server/connection.hpp"
 
 #include <array>
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "host/server/client_stream.hpp"
+#include "host/server/relay_connection.hpp"
 #include "host/server/request_policy.hpp"
 #include "host/server/viewer_connection.hpp"
 
@@ -64,6 +69,8 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   /// discard the response.
   void drain();
   void upgrade(Request request);
+  void open_seat(const Request& request, SeatNumber seat, std::optional<std::uint16_t> port, bool is_look);
+  void join(const Request& request, bool is_kept_alive);
 
   const std::shared_ptr<ConnectionServer> server_;
   ClientStream stream_;
@@ -116,7 +123,17 @@ void HttpConnection::handle_request(const error_code& error) {
   asked.origins = fields(request, http::field::origin);
   asked.authorizations = fields(request, http::field::authorization);
   asked.is_upgrade = beast::websocket::is_upgrade(request);
-  const RequestDecision decision = decide_request(asked, server_->address(), server_->link().token);
+  SeatDirectory* const seats = server_->seats();
+  const std::optional<SeatPath> path =
+      seats == nullptr ? SeatPath{std::nullopt, asked.target} : seat_path(asked.target);
+  const bool is_of_seat = path && path->seat;
+  const std::optional<SeatDirectory::Seat> seat = is_of_seat ? seats->find(*path->seat) : std::nullopt;
+  asked.target = path ? path->target : asked.target;
+  asked.may_join = seats != nullptr && !is_of_seat;
+  RequestDecision decision = decide_request(asked, server_->address(), seat ? seat->token : server_->link().token);
+  if (decision.action != RequestAction::refuse && (!path || (is_of_seat && !seat))) {
+    decision = {RequestAction::refuse, 404};
+  }
   is_head_ = request.method() == http::verb::head;
   socket_origin_ = decision.status == 421 ? "" : socket_origin(server_->address(), asked.hosts.front());
   const bool is_only_stop = use_ == ConnectionUse::only_stop;
@@ -130,21 +147,36 @@ void HttpConnection::handle_request(const error_code& error) {
       respond_error(decision.status, is_kept_alive);
       return;
     case RequestAction::stop:
-      server_->link().hub.stop("POST /stop");
+      if (is_of_seat) {
+        seats->stop(*path->seat);
+      } else {
+        server_->link().hub.stop("POST /stop");
+      }
       respond(200, "application/json", R"({"stopped": true})", is_kept_alive);
       return;
     case RequestAction::open_socket:
       // A client has no reason to send bytes of the WebSocket before the answer, so they are refused.
       if (buffer_.size() > 0) {
         respond_error(400, false);
+      } else if (is_of_seat) {
+        open_seat(request, *path->seat, seat->port, only_looks(asked.target));
       } else {
         upgrade(std::move(request));
       }
       return;
+    case RequestAction::join:
+      join(request, is_kept_alive);
+      return;
     case RequestAction::serve_file:
       break;
   }
-  const PageFile* const file = server_->link().page.find(path_of(asked.target));
+  std::string_view name = path_of(asked.target);
+  if (is_of_seat && !seat->port) {
+    seats->wake(*path->seat);
+  } else if (seats != nullptr && !is_of_seat && name == "/") {
+    name = "/class.html";
+  }
+  const PageFile* const file = server_->link().page.find(name);
   if (file == nullptr) {
     respond_error(404, is_kept_alive);
   } else {
@@ -187,7 +219,41 @@ void HttpConnection::drain() {
 }
 
 void HttpConnection::upgrade(Request request) {
-  server_->add(open_viewer_connection(server_, std::move(stream_), std::move(request)));
+  const std::string address = address_of(stream_.tcp().socket());
+  server_->add(open_viewer_connection(server_, std::move(stream_), std::move(request)), address);
+}
+
+void HttpConnection::open_seat(const Request& request, SeatNumber seat, std::optional<std::uint16_t> port,
+                               bool is_look) {
+  SeatDirectory& seats = *server_->seats();
+  const std::string address = address_of(stream_.tcp().socket());
+  std::unique_ptr<SeatVisitors::Visit> visit =
+      port ? server_->visitors().begin(seat, address, std::chrono::steady_clock::now()) : nullptr;
+  if (visit == nullptr) {
+    if (!port) {
+      seats.wake(seat);
+    }
+    respond_error(503, false);  // the page tries again
+    return;
+  }
+  std::function<void()> ended;
+  if (!is_look) {
+    seats.connected(seat);
+    ended = [&seats, seat] { seats.disconnected(seat); };
+  }
+  server_->add(open_relay_connection(server_, std::move(stream_), request, *port, std::move(visit), std::move(ended)),
+               address);
+}
+
+void HttpConnection::join(const Request& request, bool is_kept_alive) {
+  stream_.tcp().expires_never();  // the program of the seat may have to start
+  server_->seats()->join(request.body(), address_of(stream_.tcp().socket()),
+                         [self = shared_from_this(), is_kept_alive](const SeatDirectory::Answer& answer) {
+                           asio::post(self->server_->context(), [self, is_kept_alive, answer] {
+                             self->body_ = answer.json;
+                             self->respond(answer.status, "application/json", self->body_, is_kept_alive);
+                           });
+                         });
 }
 
 }  // namespace

@@ -28,15 +28,17 @@ constexpr std::string_view bearer = "Bearer ";
 constexpr std::array<std::string_view, 3> local_names{"127.0.0.1", "localhost", "[::1]"};
 constexpr std::uint16_t https_port = 443;
 
-constexpr std::array<std::pair<unsigned, std::string_view>, 11> statuses{{{200, "OK"},
+constexpr std::array<std::pair<unsigned, std::string_view>, 13> statuses{{{200, "OK"},
                                                                           {400, "Bad Request"},
                                                                           {401, "Unauthorized"},
                                                                           {403, "Forbidden"},
                                                                           {404, "Not Found"},
                                                                           {405, "Method Not Allowed"},
+                                                                          {409, "Conflict"},
                                                                           {413, "Payload Too Large"},
                                                                           {421, "Misdirected Request"},
                                                                           {426, "Upgrade Required"},
+                                                                          {429, "Too Many Requests"},
                                                                           {431, "Request Header Fields Too Large"},
                                                                           {503, "Service Unavailable"}}};
 
@@ -67,6 +69,24 @@ AccessToken AccessToken::make() {
   std::array<char, sodium_base64_ENCODED_LEN(random_bytes, sodium_base64_VARIANT_URLSAFE_NO_PADDING)> text{};
   sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_URLSAFE_NO_PADDING);
   return AccessToken(text.data());
+}
+
+std::optional<AccessToken> AccessToken::parse(std::string_view text) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  constexpr std::size_t length = sodium_base64_ENCODED_LEN(random_bytes, sodium_base64_VARIANT_URLSAFE_NO_PADDING) - 1;
+  if (text.size() != length || text.find_first_not_of(digits) != std::string_view::npos) {
+    return std::nullopt;
+  }
+  return AccessToken(std::string(text));
+}
+
+std::string random_digits(unsigned count) {
+  initialise_sodium();
+  std::string text;
+  for (unsigned i = 0; i < count; ++i) {
+    text += static_cast<char>('0' + randombytes_uniform(10));
+  }
+  return text;
 }
 
 bool AccessToken::matches(std::string_view candidate) const {
@@ -124,8 +144,12 @@ RequestDecision decide_request(const RequestFields& request, const ServerAddress
     return refuse(403);
   }
   const std::string_view path = path_of(request.target);
-  if (is_post != (path == "/stop")) {
+  const bool is_join = request.may_join && path == "/join";
+  if (is_post != (path == "/stop" || is_join)) {
     return refuse(405);
+  }
+  if (is_join) {
+    return {RequestAction::join, 0};
   }
   if (is_post) {
     const bool has_token = request.authorizations.size() == 1 && request.authorizations.front().starts_with(bearer) &&

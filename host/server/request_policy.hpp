@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,8 @@ class AccessToken {
   [[nodiscard]] static AccessToken make();
 
   [[nodiscard]] const std::string& text() const { return text_; }
+  /// The token that text() gave; nothing for a text that is none.
+  [[nodiscard]] static std::optional<AccessToken> parse(std::string_view text);
   /// Whether the candidate is the token. The duration depends only on the length of `candidate`.
   [[nodiscard]] bool matches(std::string_view candidate) const;
 
@@ -26,6 +29,9 @@ class AccessToken {
 
   std::string text_;
 };
+
+/// Random decimal digits, for a secret that a person types.
+[[nodiscard]] std::string random_digits(unsigned count);
 
 /// Writes a file that only its owner may read (mode 0600), and replaces a file of this name. The file never exists
 /// with another mode or with a part of the text. Throws FileError.
@@ -52,12 +58,13 @@ struct RequestFields {
   std::vector<std::string_view> origins;         ///< every field Origin
   std::vector<std::string_view> authorizations;  ///< every field Authorization
   bool is_upgrade = false;                       ///< the request is for a WebSocket
+  bool may_join = false;                         ///< POST /join exists at this server
 };
 
 /// The path of a request's target, without the question mark and the text that follows it.
 [[nodiscard]] std::string_view path_of(std::string_view target);
 
-enum class RequestAction { refuse, serve_file, open_socket, stop };
+enum class RequestAction { refuse, serve_file, open_socket, stop, join };
 
 struct RequestDecision {
   RequestAction action = RequestAction::refuse;

@@ -77,7 +77,9 @@ void ViewerHub::handle(ServerTime now, Viewer& viewer, const Hello& hello) {
                  "hello: found protocol " + std::to_string(hello.protocol) + ", expected " + std::to_string(protocol));
   } else {
     viewer.welcome(hello.name, hello.is_only_stop, options_.program, state_.notices.next_number());
-    if (options_.gives_control && hello.wants_control && !hello.is_only_stop && is_alone(viewer.client())) {
+    const bool may_have_control = options_.gives_control == NewViewers::any ||
+                                  (options_.gives_control == NewViewers::alone && is_alone(viewer.client()));
+    if (may_have_control && hello.wants_control && !hello.is_only_stop) {
       lease_.give(now, viewer.client(), viewer.name());
       report_lease(now);
     }
@@ -145,7 +147,16 @@ void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Stop& /*stop*/)
   session_.stop({request, viewer.name()});
 }
 
-void ViewerHub::stop(const std::string& by) { session_.stop({++last_request_, by}); }
+void ViewerHub::stop(const std::string& by, std::function<void(const StopAnswer&)> answered) {
+  const RequestId request = ++last_request_;
+  if (answered) {
+    if (other_stops_.size() >= max_pending_stops) {
+      other_stops_.erase(other_stops_.begin());
+    }
+    other_stops_.emplace(request, std::move(answered));
+  }
+  session_.stop({request, by});
+}
 
 void ViewerHub::handle(ServerTime now, Viewer& viewer, const Beat& beat) {
   lease_.beat(now, viewer.client(), beat.age_ms);
@@ -211,6 +222,10 @@ void ViewerHub::answer(const OperationAnswer& answer) {
 }
 
 void ViewerHub::stopped(const StopAnswer& answer) {
+  if (const auto other = other_stops_.extract(answer.request)) {
+    other.mapped()(answer);
+    return;
+  }
   const auto stop = stops_.find(answer.request);
   if (stop == stops_.end()) {
     return;

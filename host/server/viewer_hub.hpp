@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,6 +34,13 @@ struct StopAnswer {
   double ms = 0;           ///< duration from the request to the last confirmation
 };
 
+/// Which viewers have control from the start, if their hello asks for it.
+enum class NewViewers {
+  none,
+  alone,  ///< one that connects alone
+  any,    ///< one that finds control free, or its holder away
+};
+
 /// The viewers of a session, and their lease: the part of the server above its sockets. It is used by one thread, and
 /// the time is an argument.
 class ViewerHub {
@@ -40,8 +48,7 @@ class ViewerHub {
   struct Options {
     std::string program;                    ///< name and version, for the welcome
     std::set<std::string> free_operations;  ///< operations that need no control
-    /// Whether a viewer that connects alone may have control at once, if its hello asks for it.
-    bool gives_control = false;
+    NewViewers gives_control = NewViewers::none;
   };
 
   ViewerHub(Options options, const AccessToken& token, RobotSession& session, TickHistory& history);
@@ -54,8 +61,9 @@ class ViewerHub {
   [[nodiscard]] std::optional<OutgoingMessage> next_message(ServerTime now, ClientId client);
   /// The reason with which a viewer's connection has to end (Viewer::closing()).
   [[nodiscard]] std::optional<CloseReason> closing(ClientId client) const;
-  /// Stops the robot on a request that did not come from a viewer. The caller has checked the token.
-  void stop(const std::string& by);
+  /// Stops the robot on a request that did not come from a viewer. The caller has checked the token. answered: called
+  /// when the session has answered.
+  void stop(const std::string& by, std::function<void(const StopAnswer&)> answered = {});
 
   // The functions below are for the session.
   void publish(const std::string& name, std::string_view value) { state_.documents.publish(name, value); }
@@ -104,6 +112,7 @@ class ViewerHub {
   RequestId last_request_ = 0;
   std::map<RequestId, PendingOperation> operations_;
   std::map<RequestId, ClientId> stops_;
+  std::map<RequestId, std::function<void(const StopAnswer&)>> other_stops_;  ///< of requests that no viewer made
 };
 
 }  // namespace proleg::host

@@ -1,11 +1,13 @@
 #include "host/server/web_server.hpp"
 
+#include <algorithm>
 #include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
 
+#include "host/server/client_stream.hpp"
 #include "host/server/connection.hpp"
 #include "host/server/session_link.hpp"
 
@@ -17,15 +19,20 @@ using boost::system::error_code;
 using tcp = asio::ip::tcp;
 
 constexpr std::size_t max_connections = 56;
+// With seats. One computer can take only a part of them.
+constexpr std::size_t max_class_connections = 600;
+constexpr std::size_t max_connections_of_computer = 150;
 constexpr std::size_t max_stop_connections = 8;
 constexpr std::chrono::milliseconds accept_pause{100};
 
 }  // namespace
 
 SocketServer::SocketServer(asio::io_context& context, std::uint16_t port,
-                           std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link)
+                           std::shared_ptr<const ServerCertificate> certificate, SeatDirectory* seats,
+                           std::shared_ptr<SessionLink> link)
     : context_(context),
       certificate_(std::move(certificate)),
+      seats_(seats),
       link_(std::move(link)),
       acceptor_(context),
       timer_(context),
@@ -67,6 +74,8 @@ void SocketServer::post_delivery() {
   });
 }
 
+void SocketServer::post(std::function<void()> task) { asio::post(context_, std::move(task)); }
+
 void SocketServer::post_stop() {
   asio::post(context_, [self = shared_from_this()] { self->stop(); });
 }
@@ -95,8 +104,12 @@ void SocketServer::accepted(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   asio::ssl::context* const tls = certificate_ ? &certificate_->tls() : nullptr;
-  if (living(connections_).size() < max_connections) {
-    connections_.push_back(open_http_connection(shared_from_this(), std::move(socket), tls, ConnectionUse::any));
+  const std::string address = address_of(socket);
+  const std::size_t open = living(connections_).size();
+  const auto open_of_computer = static_cast<std::size_t>(std::ranges::count(connections_, address, &Known::address));
+  if (seats_ == nullptr ? open < max_connections
+                        : open < max_class_connections && open_of_computer < max_connections_of_computer) {
+    add(open_http_connection(shared_from_this(), std::move(socket), tls, ConnectionUse::any), address);
     return;
   }
   if (const auto reserved = living(stop_connections_); reserved.size() >= max_stop_connections) {
@@ -104,13 +117,13 @@ void SocketServer::accepted(tcp::socket socket) {
     stop_connections_.pop_front();
   }
   stop_connections_.push_back(
-      open_http_connection(shared_from_this(), std::move(socket), tls, ConnectionUse::only_stop));
+      {open_http_connection(shared_from_this(), std::move(socket), tls, ConnectionUse::only_stop), address});
 }
 
 std::vector<std::shared_ptr<Connection>> SocketServer::living(Connections& connections) {
   std::vector<std::shared_ptr<Connection>> living;
-  std::erase_if(connections, [&living](const std::weak_ptr<Connection>& known) {
-    if (std::shared_ptr<Connection> connection = known.lock()) {
+  std::erase_if(connections, [&living](const Known& known) {
+    if (std::shared_ptr<Connection> connection = known.connection.lock()) {
       living.push_back(std::move(connection));
       return false;
     }
@@ -158,13 +171,26 @@ void SocketServer::stop() {
   }
 }
 
+namespace {
+
+/// Of computers in the network, none has control before a person there asks for it. A seat has one learner.
+NewViewers first_control(bool is_open_to_network, bool is_seat) {
+  if (is_seat) {
+    return NewViewers::any;
+  }
+  return is_open_to_network ? NewViewers::none : NewViewers::alone;
+}
+
+}  // namespace
+
 WebServer::WebServer(boost::asio::io_context& context, ServerOptions options, RobotSession& session)
     : link_(std::make_shared<SessionLink>(
           std::move(options.token), std::move(options.page), options.history_bytes,
-          // Of computers in the network, none has control before a person there asks for it.
-          ViewerHub::Options{std::move(options.program), std::move(options.free_operations), !options.certificate},
+          ViewerHub::Options{std::move(options.program), std::move(options.free_operations),
+                             first_control(options.certificate != nullptr, options.is_seat)},
           session)),
-      sockets_(std::make_shared<SocketServer>(context, options.port, std::move(options.certificate), link_)) {
+      sockets_(
+          std::make_shared<SocketServer>(context, options.port, std::move(options.certificate), options.seats, link_)) {
   sockets_->accept();
 }
 
@@ -173,6 +199,12 @@ WebServer::~WebServer() { stop(); }
 std::uint16_t WebServer::port() const { return sockets_->address().port; }
 
 std::string WebServer::origin() const { return first_origin(sockets_->address()); }
+
+void WebServer::stop_robot(const std::string& by, std::function<void(unsigned, unsigned)> answered) {
+  sockets_->post([link = link_, by, answered = std::move(answered)] {
+    link->hub.stop(by, [answered](const StopAnswer& answer) { answered(answer.confirmed, answer.of); });
+  });
+}
 
 void WebServer::stop() { sockets_->post_stop(); }
 

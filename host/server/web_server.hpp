@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -17,6 +18,7 @@
 #include "host/server/page_files.hpp"
 #include "host/server/request_policy.hpp"
 #include "host/server/robot_session.hpp"
+#include "host/server/seats.hpp"
 #include "host/server/server_certificate.hpp"
 #include "host/server/session_link.hpp"
 
@@ -26,21 +28,32 @@ namespace proleg::host {
 class SocketServer final : public ConnectionServer, public std::enable_shared_from_this<SocketServer> {
  public:
   SocketServer(boost::asio::io_context& context, std::uint16_t port,
-               std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link);
+               std::shared_ptr<const ServerCertificate> certificate, SeatDirectory* seats,
+               std::shared_ptr<SessionLink> link);
 
   void accept();
   /// Schedules the delivery of the session's output. May be called from any thread.
   void post_delivery();
   void post_stop();
+  /// Has the server's thread do something.
+  void post(std::function<void()> task);
 
   [[nodiscard]] const ServerAddress& address() const override { return address_; }
   [[nodiscard]] boost::asio::io_context& context() override { return context_; }
   [[nodiscard]] SessionLink& link() override { return *link_; }
-  void add(const std::shared_ptr<Connection>& connection) override { connections_.push_back(connection); }
+  [[nodiscard]] SeatDirectory* seats() override { return seats_; }
+  [[nodiscard]] SeatVisitors& visitors() override { return visitors_; }
+  void add(const std::shared_ptr<Connection>& connection, const std::string& address) override {
+    connections_.push_back({connection, address});
+  }
   void serve() override;
 
  private:
-  using Connections = std::deque<std::weak_ptr<Connection>>;
+  struct Known {
+    std::weak_ptr<Connection> connection;
+    std::string address;
+  };
+  using Connections = std::deque<Known>;
 
   void listen(std::uint16_t port);
   void accepted(boost::asio::ip::tcp::socket socket);
@@ -50,6 +63,7 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
 
   boost::asio::io_context& context_;
   const std::shared_ptr<const ServerCertificate> certificate_;
+  SeatDirectory* const seats_;
   const std::shared_ptr<SessionLink> link_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer timer_;
@@ -58,6 +72,7 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
   ServerAddress address_;
   bool has_ended_ = false;
   Connections connections_;
+  SeatVisitors visitors_;
   Connections stop_connections_;  ///< connections reserved for POST /stop, the oldest first
 };
 
@@ -73,6 +88,9 @@ struct ServerOptions {
   std::uint16_t port = 0;                 ///< 0: any free port
   std::shared_ptr<const ServerCertificate> certificate{};  ///< all interfaces, TLS only; null: 127.0.0.1, no TLS
   std::size_t history_bytes = 4U << 20U;                   ///< memory for rows that a viewer has not read
+  /// Programs behind this server, which must outlive the io_context; "/" is then class.html. Null: there are none.
+  SeatDirectory* seats = nullptr;
+  bool is_seat = false;  ///< this is such a program
 };
 
 /// Serves the page of one session (docs/page-interface.md), in the thread that runs the io_context. The session is in
@@ -98,6 +116,9 @@ class WebServer final : public SessionOutput {
   void stopped(RequestId request, unsigned confirmed, unsigned of, double ms) override;
   void notice(NoticeLevel level, const std::string& text) override;
 
+  /// Stops the robot, as POST /stop does. answered: called in the server's thread with the modules that have confirmed
+  /// it, and the number of all. May be called from any thread.
+  void stop_robot(const std::string& by, std::function<void(unsigned confirmed, unsigned of)> answered);
   /// Ends all connections (close code 1001, then after 1 s by force) and accepts no more. Then the server leaves no
   /// work in the io_context.
   void stop();

@@ -29,7 +29,7 @@ class RecordingSession final : public RobotSession {
 
 class Hub : public testing::Test {
  protected:
-  explicit Hub(bool gives_control = false) : hub({"proleg 1", {"look"}, gives_control}, token, session, history) {}
+  explicit Hub(NewViewers gives_control = NewViewers::none) : hub({"proleg 1", {"look"}, gives_control}, token, session, history) {}
   ClientId join(const std::string& name, const json& more = json::object()) {
     const ClientId client = hub.add_viewer(now);
     json hello{{"type", "hello"}, {"protocol", 1}, {"token", token.text()}, {"name", name}};

@@ -90,6 +90,9 @@ void ModulesSession::close() {
 }
 
 json ModulesSession::carry_out(const host::OperationRequest& operation) {
+  if (!options_.refusal.empty()) {
+    throw std::runtime_error(options_.refusal);
+  }
   static const std::map<std::string_view, Handler> handlers{{"modules.look", &ModulesSession::look},
                                                             {"modules.open", &ModulesSession::open},
                                                             {"modules.close", &ModulesSession::close_bus},

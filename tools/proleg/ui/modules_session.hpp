@@ -32,6 +32,7 @@ struct ModulesSessionOptions {
   std::filesystem::path folder;   ///< of the project
   std::optional<RobotBus> bus;    ///< nothing: viewers open one
   bool opens_any_address = true;  ///< else viewers open only adapters of this computer
+  std::string refusal{};          ///< why viewers may do nothing here; empty: they may
 };
 
 class ModulesSession final : private SessionThread {

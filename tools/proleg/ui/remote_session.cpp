@@ -75,6 +75,15 @@ std::unique_ptr<host::DeviceSource> RemoteSession::kernel_devices(host::DeviceLi
   return std::make_unique<host::EventDevices>(listener, host::EventDevices::Folders{});
 }
 
+std::unique_ptr<host::DeviceSource> RemoteSession::no_devices(host::DeviceListener& /*listener*/) {
+  struct NoDevices final : host::DeviceSource {
+    void add_descriptors(std::vector<pollfd>& /*descriptors*/) const override {}
+    [[nodiscard]] bool is_watching() const override { return true; }
+    void read() override {}
+  };
+  return std::make_unique<NoDevices>();
+}
+
 RemoteSession::RemoteSession(host::RobotSession& session, host::BindingStore store, MakeDevices make_devices)
     : session_(session), make_devices_(std::move(make_devices)), store_(std::move(store)) {
   remote_.set_bindings(store_.read_bindings());

@@ -49,6 +49,8 @@ class RemoteSession final : public host::RobotSession, public host::SessionOutpu
 
   /// The gamepads of this computer.
   [[nodiscard]] static std::unique_ptr<host::DeviceSource> kernel_devices(host::DeviceListener& listener);
+  /// None.
+  [[nodiscard]] static std::unique_ptr<host::DeviceSource> no_devices(host::DeviceListener& listener);
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"remote.watch"}; }
 

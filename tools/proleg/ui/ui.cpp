@@ -35,6 +35,7 @@
 #include "tools/proleg/ui/algorithm_folders.hpp"
 #include "tools/proleg/ui/algorithm_session.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/class_program.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
 #include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gallery.hpp"
@@ -46,6 +47,7 @@
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
 #include "tools/proleg/ui/search_session.hpp"
+#include "tools/proleg/ui/seat_input.hpp"
 #include "tools/proleg/ui/shipped_scenarios.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
@@ -55,17 +57,22 @@ using namespace proleg;
 using namespace proleg::tools;
 
 constexpr const char* recording_extension = ".proleg";
+constexpr const char* default_recordings = ".";
+constexpr const char* default_class_folder = "class";
 
 struct UiOptions {
   ScenarioOptions scenario;
   BusOptions bus;
   LanOptions lan;
   std::string port = "0";
-  std::string recordings = ".";
+  std::string recordings = default_recordings;
   std::optional<std::string> page;
   bool no_browser = false;
   bool paused = false;
   bool allow_code = false;
+  std::optional<std::string> learners;  ///< of a class
+  bool is_seat = false;                 ///< started by a class
+  std::optional<SeatSettings> seat;
 };
 
 /// The files of a robot with five joints, for those who give none.
@@ -216,6 +223,10 @@ void refuse_robot_options(const UiOptions& options) {
 
 /// Why viewers may not write code; empty: they may. Who writes an algorithm can do all that this program can do.
 std::string code_refusal(const UiOptions& options) {
+  if (options.seat && !options.seat->may_write_code) {
+    return "algorithms of a class are those of the teacher; the option --allow-code of 'proleg ui --class' lets all "
+           "write them";
+  }
   return options.lan.lan && !options.allow_code
              ? "other computers may open this page, so it takes no code; the option --allow-code lets it"
              : "";
@@ -260,7 +271,76 @@ AlgorithmSessionOptions code_options(const UiOptions& options, const std::filesy
           }};
 }
 
+/// The folder of the page: the one that was built, or another one.
+std::filesystem::path page_folder(const UiOptions& options) {
+  return options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
+}
+
+/// Options that belong to one robot have no meaning for a class.
+void refuse_options_with_class(const UiOptions& options) {
+  if (options.paused || options.is_seat || has_robot_option(options)) {
+    throw BadInput("--class: found an option of one robot, expected a scenario or a folder, and options of the page");
+  }
+}
+
+/// FILE is a scenario with which all begin, or the folder of the class.
+int serve_class(const UiOptions& options) {
+  refuse_options_with_class(options);
+  ClassOptions of_class;
+  const std::string& file = options.scenario.file;
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    of_class.folder = file;
+  } else {
+    of_class.folder = options.recordings == default_recordings ? default_class_folder : options.recordings;
+    if (!file.empty()) {
+      of_class.scenario = file;
+    }
+  }
+  of_class.learners = *options.learners;
+  of_class.page = page_folder(options);
+  of_class.port = parse_port(options.port);
+  of_class.lan = options.lan;
+  of_class.allow_code = options.allow_code;
+  of_class.no_browser = options.no_browser;
+  return tools::serve_class(of_class);
+}
+
+/// Serves the page until the program is to end.
+void serve_until_end(boost::asio::io_context& context, host::WebServer& page) {
+  constexpr std::chrono::milliseconds signal_period{100};
+  constexpr std::chrono::seconds trim_period{10};
+  for (auto trim_at = std::chrono::steady_clock::now() + trim_period; !interrupted();) {
+    context.restart();
+    context.run_for(signal_period);
+    if (const auto now = std::chrono::steady_clock::now(); now >= trim_at) {
+      malloc_trim(0);  // the place of many small parts, such as those of a large world, goes back to the system
+      trim_at = now + trim_period;
+    }
+  }
+  page.stop();
+  constexpr std::chrono::seconds goodbye{2};
+  context.restart();
+  context.run_for(goodbye);
+}
+
+bool opens_any_address(const UiOptions& options) {
+  return !(options.seat ? options.seat->is_open_to_network : options.lan.lan);
+}
+
+/// The modules on the table are for the teacher.
+std::string modules_refusal(const UiOptions& options) {
+  return options.seat && !options.seat->is_teacher ? "modules: they are for the teacher of a class" : "";
+}
+
 int serve(UiOptions& options) {
+  if (options.learners) {
+    return serve_class(options);
+  }
+  InputLines input;
+  if (options.is_seat) {
+    options.seat = read_seat_settings(input);
+  }
   // By itself the C library keeps the place of large texts, such as meshes, after their use (mallopt(3)).
   constexpr int large = 1 << 18;
   mallopt(M_MMAP_THRESHOLD, large);
@@ -286,11 +366,15 @@ int serve(UiOptions& options) {
       recordings.is_alone = true;  // until the person has built them
     }
   }
-  const std::filesystem::path page_folder =
-      options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
-  const host::AccessToken token = host::AccessToken::make();
-  host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
+  const host::AccessToken token = options.seat ? options.seat->token : host::AccessToken::make();
+  // The class serves the page of its seats.
+  host::ServerOptions server{token,
+                             options.seat ? host::PageFiles() : host::PageFiles(page_folder(options)),
+                             std::string("proleg ") + build_id,
+                             {},
+                             port};
   server.certificate = std::move(certificate);
+  server.is_seat = options.is_seat;
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
@@ -313,13 +397,14 @@ int serve(UiOptions& options) {
   SessionRequests search_requests;
   SessionRequests module_requests;
   SessionRequests requests;
-  RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
-                       RemoteSession::kernel_devices);
+  RemoteSession remote(
+      requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
+      options.seat && !options.seat->is_teacher ? RemoteSession::no_devices : RemoteSession::kernel_devices);
   SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests,
                        search_requests, module_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
-  const RecentFiles recent(recent_list_path());
+  const RecentFiles recent(options.seat ? std::nullopt : recent_list_path());
   const ProjectFiles project_files(recordings.folder, shipped_folder(), recent);
   const Gallery gallery(project_files, gallery_requests, page);
   SentMeshes sent_meshes;
@@ -364,8 +449,13 @@ int serve(UiOptions& options) {
                                 build_id, options.paused, &present_draft},
         requests, remote);
   }
-  const ModulesSession modules({recordings.folder, robot_bus, !options.lan.lan}, present_draft, sharing,
-                               module_requests, page);
+  const ModulesSession modules({recordings.folder, robot_bus, opens_any_address(options), modules_refusal(options)},
+                               present_draft, sharing, module_requests, page);
+  if (options.seat) {
+    const SeatInput seat(*options.seat, input, page);
+    serve_until_end(context, page);
+    return exit_success;
+  }
   const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
@@ -384,20 +474,7 @@ int serve(UiOptions& options) {
   if (!options.no_browser && !address.open()) {
     std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
   }
-  constexpr std::chrono::milliseconds signal_period{100};
-  constexpr std::chrono::seconds trim_period{10};
-  for (auto trim_at = std::chrono::steady_clock::now() + trim_period; !interrupted();) {
-    context.restart();
-    context.run_for(signal_period);
-    if (const auto now = std::chrono::steady_clock::now(); now >= trim_at) {
-      malloc_trim(0);  // the place of many small parts, such as those of a large world, goes back to the system
-      trim_at = now + trim_period;
-    }
-  }
-  page.stop();
-  constexpr std::chrono::seconds goodbye{2};
-  context.restart();
-  context.run_for(goodbye);
+  serve_until_end(context, page);
   return exit_success;
 }
 
@@ -427,7 +504,13 @@ int main(int argc, char** argv) {
   command_line.add_option("--page", options.page, "another page, a folder with index.html").value_name("FOLDER");
   command_line.add_flag("--no-browser", options.no_browser, "only print the address");
   command_line.add_flag("--allow-code", options.allow_code,
-                        "with --lan: let other computers write and run algorithms, which can do all that you can do");
+                        "with --lan or --class: let others write and run algorithms, which can do all that you can do");
+  command_line
+      .add_option("--class", options.learners,
+                  "serve a class: a robot for each learner, at most this many at a time; FILE is a scenario with "
+                  "which all begin, or the folder of the class, by default ./class")
+      .value_name("LEARNERS");
+  command_line.add_flag("--seat", options.is_seat, "for 'proleg ui --class': the robot of one learner");
   command_line.add_flag("--paused", options.paused, "begin at tick 0, paused");
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return serve(options); });

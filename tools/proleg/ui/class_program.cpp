@@ -1,0 +1,98 @@
+#include "tools/proleg/ui/class_program.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/server/web_server.hpp"
+#include "host/transport/open_transport.hpp"
+#include "shared/computer/algorithm_library/algorithm_library.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/build_id.hpp"
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/ui/class_files.hpp"
+#include "tools/proleg/ui/class_room.hpp"
+#include "tools/proleg/ui/class_session.hpp"
+#include "tools/proleg/ui/project_files.hpp"
+#include "tools/proleg/ui/shipped_scenarios.hpp"
+
+namespace proleg::tools {
+namespace {
+
+constexpr unsigned most_robots = 100;
+
+unsigned robots_in(const std::string& word) {
+  const std::optional<unsigned> count = parse_whole<unsigned>(word);
+  if (!count || *count == 0 || *count > most_robots) {
+    throw InputError("--class", 0, in_quotes(word), "a number of learners, 1 to " + std::to_string(most_robots));
+  }
+  return *count;
+}
+
+ClassRoomOptions room_options(const ClassOptions& options) {
+  ClassRoomOptions room;
+  room.most_robots = robots_in(options.learners);
+  room.folder = options.folder;
+  room.command = {host::program_folder() + "proleg-ui", "--seat", "--no-browser", "--recordings", "."};
+  for (const std::string& library : loaded_libraries()) {
+    room.command.insert(room.command.end(), {"--algorithms", std::filesystem::absolute(library).string()});
+  }
+  if (options.scenario) {
+    room.first_scenario.emplace(*options.scenario);
+  }
+  room.is_open_to_network = options.lan.lan;
+  room.may_write_code = options.allow_code;
+  room.may_teacher_write_code = options.allow_code || !options.lan.lan;
+  return room;
+}
+
+std::filesystem::path teacher_folder(const ClassRoom& room) { return room.folders().front().path; }
+
+}  // namespace
+
+int serve_class(const ClassOptions& options) {
+  std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
+  host::PageFiles page_files(options.page);
+  ClassRoom room(room_options(options));  // before the context, whose connections use it until they end
+  catch_interrupts();
+  boost::asio::io_context context{1};
+  SessionRequests file_requests;
+  SessionRequests requests;
+  ClassRouter router(room, file_requests, requests);
+  const host::AccessToken token = host::AccessToken::make();
+  host::ServerOptions server{token, std::move(page_files), std::string("proleg ") + build_id, {}, options.port};
+  server.certificate = std::move(certificate);
+  server.seats = &room;
+  for (const std::vector<std::string>& operations : {ClassFiles::operations(), ClassSession::operations()}) {
+    server.free_operations.insert(operations.begin(), operations.end());
+  }
+  host::WebServer page(context, std::move(server), router);
+  const ProjectFiles projects(teacher_folder(room), shipped_folder(), RecentFiles(std::nullopt));
+  const ClassFiles files(room, projects, file_requests, page);
+  const ClassSession session(room, page.origin() + "/", requests, page);
+  const PageAddress address(page.origin(), page.port(), token.text());
+  std::cout << "teacher: " << address.url() << "\nlearners: " << page.origin() << "/ with the code "
+            << room.document().at("code").get<std::string>() << "\nfolder: " << one_line(room.folder().string())
+            << "\nThe teacher's address is a secret: who has it can drive every robot. Ctrl-C ends.\n"
+            << std::flush;
+  if (!options.no_browser && !address.open()) {
+    std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
+  }
+  constexpr std::chrono::milliseconds signal_period{100};
+  constexpr std::chrono::seconds goodbye{2};
+  while (!interrupted()) {
+    context.restart();
+    context.run_for(signal_period);
+  }
+  page.stop();
+  context.restart();
+  context.run_for(goodbye);
+  return exit_success;
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,254 @@
+#include "tools/proleg/ui/class_register.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/scenario/sources.hpp"
+#include "tools/proleg/ui/scenario_copy.hpp"
+#include "tools/proleg/ui/session_base.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* register_name = "class.json";
+constexpr const char* lock_name = ".class.lock";
+constexpr int register_version = 1;
+constexpr unsigned code_digits = 6;
+constexpr std::size_t most_name_characters = 40;
+constexpr const char* teacher_name = "Teacher";
+
+std::size_t character_count(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
+}
+
+/// The name with single blanks. Throws JoinRefusal.
+std::string name_in(const std::string& text) {
+  std::string name;
+  for (const std::string_view word : words(text)) {
+    name += (name.empty() ? "" : " ") + std::string(word);
+  }
+  if (name.empty() || character_count(name) > most_name_characters || !is_visible_line(name)) {
+    throw JoinRefusal(400, "name: found " + in_quotes(one_line(text)) + ", expected 1 to " +
+                               std::to_string(most_name_characters) + " characters that a person sees");
+  }
+  return name;
+}
+
+std::string text_member(const json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || found->is_null()) {
+    return {};
+  }
+  if (!found->is_string()) {
+    throw JoinRefusal(400, std::string(name) + ": found no text, expected one");
+  }
+  return found->get<std::string>();
+}
+
+/// A new folder for files of a person with this name.
+std::string new_folder(const fs::path& parent, const std::string& name, host::SeatNumber seat) {
+  std::string plain = name;
+  try {
+    static_cast<void>(new_folder_in(parent, name, "name"));
+  } catch (const InputError&) {
+    plain = "learner " + std::to_string(seat);  // the name is none for a folder, such as ".." or "a/b"
+  }
+  std::string folder = plain;
+  std::error_code error;
+  for (int number = 2; !fs::create_directory(parent / folder, error); ++number) {
+    if (error) {
+      throw FileError(parent / folder, "cannot be created: " + error.message());
+    }
+    folder = plain + " " + std::to_string(number);
+  }
+  return folder;
+}
+
+}  // namespace
+
+JoinWish JoinWish::parse(const std::string& body) {
+  // Only one level is needed: a deep text would need as much stack.
+  const auto at_most_one_level = [](int depth, json::parse_event_t, json&) { return depth <= 1; };
+  const json wish = json::parse(body, at_most_one_level, false);
+  if (!wish.is_object()) {
+    throw JoinRefusal(400, "found no object of JSON, expected one with 'name' and 'code'");
+  }
+  return {name_in(text_member(wish, "name")), text_member(wish, "code"), text_member(wish, "key")};
+}
+
+bool WrongCodes::may_try(const std::string& computer, Time now) {
+  while (!wrong_.empty() && wrong_.front().time + period <= now) {
+    wrong_.pop_front();
+  }
+  const auto of_computer = std::ranges::count(wrong_, computer, &Attempt::computer);
+  return static_cast<std::size_t>(of_computer) < most_of_computer && wrong_.size() < most_of_all;
+}
+
+ClassRegister::ClassRegister(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  folder_ = fs::canonical(folder_, error);
+  if (error) {
+    throw FileError(folder_, error.message());
+  }
+  lock_ = open((folder_ / lock_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    const int reason = errno;
+    if (lock_ >= 0) {
+      close(lock_);
+    }
+    if (reason == EWOULDBLOCK) {
+      throw InputError(folder_.string(), 0, "a class that another program has open", "another folder");
+    }
+    throw FileError(folder_ / lock_name, std::generic_category().message(reason));
+  }
+  const fs::path path = folder_ / register_name;
+  if (fs::exists(path, error)) {
+    sim::DiskFiles disk;
+    read(disk.read(path).value_or("").str());
+  } else {
+    code_ = host::random_digits(code_digits);
+  }
+  if (find(teacher) == nullptr) {
+    add(teacher, teacher_name);
+  }
+}
+
+ClassRegister::~ClassRegister() { close(lock_); }
+
+void ClassRegister::read(const std::string& text) {
+  const std::string path = (folder_ / register_name).string();
+  const auto fail = [&path](const std::string& found) {
+    throw InputError(path, 0, found, "a file of 'proleg ui --class'; move it away to begin a new class");
+  };
+  const json file = json::parse(text, nullptr, false);
+  if (!file.is_object() || file.value("version", json()) != json(register_version)) {
+    fail(file.is_object() ? "another version" : "no object of JSON");
+  }
+  try {
+    code_ = file.at("code").get<std::string>();
+    for (const json& entry : file.at("learners")) {
+      const auto seat = entry.at("seat").get<host::SeatNumber>();
+      const auto name = entry.at("name").get<std::string>();
+      const auto token = host::AccessToken::parse(entry.at("token").get<std::string>());
+      const auto folder = entry.at("folder").get<std::string>();
+      const bool is_plain = fs::path(folder).filename() == fs::path(folder) && !folder.empty() && folder != "..";
+      if (!token || !is_plain || folder == "." || !is_visible_line(name) || seat > most_learners) {
+        fail("an unusable entry of " + in_quotes(name));
+      }
+      learners_.insert_or_assign(seat, Learner{seat, name, folder, entry.at("key").get<std::string>(), *token,
+                                               entry.value("is_let_in", false)});
+    }
+  } catch (const json::exception&) {
+    fail("an entry without a member that all have");
+  }
+  if (code_.size() != code_digits || code_.find_first_not_of("0123456789") != std::string::npos) {
+    fail("no code of " + std::to_string(code_digits) + " digits");
+  }
+}
+
+void ClassRegister::save() const {
+  json learners = json::array();
+  for (const auto& [seat, learner] : learners_) {
+    learners.push_back({{"seat", seat},
+                        {"name", learner.name},
+                        {"folder", learner.folder},
+                        {"key", learner.key},
+                        {"token", learner.token.text()},
+                        {"is_let_in", learner.is_let_in}});
+  }
+  const json file{{"version", register_version}, {"code", code_}, {"learners", std::move(learners)}};
+  host::write_private_file(folder_ / register_name, file.dump(2) + "\n");
+}
+
+const Learner* ClassRegister::find(host::SeatNumber seat) const {
+  const auto found = learners_.find(seat);
+  return found == learners_.end() ? nullptr : &found->second;
+}
+
+Learner& ClassRegister::required(host::SeatNumber seat) {
+  const auto found = learners_.find(seat);
+  if (found == learners_.end() || seat == teacher) {
+    throw InputError("seat", 0, std::to_string(seat), "the seat of a learner");
+  }
+  return found->second;
+}
+
+Learner* ClassRegister::with_name(const std::string& name) {
+  const auto found = std::ranges::find_if(
+      learners_, [&name](const auto& entry) { return lower_case(entry.second.name) == lower_case(name); });
+  return found == learners_.end() ? nullptr : &found->second;
+}
+
+Learner& ClassRegister::add(host::SeatNumber seat, const std::string& name) {
+  Learner learner{
+      seat, name, new_folder(folder_, name, seat), host::AccessToken::make().text(), host::AccessToken::make(), false};
+  Learner& added = learners_.insert_or_assign(seat, std::move(learner)).first->second;
+  save();
+  return added;
+}
+
+const Learner& ClassRegister::join(const JoinWish& wish, const std::string& computer, WrongCodes::Time now) {
+  Learner* const known = with_name(wish.name);
+  if (known != nullptr && known->seat != teacher && !known->is_let_in && known->key == wish.key) {
+    return *known;
+  }
+  if (!wrong_codes_.may_try(computer, now)) {
+    throw JoinRefusal(429, "found too many wrong codes, expected none for a minute; then try again");
+  }
+  if (wish.code != code_) {
+    wrong_codes_.note(computer, now);
+    throw JoinRefusal(403, wish.code.empty() ? "found no code, expected the one that your teacher shows"
+                                             : "found another code, expected the one that your teacher shows");
+  }
+  if (known != nullptr && !known->is_let_in) {
+    throw JoinRefusal(409, "somebody has the name " + in_quotes(known->name) +
+                               " already, expected another one; if it is you, your teacher can let you in again");
+  }
+  if (known != nullptr) {
+    known->is_let_in = false;
+    save();
+    return *known;
+  }
+  if (is_locked_) {
+    throw JoinRefusal(409, "the class is locked, so nobody new can join; your teacher can unlock it");
+  }
+  host::SeatNumber seat = teacher + 1;
+  while (learners_.contains(seat)) {
+    ++seat;
+  }
+  if (seat > most_learners) {
+    throw JoinRefusal(503, "found " + std::to_string(most_learners) + " names, expected fewer; ask your teacher");
+  }
+  return add(seat, wish.name);
+}
+
+void ClassRegister::let_in(host::SeatNumber seat) {
+  Learner& learner = required(seat);
+  learner.key = host::AccessToken::make().text();
+  learner.token = host::AccessToken::make();
+  learner.is_let_in = true;
+  save();
+}
+
+void ClassRegister::remove(host::SeatNumber seat) {
+  learners_.erase(required(seat).seat);
+  save();
+}
+
+}  // namespace proleg::tools

@@ -174,5 +174,19 @@ TEST(ResponseHeader, NamesWhatIsExpected) {
   EXPECT_TRUE(has(421, "HTTP/1.1 421 Misdirected Request\r\n"));
 }
 
+TEST_F(RequestPolicy, JoiningNeedsNoTokenWhereThereAreSeats) {
+  RequestFields join = post();
+  join.target = "/join";
+  join.authorizations = {};
+  EXPECT_EQ(refusal(join), 405U);
+  join.may_join = true;
+  EXPECT_EQ(action(join), RequestAction::join);
+  join.origins = {"http://evil.example"};
+  EXPECT_EQ(refusal(join), 403U);
+  RequestFields read = get("/join");
+  read.may_join = true;
+  EXPECT_EQ(refusal(read), 405U);
+}
+
 }  // namespace
 }  // namespace proleg::host

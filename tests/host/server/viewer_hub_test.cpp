@@ -29,7 +29,8 @@ class RecordingSession final : public RobotSession {
 
 class Hub : public testing::Test {
  protected:
-  explicit Hub(NewViewers gives_control = NewViewers::none) : hub({"proleg 1", {"look"}, gives_control}, token, session, history) {}
+  explicit Hub(NewViewers gives_control = NewViewers::none)
+      : hub({"proleg 1", {"look"}, gives_control}, token, session, history) {}
   ClientId join(const std::string& name, const json& more = json::object()) {
     const ClientId client = hub.add_viewer(now);
     json hello{{"type", "hello"}, {"protocol", 1}, {"token", token.text()}, {"name", name}};
@@ -185,7 +186,7 @@ TEST_F(Hub, PassesNoOperationOnThatTheLeaseRefuses) {
 
 class LocalHub : public Hub {
  protected:
-  LocalHub() : Hub(true) {}
+  LocalHub() : Hub(NewViewers::alone) {}
   ClientId join_to_drive(const std::string& name) { return join(name, {{"wants_control", true}}); }
   /// The name of the viewer that drives, as another one reads it; null: nobody.
   json holder(ClientId client) {
@@ -528,6 +529,55 @@ TEST_F(Hub, EndsSubscriptionsWithTheLayout) {
   ASSERT_EQ(binaries.size(), 1U);
   EXPECT_EQ(binaries[0].subscription, 3U);
   EXPECT_EQ(binaries[0].values.size(), 6U);
+}
+
+class SeatHub : public Hub {
+ protected:
+  SeatHub() : Hub(NewViewers::any) {}
+  json wish() const { return {{"wants_control", true}}; }
+  json holder(ClientId client) {
+    for (const json& message : received(client)) {
+      if (message["type"] == "document" && message["name"] == "control") {
+        control_ = message["value"];
+      }
+    }
+    return control_["holder"].is_null() ? json() : control_["holder"]["client"];
+  }
+
+ private:
+  json control_;
+};
+
+TEST_F(SeatHub, ALearnerDrivesAlthoughATeacherLooksOn) {
+  const ClientId teacher = join("Teacher");
+  const ClientId learner = join("Anna", wish());
+  EXPECT_EQ(holder(teacher), json(learner));
+}
+
+TEST_F(SeatHub, AnotherViewerTakesNothingFromALearnerWhoIsThere) {
+  const ClientId learner = join("Anna", wish());
+  static_cast<void>(join("Anna again", wish()));
+  EXPECT_EQ(holder(learner), json(learner));
+}
+
+TEST_F(SeatHub, ALearnerWhoseComputerSleptDrivesAgain) {
+  const ClientId before = join("Anna", wish());
+  now += ControlLease::away_timeout;
+  hub.advance(now);
+  const ClientId after = join("Anna", wish());
+  EXPECT_EQ(holder(after), json(after)) << "the connection " << before << " has given no sign of life";
+}
+
+TEST_F(Hub, AStopThatNoViewerMadeIsAnsweredToWhoMadeIt) {
+  std::vector<unsigned> answers;
+  hub.stop("your teacher", [&](const StopAnswer& answer) { answers = {answer.confirmed, answer.of}; });
+  ASSERT_EQ(session.stops.size(), 1U);
+  EXPECT_EQ(session.stops.front().by, "your teacher");
+  hub.stopped({session.stops.front().request, 4, 5, 1.0});
+  EXPECT_EQ(answers, (std::vector<unsigned>{4, 5}));
+  answers.clear();
+  hub.stopped({session.stops.front().request, 4, 5, 1.0});
+  EXPECT_TRUE(answers.empty()) << "one answer for each STOP";
 }
 
 }  // namespace

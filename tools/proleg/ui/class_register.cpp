@@ -79,6 +79,11 @@ std::string new_folder(const fs::path& parent, const std::string& name, host::Se
   return folder;
 }
 
+/// A key that is as hard to guess as ours, or a new one.
+std::string key_or_new(const std::string& key) {
+  return host::AccessToken::parse(key) ? key : host::AccessToken::make().text();
+}
+
 }  // namespace
 
 JoinWish JoinWish::parse(const std::string& body) {
@@ -125,7 +130,7 @@ ClassRegister::ClassRegister(fs::path folder) : folder_(std::move(folder)) {
     code_ = host::random_digits(code_digits);
   }
   if (find(teacher) == nullptr) {
-    add(teacher, teacher_name);
+    add(teacher, teacher_name, {});
   }
 }
 
@@ -195,17 +200,18 @@ Learner* ClassRegister::with_name(const std::string& name) {
   return found == learners_.end() ? nullptr : &found->second;
 }
 
-Learner& ClassRegister::add(host::SeatNumber seat, const std::string& name) {
-  Learner learner{
-      seat, name, new_folder(folder_, name, seat), host::AccessToken::make().text(), host::AccessToken::make(), false};
+Learner& ClassRegister::add(host::SeatNumber seat, const std::string& name, const std::string& key) {
+  Learner learner{seat, name, new_folder(folder_, name, seat), key_or_new(key), host::AccessToken::make(), false};
   Learner& added = learners_.insert_or_assign(seat, std::move(learner)).first->second;
   save();
   return added;
 }
 
-const Learner& ClassRegister::join(const JoinWish& wish, const std::string& computer, WrongCodes::Time now) {
+const Learner& ClassRegister::join(const JoinWish& wish, const std::string& computer, WrongCodes::Time now,
+                                   const std::function<void(const Learner*)>& require_room) {
   Learner* const known = with_name(wish.name);
   if (known != nullptr && known->seat != teacher && !known->is_let_in && known->key == wish.key) {
+    require_room(known);
     return *known;
   }
   if (!wrong_codes_.may_try(computer, now)) {
@@ -221,6 +227,8 @@ const Learner& ClassRegister::join(const JoinWish& wish, const std::string& comp
                                " already, expected another one; if it is you, your teacher can let you in again");
   }
   if (known != nullptr) {
+    require_room(known);
+    known->key = key_or_new(wish.key);
     known->is_let_in = false;
     save();
     return *known;
@@ -235,7 +243,8 @@ const Learner& ClassRegister::join(const JoinWish& wish, const std::string& comp
   if (seat > most_learners) {
     throw JoinRefusal(503, "found " + std::to_string(most_learners) + " names, expected fewer; ask your teacher");
   }
-  return add(seat, wish.name);
+  require_room(nullptr);
+  return add(seat, wish.name, wish.key);
 }
 
 void ClassRegister::let_in(host::SeatNumber seat) {

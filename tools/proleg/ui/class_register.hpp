@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
@@ -32,7 +33,9 @@ class JoinRefusal : public std::runtime_error {
 struct JoinWish {
   std::string name;  ///< as the learner is called from then on
   std::string code;
-  std::string key;  ///< what an earlier join gave; empty: none
+  /// What the learner's browser has kept of an earlier join, or has made for this one; empty: none. A browser that
+  /// makes it can ask again if the answer was lost.
+  std::string key;
 
   /// Throws JoinRefusal.
   [[nodiscard]] static JoinWish parse(const std::string& body);
@@ -88,9 +91,12 @@ class ClassRegister {
 
   /// Null: nobody has this seat. The pointer is valid until the next change.
   [[nodiscard]] const Learner* find(host::SeatNumber seat) const;
-  /// The learner who joins: one who was here before, or a new one with a folder. computer: its address. Throws
-  /// JoinRefusal, and FileError.
-  const Learner& join(const JoinWish& wish, const std::string& computer, WrongCodes::Time now);
+  /// The learner who joins: one who was here before, or a new one with a folder. computer: its address. require_room:
+  /// called with the learner, or null for a new one, before anything changes; it may throw. Throws JoinRefusal, and
+  /// FileError.
+  const Learner& join(
+      const JoinWish& wish, const std::string& computer, WrongCodes::Time now,
+      const std::function<void(const Learner*)>& require_room = [](const Learner*) {});
   /// Lets another browser have the name; the one before has lost it. Throws InputError, FileError.
   void let_in(host::SeatNumber seat);
   /// Frees the name and the seat. The folder stays. Throws InputError, FileError.
@@ -101,7 +107,7 @@ class ClassRegister {
   void save() const;
   [[nodiscard]] Learner* with_name(const std::string& name);
   [[nodiscard]] Learner& required(host::SeatNumber seat);
-  Learner& add(host::SeatNumber seat, const std::string& name);
+  Learner& add(host::SeatNumber seat, const std::string& name, const std::string& key);
 
   std::filesystem::path folder_;
   int lock_ = -1;  ///< descriptor

@@ -112,7 +112,8 @@ void ClassRoom::stop_all(host::RequestId request) {
 void ClassRoom::join(const std::string& body, const std::string& from, AnswerTo answer) {
   const std::lock_guard lock(mutex_);
   try {
-    const Learner& learner = register_.join(JoinWish::parse(body), from, Clock::now());
+    const Learner& learner = register_.join(JoinWish::parse(body), from, Clock::now(),
+                                            [this](const Learner* known) { require_room(known); });
     start_place(learner.seat);
     joins_.push_back({learner.seat, std::move(answer)});
   } catch (const JoinRefusal& why) {
@@ -132,16 +133,19 @@ ClassRoom::Place& ClassRoom::start_place(host::SeatNumber number) {
   if (known != places_.end() && runs(known->second.program)) {
     return known->second;
   }
-  if (number != ClassRegister::teacher) {
-    make_room();
-  }
+  require_room(learner);
   Place& place = places_[number];
   place.absent_since = Clock::now();
   start_program(*learner, place);
   return place;
 }
 
-void ClassRoom::make_room() {
+void ClassRoom::require_room(const Learner* learner) {
+  const auto known = learner == nullptr ? places_.end() : places_.find(learner->seat);
+  const bool is_there = known != places_.end() && runs(known->second.program);
+  if (is_there || (learner != nullptr && learner->seat == ClassRegister::teacher)) {
+    return;
+  }
   const auto is_learner = [](const auto& entry) {
     return entry.first != ClassRegister::teacher && runs(entry.second.program);
   };

@@ -120,7 +120,9 @@ class ClassRoom final : public host::SeatDirectory {
   /// The place of a learner, with a program that runs. Throws JoinRefusal if the class is full.
   Place& start_place(host::SeatNumber number);
   void start_program(const Learner& learner, Place& place);
-  void make_room();
+  /// Ends the robot of somebody who is away, if this learner (null: a new one) has none that runs and there is no room.
+  /// Throws JoinRefusal.
+  void require_room(const Learner* learner);
   [[nodiscard]] std::filesystem::path folder_of(const Learner& learner) const;
   void poll_place(host::SeatNumber number, Place& place, Clock::time_point now);
   void answer_joins();

@@ -61,6 +61,13 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
  private:
   void read();
   void handle_request(const error_code& error);
+  /// Does what a request to this server asks for, which was accepted.
+  void act(Request request, RequestAction action, bool is_kept_alive);
+  /// The same for the program of a seat.
+  void act_for_seat(const Request& request, RequestAction action, SeatNumber number, const SeatDirectory::Seat& seat,
+                    bool is_kept_alive);
+  void respond_stopped(bool is_kept_alive);
+  void serve_file(std::string_view path, bool is_kept_alive);
   /// Sends a response. `body` must live as long as the server or this.
   void respond(unsigned status, std::string_view content_type, std::string_view body, bool is_kept_alive);
   /// Sends an error, whose body is the text of its status or misdirected_text().
@@ -140,43 +147,58 @@ void HttpConnection::handle_request(const error_code& error) {
   const bool is_kept_alive = request.keep_alive() && !is_only_stop;
   if (is_only_stop && decision.action != RequestAction::stop && decision.action != RequestAction::refuse) {
     respond_error(503, false);
+  } else if (decision.action == RequestAction::refuse) {
+    respond_error(decision.status, is_kept_alive);
+  } else if (seat) {
+    act_for_seat(request, decision.action, *path->seat, *seat, is_kept_alive);
+  } else {
+    act(std::move(request), decision.action, is_kept_alive);
+  }
+}
+
+void HttpConnection::act(Request request, RequestAction action, bool is_kept_alive) {
+  if (action == RequestAction::stop) {
+    server_->link().hub.stop("POST /stop");
+    respond_stopped(is_kept_alive);
+  } else if (action == RequestAction::open_socket && buffer_.size() == 0) {
+    upgrade(std::move(request));
+  } else if (action == RequestAction::open_socket) {
+    respond_error(400, false);  // a client has no reason to send bytes of the WebSocket before the answer
+  } else if (action == RequestAction::join) {
+    join(request, is_kept_alive);
+  } else {
+    const std::string_view path = path_of(view(request.target()));
+    serve_file(server_->seats() != nullptr && path == "/" ? "/class.html" : path, is_kept_alive);
+  }
+}
+
+void HttpConnection::act_for_seat(const Request& request, RequestAction action, SeatNumber number,
+                                  const SeatDirectory::Seat& seat, bool is_kept_alive) {
+  SeatDirectory& seats = *server_->seats();
+  if (action == RequestAction::stop) {
+    seats.stop(number);
+    respond_stopped(is_kept_alive);
     return;
   }
-  switch (decision.action) {
-    case RequestAction::refuse:
-      respond_error(decision.status, is_kept_alive);
-      return;
-    case RequestAction::stop:
-      if (is_of_seat) {
-        seats->stop(*path->seat);
-      } else {
-        server_->link().hub.stop("POST /stop");
-      }
-      respond(200, "application/json", R"({"stopped": true})", is_kept_alive);
-      return;
-    case RequestAction::open_socket:
-      // A client has no reason to send bytes of the WebSocket before the answer, so they are refused.
-      if (buffer_.size() > 0) {
-        respond_error(400, false);
-      } else if (is_of_seat) {
-        open_seat(request, *path->seat, seat->port, only_looks(asked.target));
-      } else {
-        upgrade(std::move(request));
-      }
-      return;
-    case RequestAction::join:
-      join(request, is_kept_alive);
-      return;
-    case RequestAction::serve_file:
-      break;
+  if (!seat.port) {
+    seats.wake(number);
   }
-  std::string_view name = path_of(asked.target);
-  if (is_of_seat && !seat->port) {
-    seats->wake(*path->seat);
-  } else if (seats != nullptr && !is_of_seat && name == "/") {
-    name = "/class.html";
+  const std::string_view target = seat_path(view(request.target()))->target;
+  if (action == RequestAction::open_socket && buffer_.size() == 0) {
+    open_seat(request, number, seat.port, only_looks(target));
+  } else if (action == RequestAction::open_socket) {
+    respond_error(400, false);
+  } else {
+    serve_file(path_of(target), is_kept_alive);
   }
-  const PageFile* const file = server_->link().page.find(name);
+}
+
+void HttpConnection::respond_stopped(bool is_kept_alive) {
+  respond(200, "application/json", R"({"stopped": true})", is_kept_alive);
+}
+
+void HttpConnection::serve_file(std::string_view path, bool is_kept_alive) {
+  const PageFile* const file = server_->link().page.find(path);
   if (file == nullptr) {
     respond_error(404, is_kept_alive);
   } else {
@@ -230,9 +252,6 @@ void HttpConnection::open_seat(const Request& request, SeatNumber seat, std::opt
   std::unique_ptr<SeatVisitors::Visit> visit =
       port ? server_->visitors().begin(seat, address, std::chrono::steady_clock::now()) : nullptr;
   if (visit == nullptr) {
-    if (!port) {
-      seats.wake(seat);
-    }
     respond_error(503, false);  // the page tries again
     return;
   }

@@ -23,6 +23,7 @@
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -39,36 +40,22 @@ constexpr const char* default_bootloader = "proleg_boot_stm32f405.bin";
 /// A folder for the files of the commands.
 class WorkFolder {
  public:
-  WorkFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "proleg_flash_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("cannot make a folder in " + std::filesystem::temp_directory_path().string());
-    }
-    path_ = name;
-  }
-  ~WorkFolder() {
-    std::error_code error;  // what is left does no harm
-    std::filesystem::remove_all(path_, error);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
 
   void write(const std::string& name, std::string_view content) const {
-    write_file((path_ / name).string(), std::string(content));
+    write_file((path() / name).string(), std::string(content));
   }
   void write(const std::string& name, const Bytes& content) const {
     write(name, std::string(content.begin(), content.end()));
   }
   /// The bytes of a file of the folder; empty if the file does not exist.
   [[nodiscard]] std::string content(const std::string& name) const {
-    std::ifstream file(path_ / name, std::ios::binary);
+    std::ifstream file(path() / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
  private:
-  std::filesystem::path path_;
+  ScratchFolder folder_;
 };
 
 /// What goes onto the chip, and how.

@@ -25,47 +25,27 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/result_folder.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 
 using namespace proleg;
 using namespace proleg::tools;
 
 namespace {
 
-/// A folder that is removed at the end.
-class WorkFolder {
- public:
-  WorkFolder() : path_((std::filesystem::temp_directory_path() / "proleg-png-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw std::runtime_error("cannot create a folder in " + std::filesystem::temp_directory_path().string());
-    }
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 /// An SVG picture as PNG, with two pixels for each of its own, made by librsvg's rsvg-convert. Throws BadInput that
 /// names the Debian package if this is not installed, and std::runtime_error if it fails.
 std::string png_of(const std::string& svg) {
-  const WorkFolder folder;
-  write_file(folder.path() + "/picture.svg", svg);
+  const ScratchFolder folder;
+  write_file(folder.path() / "picture.svg", svg);
   const ProgramResult result = run_program(
-      {"rsvg-convert", "--format", "png", "--zoom", "2", "--output", "picture.png", "picture.svg"}, folder.path());
+      {"rsvg-convert", "--format", "png", "--zoom", "2", "--output", "picture.png", "picture.svg"}, folder.path().string());
   if (!result.was_found) {
     throw BadInput(
         "--png: found no program rsvg-convert, expected it in PATH (on Debian: apt install librsvg2-bin); without "
         "--png "
         "the picture is SVG");
   }
-  std::ifstream file(folder.path() + "/picture.png", std::ios::binary);
+  std::ifstream file(folder.path() / "picture.png", std::ios::binary);
   std::ostringstream png;
   png << file.rdbuf();
   if (result.status != 0 || png.str().empty()) {

@@ -41,8 +41,11 @@ class EncryptedSocket(ssl.SSLSocket):
             raise ConnectionResetError from error
 
 
-def connect(port, receive_buffer=None):
+def connect(port, receive_buffer=None, source=None):
+    """source: an address of this computer, such as 127.0.0.5, from which the connection comes: another computer for the server."""
     sock = socket.socket()
+    if source:
+        sock.bind((source, 0))
     if receive_buffer:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
     sock.settimeout(WAIT_S)
@@ -62,9 +65,9 @@ def read_all(sock):
     return data
 
 
-def exchange(port, request):
+def exchange(port, request, source=None):
     """The bytes that the server sends for the bytes of a request until it ends the connection."""
-    with connect(port) as sock:
+    with connect(port, source=source) as sock:
         try:
             sock.sendall(request)
         except (BrokenPipeError, ConnectionResetError):
@@ -76,12 +79,12 @@ def status(port, method="GET", path="/", fields=(), host=None, body=b"", version
     return int(request(port, method, path, fields, host, body, version)[0].split()[1])
 
 
-def request(port, method="GET", path="/", fields=(), host=None, body=b"", version="1.1"):
+def request(port, method="GET", path="/", fields=(), host=None, body=b"", version="1.1", source=None):
     """Status line, header fields in lower case, body."""
     lines = [f"{method} {path} HTTP/{version}", f"Host: {host or f'127.0.0.1:{port}'}", "Connection: close", *fields]
     if body:
         lines.append(f"Content-Length: {len(body)}")
-    answer = exchange(port, "\r\n".join(lines).encode() + b"\r\n\r\n" + body)
+    answer = exchange(port, "\r\n".join(lines).encode() + b"\r\n\r\n" + body, source)
     head, _, content = answer.partition(b"\r\n\r\n")
     first, *rest = head.decode().split("\r\n")
     return first, {name.lower(): value for name, value in (line.split(": ", 1) for line in rest)}, content
@@ -106,8 +109,9 @@ def frame(opcode, payload, masked=True, final=True):
 
 
 class Viewer:
-    def __init__(self, port, token=None, name="viewer", fields=(), only=None, receive_buffer=None, wants_control=False):
-        self.sock = connect(port, receive_buffer)
+    def __init__(self, port, token=None, name="viewer", fields=(), only=None, receive_buffer=None, wants_control=False,
+                 path="/socket", source=None):
+        self.sock = connect(port, receive_buffer, source)
         self.data = b""
         self.documents = {}
         self.results = {}
@@ -116,7 +120,7 @@ class Viewer:
         self.stops = []
         self.last_id = 0
         key = base64.b64encode(os.urandom(16))
-        lines = ["GET /socket HTTP/1.1", f"Host: 127.0.0.1:{port}", "Upgrade: websocket", "Connection: Upgrade",
+        lines = [f"GET {path} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Upgrade: websocket", "Connection: Upgrade",
                  f"Sec-WebSocket-Key: {key.decode()}", "Sec-WebSocket-Version: 13", *fields]
         self.sock.sendall("\r\n".join(lines).encode() + b"\r\n\r\n")
         while b"\r\n\r\n" not in self.data:

@@ -61,7 +61,17 @@ class Learner:
                       path=f"{self.path}socket{'?look' if look else ''}", wants_control=wants_control and not look, **options)
 
     def page(self, **options):
-        return SeatPage(self, **options)
+        """As a page, it tries again as long as the program of the seat starts."""
+        def attempt():
+            try:
+                return SeatPage(self, **options)
+            except AssertionError as refused:
+                assert b" 503 " in refused.args[0], refused
+                return None
+            except Closed as closed:
+                assert closed.code in (None, 1001), closed  # the program before has ended
+                return None
+        return wait_until(attempt, f"the robot of {self.name} does not start")
 
 
 class SeatPage:
@@ -141,6 +151,10 @@ class Teacher:
     def entry(self, seat):
         entries = [self.document["teacher"], *self.document["learners"]]
         return next((entry for entry in entries if entry["seat"] == seat), None)
+
+    def until_seat(self, learner, holds):
+        """Until the entry of a learner is as it is waited for."""
+        self.until(lambda: (entry := self.entry(learner.seat)) is not None and holds(entry))
 
     def ask(self, name, /, **arguments):
         return self.viewer.do(f"class.{name}", **arguments)

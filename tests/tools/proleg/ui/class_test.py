@@ -10,13 +10,14 @@ import signal
 import stat
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from class_program import (LONGEST, PROGRAMS, SCENARIO, SOURCE, TITLES, ClassProgram, Closed, Learner, a_class, beat, copy_of_scenario, run_tests,
                            runs, school, wait_until)
 from web_client import Viewer
 
-HIDDEN_CHARACTERS = ("\0", "a\nb", "a\rb", "a\tb\x1b[2J", "\x7f", "\u202eevil", "a\u200eb", "\u200b", "\u2066x\u2069", "\ufeff", "a\u2028b")
+HIDDEN_CHARACTERS = ("\0", "a\0b", "a\x1b[2J", "a\x08b", "\x7f", "\u202eevil", "a\u200eb", "\u200b", "\u2066x\u2069", "\ufeff", "a\u2028b")
 
 
 def files_in(folder):
@@ -118,8 +119,6 @@ def test_odd_names_get_a_plain_folder():
 def test_names_that_nobody_sees_are_refused():
     with a_class() as program:
         for name in ("", "   ", "\t", "x" * 41, "\u00e9" * 41, *HIDDEN_CHARACTERS):
-            if "\t" in name.strip() and name.isprintable():
-                continue
             error = program.not_joined(400, name)
             assert len(error) < 400 and error.isprintable(), error
         status, _, _ = program.post("/join", json.dumps({"name": "x" * 10_000, "code": program.code}).encode())
@@ -220,21 +219,20 @@ def test_a_reload_and_a_sleep_drive_again():
 def test_a_teacher_who_looks_on_takes_nothing():
     with a_class() as program, program.teacher() as teacher:
         anna = program.join("Anna")
-        connections = lambda: teacher.entry(anna.seat)["connections"]
         with anna.viewer(look=True) as look:
             look.until(lambda: {"control", "session"} <= set(look.documents))
             assert look.control()["holder"] is None
             with anna.page() as page:
                 assert page.drives
-                teacher.until(lambda: connections() == 1)
+                teacher.until_seat(anna, lambda entry: entry["connections"] == 1)
                 with anna.viewer(only="stop"):
-                    teacher.until(lambda: connections() == 2)
-                teacher.until(lambda: connections() == 1)
+                    teacher.until_seat(anna, lambda entry: entry["connections"] == 2)
+                teacher.until_seat(anna, lambda entry: entry["connections"] == 1)
                 look.until(lambda: look.control()["holder"] is not None)
                 assert look.control()["holder"]["name"] == "Anna"
                 assert "control is with Anna" in look.do("set", 1, words=["amplitude=1"])["error"]
             look.until(lambda: look.control()["holder"] is None)
-            teacher.until(lambda: connections() == 0)
+            teacher.until_seat(anna, lambda entry: entry["connections"] == 0)
             look.do("ping")
 
 
@@ -391,7 +389,8 @@ def test_a_teacher_collects_finished_recordings():
                 page.must("step", ticks=50)
                 page.must("record", file=None)
             other.must("record", file="run 1.proleg")
-            teacher.until(lambda: teacher.entry(anna.seat)["recordings"] == 2 and teacher.entry(bob.seat)["recordings"] == 1)
+            teacher.until_seat(anna, lambda entry: entry["recordings"] == 2)
+            teacher.until_seat(bob, lambda entry: entry["recordings"] == 1)
             (program.folder / "Bob/junk.proleg").write_text("no recording")
             os.symlink(program.folder / "class.json", program.folder / "Bob/link.proleg")
             os.symlink(program.folder / "Anna", program.folder / "Bob/annas")
@@ -468,7 +467,7 @@ def test_a_teacher_restarts_and_removes():
         teacher.must("restart", seat=anna.seat)
         page.viewer.until_closed()
         page.close()
-        teacher.until(lambda: teacher.entry(anna.seat)["state"] == "ready")
+        teacher.until_seat(anna, lambda entry: entry["state"] == "ready")
         with anna.page() as page:
             assert page.drives, "the token stays"
             wait_until(lambda: not runs(process))
@@ -497,21 +496,24 @@ def test_a_new_learner_in_an_old_seat_is_present():
     with a_class() as program, program.teacher() as teacher:
         anna = program.join("Anna")
         old = [anna.viewer() for _ in range(3)]
-        teacher.until(lambda: teacher.entry(1)["connections"] == 3)
+        teacher.until_seat(anna, lambda entry: entry["connections"] == 3)
         process = program.seat_process("Anna")
         os.kill(process, signal.SIGSTOP)  # so that its connections end late
         teacher.must("remove", seat=1)
         bob = program.join("Bob")
         assert bob.seat == 1
         with bob.page(), bob.viewer(only="stop"):
-            teacher.until(lambda: teacher.entry(1)["connections"] == 2)
+            teacher.until_seat(bob, lambda entry: entry["name"] == "Bob" and entry["connections"] == 2)
+            wait_until(lambda: not runs(process))
             for viewer in old:
                 viewer.until_closed()
-            wait_until(lambda: not runs(process))
-            teacher.until(lambda: True)
-            program.join("Carla")
-            teacher.until(lambda: len(teacher.document["learners"]) == 2)
-            assert teacher.entry(1)["connections"] == 2, teacher.entry(1)
+                viewer.sock.close()
+            for number in range(20):
+                is_locked = number % 2 == 0
+                teacher.must("lock", locked=is_locked)
+                teacher.until(lambda: teacher.document["is_locked"] == is_locked)
+                assert teacher.entry(1)["connections"] == 2, teacher.entry(1)
+                time.sleep(0.05)
 
 
 # 5. Ends
@@ -525,7 +527,7 @@ def test_a_program_that_was_killed_starts_again():
         page.viewer.until_closed()
         page.close()
         wait_until(lambda: program.seat_process("Anna") not in (None, process))
-        teacher.until(lambda: teacher.entry(anna.seat)["state"] == "ready")
+        teacher.until_seat(anna, lambda entry: entry["state"] == "ready")
         teacher.until(lambda: any("Anna" in text and "signal 9" in text for text in teacher.viewer.notices))
         with anna.page() as page:
             assert page.drives
@@ -546,24 +548,14 @@ def test_a_class_goes_on_after_its_end():
             assert program.code == code and program.port == port and program.token != token
             # A page that was open asks for its files and its socket until it has them.
             assert program.status(anna.path) == 200
-            again = wait_until(lambda: page_of(anna))
-            assert again.drives
-            again.close()
+            with anna.page() as again:
+                assert again.drives
             assert program.join("Anna", code="", key=anna.key).token == anna.token
             program.not_joined(409, "Anna")
             assert program.join("Bob").seat == bob.seat, "who was let in may come once"
             assert program.end(signal.SIGKILL) == -signal.SIGKILL
             program.start(port)
             assert program.join("Anna", code="", key=anna.key).token == anna.token
-
-
-def page_of(learner):
-    """Nothing as long as the program of the seat starts."""
-    try:
-        return learner.page()
-    except AssertionError as refused:
-        assert b" 503 " in refused.args[0], refused
-        return None
 
 
 def test_a_teacher_lets_in_who_came_in_an_earlier_lesson():
@@ -610,11 +602,11 @@ def test_a_class_ends_while_somebody_joins():
 
 # 6. Bad input
 
-def refused_start(*words, folder):
+def refused_start(*words, folder, status=2):
     environment = {**os.environ, "XDG_STATE_HOME": str(folder / "state"), "XDG_RUNTIME_DIR": str(folder)}
     done = subprocess.run([PROGRAMS / "proleg", "ui", *map(str, words), "--no-browser", "--page", folder / "page"], capture_output=True, text=True,
-                          timeout=LONGEST, cwd=folder, env=environment)
-    assert done.returncode == 2, (words, done)
+                          timeout=60, cwd=folder, env=environment)
+    assert done.returncode == status, (words, done)
     assert done.stderr.count("\n") == 1 and done.stderr.endswith("\n") and not done.stdout, (words, done)
     return done.stderr
 
@@ -636,7 +628,7 @@ def test_bad_options_are_one_line():
         refused_start("--class", "2", broken, folder=folder)
         file = folder / "file"
         file.write_text("x")
-        refused_start("--class", "2", SCENARIO, "--recordings", file, folder=folder)
+        refused_start("--class", "2", SCENARIO, "--recordings", file, folder=folder, status=1)
         assert not (folder / "class").exists(), "a refusal has begun a class"
 
 

@@ -112,6 +112,7 @@ def test_who_reads_no_telemetry_slows_nobody():
             for viewer in deaf:
                 viewer.sock.close()
             with anna.page() as page:
+                page.must("run")  # after the STOP
                 expect_drives(page)
 
 
@@ -289,13 +290,9 @@ def test_a_seat_that_hangs_holds_up_nobody():
             assert program.status(anna.path) == 200
             # Each load of the page leaves connections that the program does not end.
             for _ in range(6):
-                try:
-                    program_side = Viewer.__new__(Viewer)
-                    program_side = connect(program.port)
-                    program_side.sendall(f"GET {anna.path}socket HTTP/1.1\r\nHost: 127.0.0.1:{program.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                                         "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
-                finally:
-                    program_side.close()
+                with connect(program.port) as sock:
+                    sock.sendall(f"GET {anna.path}socket HTTP/1.1\r\nHost: 127.0.0.1:{program.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                                 "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
             copy_of_scenario(program.folder / "Teacher/mine")
             handed = teacher.must("hand_out", file=str(program.folder.resolve() / "Teacher/mine/uniform.simulation.xml"))
             assert [entry["seat"] for entry in handed["handed"]] == [1, 2], handed

@@ -92,6 +92,7 @@ int serve_class(const ClassOptions& options) {
   page.stop();
   context.restart();
   context.run_for(goodbye);
+  room.forget_joins();
   return exit_success;
 }
 

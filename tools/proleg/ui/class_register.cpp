@@ -49,6 +49,14 @@ std::string name_in(const std::string& text) {
   return name;
 }
 
+bool is_name(const std::string& text) {
+  try {
+    return name_in(text) == text;
+  } catch (const JoinRefusal&) {
+    return false;
+  }
+}
+
 std::string text_member(const json& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end() || found->is_null()) {
@@ -70,11 +78,12 @@ std::string new_folder(const fs::path& parent, const std::string& name, host::Se
   }
   std::string folder = plain;
   std::error_code error;
-  for (int number = 2; !fs::create_directory(parent / folder, error); ++number) {
-    if (error) {
-      throw FileError(parent / folder, "cannot be created: " + error.message());
-    }
+  // A file may have this name, too: that of the class itself.
+  for (int number = 2; fs::exists(fs::symlink_status(parent / folder, error)); ++number) {
     folder = plain + " " + std::to_string(number);
+  }
+  if (!fs::create_directory(parent / folder, error)) {
+    throw FileError(parent / folder, "cannot be created: " + error.message());
   }
   return folder;
 }
@@ -147,17 +156,26 @@ void ClassRegister::read(const std::string& text) {
   }
   try {
     code_ = file.at("code").get<std::string>();
+    if (!file.at("learners").is_array()) {
+      fail("no list of learners");
+    }
     for (const json& entry : file.at("learners")) {
-      const auto seat = entry.at("seat").get<host::SeatNumber>();
+      const json& seat = entry.at("seat");
       const auto name = entry.at("name").get<std::string>();
       const auto token = host::AccessToken::parse(entry.at("token").get<std::string>());
       const auto folder = entry.at("folder").get<std::string>();
-      const bool is_plain = fs::path(folder).filename() == fs::path(folder) && !folder.empty() && folder != "..";
-      if (!token || !is_plain || folder == "." || !is_visible_line(name) || seat > most_learners) {
-        fail("an unusable entry of " + in_quotes(name));
+      const auto key = entry.at("key").get<std::string>();
+      const bool is_plain = fs::path(folder).filename() == fs::path(folder) && !folder.empty() &&
+                            folder.front() != '.' && is_visible_line(folder);
+      // Without a key that is hard to guess everybody could have the robot.
+      const bool has_secrets = token && host::AccessToken::parse(key);
+      const bool has_seat = is_whole_number<host::SeatNumber>(seat) && seat.get<host::SeatNumber>() <= most_learners;
+      if (!has_seat || !has_secrets || !is_plain || !is_name(name) || find(name) != nullptr ||
+          find(seat.get<host::SeatNumber>()) != nullptr) {
+        fail("an unusable entry of " + in_quotes(one_line(name)));
       }
-      learners_.insert_or_assign(seat, Learner{seat, name, folder, entry.at("key").get<std::string>(), *token,
-                                               entry.value("is_let_in", false)});
+      const auto number = seat.get<host::SeatNumber>();
+      learners_.emplace(number, Learner{number, name, folder, key, *token, entry.value("is_let_in", false)});
     }
   } catch (const json::exception&) {
     fail("an entry without a member that all have");
@@ -186,6 +204,23 @@ const Learner* ClassRegister::find(host::SeatNumber seat) const {
   return found == learners_.end() ? nullptr : &found->second;
 }
 
+const Learner* ClassRegister::find(const std::string& name) const {
+  const auto found = std::ranges::find_if(
+      learners_, [&name](const auto& entry) { return lower_case(entry.second.name) == lower_case(name); });
+  return found == learners_.end() ? nullptr : &found->second;
+}
+
+void ClassRegister::change(const std::function<void()>& make) {
+  const std::map<host::SeatNumber, Learner> before = learners_;
+  make();
+  try {
+    save();
+  } catch (...) {
+    learners_ = before;
+    throw;
+  }
+}
+
 Learner& ClassRegister::required(host::SeatNumber seat) {
   const auto found = learners_.find(seat);
   if (found == learners_.end() || seat == teacher) {
@@ -195,16 +230,21 @@ Learner& ClassRegister::required(host::SeatNumber seat) {
 }
 
 Learner* ClassRegister::with_name(const std::string& name) {
-  const auto found = std::ranges::find_if(
-      learners_, [&name](const auto& entry) { return lower_case(entry.second.name) == lower_case(name); });
-  return found == learners_.end() ? nullptr : &found->second;
+  const Learner* const found = find(name);
+  return found == nullptr ? nullptr : &learners_.at(found->seat);
 }
 
 Learner& ClassRegister::add(host::SeatNumber seat, const std::string& name, const std::string& key) {
   Learner learner{seat, name, new_folder(folder_, name, seat), key_or_new(key), host::AccessToken::make(), false};
-  Learner& added = learners_.insert_or_assign(seat, std::move(learner)).first->second;
-  save();
-  return added;
+  const fs::path path = folder_ / learner.folder;
+  try {
+    change([&] { learners_.emplace(seat, std::move(learner)); });
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    throw;
+  }
+  return learners_.at(seat);
 }
 
 const Learner& ClassRegister::join(const JoinWish& wish, const std::string& computer, WrongCodes::Time now,
@@ -228,9 +268,10 @@ const Learner& ClassRegister::join(const JoinWish& wish, const std::string& comp
   }
   if (known != nullptr) {
     require_room(known);
-    known->key = key_or_new(wish.key);
-    known->is_let_in = false;
-    save();
+    change([&] {
+      known->key = key_or_new(wish.key);
+      known->is_let_in = false;
+    });
     return *known;
   }
   if (is_locked_) {
@@ -249,15 +290,16 @@ const Learner& ClassRegister::join(const JoinWish& wish, const std::string& comp
 
 void ClassRegister::let_in(host::SeatNumber seat) {
   Learner& learner = required(seat);
-  learner.key = host::AccessToken::make().text();
-  learner.token = host::AccessToken::make();
-  learner.is_let_in = true;
-  save();
+  change([&learner] {
+    learner.key = host::AccessToken::make().text();
+    learner.token = host::AccessToken::make();
+    learner.is_let_in = true;
+  });
 }
 
 void ClassRegister::remove(host::SeatNumber seat) {
-  learners_.erase(required(seat).seat);
-  save();
+  static_cast<void>(required(seat));
+  change([this, seat] { learners_.erase(seat); });
 }
 
 }  // namespace proleg::tools

@@ -91,6 +91,8 @@ class ClassRegister {
 
   /// Null: nobody has this seat. The pointer is valid until the next change.
   [[nodiscard]] const Learner* find(host::SeatNumber seat) const;
+  /// The same for a name.
+  [[nodiscard]] const Learner* find(const std::string& name) const;
   /// The learner who joins: one who was here before, or a new one with a folder. computer: its address. require_room:
   /// called with the learner, or null for a new one, before anything changes; it may throw. Throws JoinRefusal, and
   /// FileError.
@@ -105,6 +107,8 @@ class ClassRegister {
  private:
   void read(const std::string& text);
   void save() const;
+  /// Changes the learners and the file, or neither of them. Throws FileError.
+  void change(const std::function<void()>& make);
   [[nodiscard]] Learner* with_name(const std::string& name);
   [[nodiscard]] Learner& required(host::SeatNumber seat);
   Learner& add(host::SeatNumber seat, const std::string& name, const std::string& key);

@@ -74,13 +74,23 @@ void ClassRoom::wake(host::SeatNumber number) {
 
 void ClassRoom::connected(host::SeatNumber number) {
   const std::lock_guard lock(mutex_);
-  ++places_[number].connections;
+  if (register_.find(number) == nullptr) {  // removed since the server asked for the seat
+    ++departed_[number];
+  } else {
+    ++places_[number].connections;
+  }
 }
 
 void ClassRoom::disconnected(host::SeatNumber number) {
   const std::lock_guard lock(mutex_);
+  if (const auto departed = departed_.find(number); departed != departed_.end()) {
+    if (--departed->second == 0) {
+      departed_.erase(departed);
+    }
+    return;
+  }
   const auto place = places_.find(number);
-  if (place != places_.end() && place->second.connections > 0) {  // else the learner was removed meanwhile
+  if (place != places_.end() && place->second.connections > 0) {
     --place->second.connections;
     place->second.absent_since = Clock::now();
   }
@@ -111,17 +121,30 @@ void ClassRoom::stop_all(host::RequestId request) {
 
 void ClassRoom::join(const std::string& body, const std::string& from, AnswerTo answer) {
   const std::lock_guard lock(mutex_);
+  std::string name;
   try {
-    const Learner& learner = register_.join(JoinWish::parse(body), from, Clock::now(),
-                                            [this](const Learner* known) { require_room(known); });
+    const JoinWish wish = JoinWish::parse(body);
+    name = wish.name;
+    const Learner& learner =
+        register_.join(wish, from, Clock::now(), [this](const Learner* known) { require_room(known); });
     start_place(learner.seat);
     joins_.push_back({learner.seat, std::move(answer)});
   } catch (const JoinRefusal& why) {
+    constexpr unsigned conflict = 409;
+    if (const Learner* const known = why.status() == conflict ? register_.find(name) : nullptr) {
+      places_[known->seat];  // the teacher sees who may be meant, and can let them in
+    }
     answer(refusal(why.status(), why.what()));
   } catch (const std::exception& error) {
     news_.push_back(one_line(error.what()));
     answer(refusal(503, "the robot does not start; ask your teacher"));
   }
+}
+
+void ClassRoom::forget_joins() {
+  std::list<WaitingJoin> joins;
+  const std::lock_guard lock(mutex_);
+  joins.swap(joins_);
 }
 
 ClassRoom::Place& ClassRoom::start_place(host::SeatNumber number) {
@@ -285,7 +308,10 @@ void ClassRoom::lock(bool is_locked) {
 void ClassRoom::let_in(host::SeatNumber number) {
   const std::lock_guard lock(mutex_);
   register_.let_in(number);
-  restart_program(number);
+  const auto place = places_.find(number);
+  if (place != places_.end() && place->second.program != nullptr) {
+    restart_program(number);
+  }
 }
 
 void ClassRoom::restart(host::SeatNumber number) {
@@ -316,6 +342,9 @@ void ClassRoom::remove(host::SeatNumber number) {
   if (place->second.program != nullptr) {
     place->second.program->end();
     leaving_.push_back(std::move(place->second.program));
+  }
+  if (place->second.connections > 0) {
+    departed_[number] += place->second.connections;
   }
   places_.erase(place);
 }

@@ -71,6 +71,8 @@ class ClassRoom final : public host::SeatDirectory {
   void disconnected(host::SeatNumber number) override;
   void stop(host::SeatNumber number) override;
   void join(const std::string& body, const std::string& from, AnswerTo answer) override;
+  /// Who still waits for an answer gets none: their connections end before this object.
+  void forget_joins();
 
   /// Stops all robots. poll() gives the answer.
   void stop_all(host::RequestId request);
@@ -133,6 +135,7 @@ class ClassRoom final : public host::SeatDirectory {
   mutable std::mutex mutex_;
   ClassRegister register_;
   std::map<host::SeatNumber, Place> places_;
+  std::map<host::SeatNumber, unsigned> departed_;    ///< connections of learners who were removed; they end soon
   std::list<std::unique_ptr<SeatProgram>> leaving_;  ///< programs that have been asked to end
   std::list<WaitingJoin> joins_;
   std::list<WaitingStop> stops_;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::chrono::seconds count_period{3};
-constexpr std::size_t most_message_bytes = 800;  // 200 characters of UTF-8
+constexpr std::size_t most_message_characters = 200;
 
 host::SeatNumber seat_in(const json& arguments) {
   return required_argument<host::SeatNumber>(arguments, "seat", "the seat of a learner");
@@ -108,7 +108,7 @@ json ClassSession::carry_out(const host::OperationRequest& operation) {
 
 json ClassSession::send_message(const json& arguments) {
   const auto text = required_argument<std::string>(arguments, "text", "a message");
-  if (trimmed(text).empty() || text.size() > most_message_bytes || find_invalid_utf8(text)) {
+  if (trimmed(text).empty() || shortened(text, most_message_characters) != text || find_invalid_utf8(text)) {
     throw InputError("text", 0, in_quotes(one_line(text)), "1 to 200 characters");
   }
   const auto seats = argument<std::vector<host::SeatNumber>>(arguments, "seats", "numbers of seats");

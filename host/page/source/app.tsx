@@ -4,33 +4,42 @@ import { render } from 'preact';
 import { addFront, pressEscape } from './view/front.js';
 import { listenToKeys } from './view/keyboard.js';
 import { addActions } from './view/page_actions.js';
-import { followPageHash, isPageHash } from './view/page_hash.js';
+import { followPageHash, readPageHash } from './view/page_hash.js';
 import { addRobotActions } from './view/robot_actions.js';
 import { PageApp } from './page_app.js';
 import { Frame } from './frame.js';
 import { loadLater } from './panels/later_view.js';
 import type { PageStores } from './view/robot_view.js';
-import { viewerName, viewerNumber } from './state/viewer_name.js';
+import { fittingName, personName, viewerName, viewerNumber } from './state/viewer_name.js';
 import { takeToken } from './wire/access_token.js';
+import { pageAddress } from './wire/page_address.js';
 import './view/theme.js';
 
 const recordingsPage = loadLater<PageStores>(() => import('./recordings/recordings_page.js').then((module) => module.RecordingsPage));
 const root = document.getElementById('app') as HTMLElement;
-const hash = location.hash; // a token, or a page
-const token = takeToken(location, history, sessionStorage, isPageHash);
+const address = pageAddress(location);
+const hash = readPageHash(location.hash);
+const token = takeToken(location, history, sessionStorage, hash.token);
 
 if (token === null) {
   render(
     <main class="lone-text">
       <h1>This address has no token</h1>
-      <p>
-        Open the address that <code>proleg ui</code> prints. It ends with <code>#</code> and the token.
-      </p>
+      {address.isSeat ? (
+        <p>
+          This is the robot of somebody in a class. <a href="/">Go to the start page of the class</a>.
+        </p>
+      ) : (
+        <p>
+          Open the address that <code>proleg ui</code> prints. It ends with <code>#</code> and the token.
+        </p>
+      )}
     </main>,
     root,
   );
 } else {
-  const app = new PageApp(token, viewerName(navigator.userAgent, viewerNumber(sessionStorage)));
+  const name = personName(address.onlyLooks, sessionStorage) ?? viewerName(navigator.userAgent, viewerNumber(sessionStorage));
+  const app = new PageApp(address, token, fittingName(name));
   addActions(app);
   addRobotActions(app);
   addFront({
@@ -42,5 +51,5 @@ if (token === null) {
     escape: () => pressEscape(app),
   });
   followPageHash(app, hash, location, history);
-  render(<Frame app={app} recordingsPage={recordingsPage} />, root);
+  render(<Frame app={app} address={address} recordingsPage={recordingsPage} />, root);
 }

@@ -5,6 +5,7 @@ import { Bands } from './panels/bands.js';
 import { LaterView, loadLater, type Later } from './panels/later_view.js';
 import { NoticeList } from './panels/notice_list.js';
 import { TopBar } from './panels/top_bar.js';
+import type { PageAddress } from './wire/page_address.js';
 
 const livePage = loadLater<PageStores>(() => import('./panels/live_page.js').then((module) => module.LivePage));
 // A robot on a bus has panels of its own.
@@ -20,7 +21,7 @@ const makePage = loadLater<PageStores>(() => import('./make/make_page.js').then(
 const modulesPage = loadLater<PageStores>(() => import('./modules/modules_page.js').then((module) => module.ModulesPage));
 
 // A page stays when another one is shown. `recordingsPage`: loads the page Recordings.
-export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage: () => Later<PageStores> }) {
+export function Frame({ app, address, recordingsPage }: { app: PageStores; address: PageAddress; recordingsPage: () => Later<PageStores> }) {
   const page = app.shownPage.value;
   const isAlone = app.state.isAlone.value;
   if (page === 'recordings') wereRecordingsShown = true;
@@ -30,7 +31,7 @@ export function Frame({ app, recordingsPage }: { app: PageStores; recordingsPage
   return (
     <>
       <TopBar app={app} />
-      <Bands app={app} />
+      <Bands app={app} address={address} />
       <main id="page">
         {!isAlone && (
           <div hidden={page !== 'live'}>

@@ -12,9 +12,10 @@ import { SignalSelection } from './state/signal_selection.js';
 import { StopControl } from './state/stop_report.js';
 import { TimeMarks } from './state/time_marks.js';
 import { TimeView } from './state/time_view.js';
+import { openStopChannel } from './wire/open_stop_channel.js';
+import type { PageAddress } from './wire/page_address.js';
 import type { FromConnectionWorker, ToConnectionWorker } from './wire/connection_worker.js';
 import { decodeTelemetry } from './wire/telemetry_message.js';
-import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
 const freshnessPeriod = 500; // milliseconds
@@ -32,6 +33,7 @@ export class PageApp implements PageStores {
   readonly recordingActions = signal<ActionList | null>(null);
   readonly makeActions = signal<ActionList | null>(null);
   readonly modulesActions = signal<ActionList | null>(null);
+  readonly wantedScenario = signal<string | null>(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly mover: MoveTool;
@@ -43,7 +45,7 @@ export class PageApp implements PageStores {
   // Gestures of two viewers must not have the same number, or undo would treat them as one.
   private lastGesture = Math.floor(Math.random() * 2 ** 20) * 1024;
 
-  constructor(token: string, name: string) {
+  constructor(address: PageAddress, token: string, name: string) {
     this.operations = new OperationQueue(this.state, (request) => this.post({ kind: 'operation', request }));
     this.sets = new SetQueue({
       send: (words, gesture) => this.operations.ask('set', { words, gesture }),
@@ -57,11 +59,9 @@ export class PageApp implements PageStores {
       refused: (reason) => this.state.addNotice('warning', reason),
       after: (ms, action) => void setTimeout(action, ms),
     });
-    const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
-    const channel = openStopChannel(url, token, name);
-    this.stop = new StopControl(channel);
+    this.stop = new StopControl(openStopChannel(address, token, name));
     this.worker.onmessage = (event: MessageEvent<FromConnectionWorker>) => this.receive(event.data);
-    this.post({ kind: 'open', url, token, name });
+    this.post({ kind: 'open', url: address.socket, token, name, wantsControl: !address.onlyLooks });
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
     // Without a robot there are recordings, or the scenario of the start needs an algorithm, which the page Make builds.
@@ -183,28 +183,4 @@ export class PageApp implements PageStores {
       this.state.freshness.note(performance.now());
     }
   }
-}
-
-function openStopChannel(url: string, token: string, name: string): StopChannel {
-  const channel = new StopChannel(token, `STOP of ${name}`.slice(0, 60), {
-    openSocket: (events) => {
-      const socket = new WebSocket(url);
-      socket.onopen = () => events.opened();
-      socket.onclose = (event) => events.closed(event.code, event.reason);
-      socket.onmessage = (event) => {
-        if (typeof event.data === 'string') events.text(event.data);
-      };
-      return socket;
-    },
-    post: async () => {
-      const response = await fetch('/stop', { method: 'POST', headers: { Authorization: `Bearer ${token}` }, keepalive: true });
-      if (!response.ok) {
-        throw new Error(`the program answered ${response.status}`);
-      }
-    },
-    now: () => performance.now(),
-    after: (ms, action) => void setTimeout(action, ms),
-  });
-  channel.open();
-  return channel;
 }

@@ -1,5 +1,5 @@
 // The stores of the page Make: the draft of the scenario, the chosen object, and the changes that are on their way.
-import { computed, effect, signal } from '@preact/signals-core';
+import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { arrayOf, headingOf, outline, type Point } from '../geometry/outline.js';
 import { compose, fromAxisAngle, invert, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import type { PlacedObject } from '../scene/scene_messages.js';
@@ -18,7 +18,7 @@ import { OwnMesh } from './own_mesh.js';
 import type { SearchHost } from './search/search_host.js';
 import type { MeshFile } from './mesh_transfer.js';
 
-export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
+export type MakeStores = Stores<'actions' | 'makeActions' | 'newGesture' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state' | 'wantedScenario'>;
 
 // The parts of the draft that can be shown beside the drawings.
 export const partNames = ['robot', 'behaviour', 'algorithm', 'world', 'run', 'search'] as const;
@@ -70,6 +70,8 @@ export class MakeApp {
   // Text for the table of joints, until the table takes it.
   readonly jointText = signal<string | null>(null);
 
+  private asksForWanted = false; // whether a draft may be lost, before the wanted scenario is opened
+
   constructor(readonly page: MakeStores) {
     this.changes = new DraftChanges(page, () => (this.newJoints.value = null));
     this.offer = new AlgorithmOffer(page, {
@@ -101,6 +103,7 @@ export class MakeApp {
       addObject: (words) => this.addInFront((place) => this.changes.change('world.add_mesh', { ...words, ...place })),
       makeModule: (words) => this.changes.change('robot.own_module', words),
     });
+    effect(() => this.openWanted());
     const canChange = () => this.obstacle() === null && this.draft.value !== null;
     const hasChosen = () => this.chosenObjects.value.length > 0 && this.chosenObjects.value.every((number) => this.objects.value[number]?.editable === true);
     const isRobot = () => this.part.value === 'robot';
@@ -182,6 +185,20 @@ export class MakeApp {
     const app = algorithmApp(this);
     await app.open(folder);
     if (place !== null) app.place.value = { line: place.line, column: place.column };
+  }
+
+  // Opens what another part of the page wants. A draft that would be lost is asked about first; who closes the question gives up.
+  private openWanted(): void {
+    const file = this.page.wantedScenario.value;
+    const mayBeOpened = file !== null && !this.wouldLose();
+    if (mayBeOpened || (this.asksForWanted && this.panel.value === 'none')) {
+      this.page.wantedScenario.value = null;
+      this.asksForWanted = false;
+      if (mayBeOpened) void untracked(() => this.open(file));
+    } else if (file !== null && !this.asksForWanted) {
+      this.asksForWanted = true;
+      this.panel.value = 'open';
+    }
   }
 
   // Takes parts of another scenario of the gallery.

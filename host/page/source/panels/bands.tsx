@@ -1,23 +1,13 @@
 // Bands below the top bar: facts that the user must know, and questions that need an answer now.
 import { useEffect, useState } from 'preact/hooks';
 import type { Stores } from '../view/robot_view.js';
-import type { ConnectionStatus } from '../wire/connection.js';
+import type { PageAddress } from '../wire/page_address.js';
 import { BusBands } from './bus_bands.js';
+import { ConnectionBand } from './connection_band.js';
+import { loadLater, LaterView } from './later_view.js';
 
-function describeConnection(status: ConnectionStatus): string | null {
-  switch (status.state) {
-    case 'open':
-      return null;
-    case 'connecting':
-      return 'Connecting to the program …';
-    case 'lost':
-      return `No connection to the program; the robot may go on. What you see is old. Connecting again (attempt ${status.attempts}) …`;
-    case 'ended':
-      return 'The program has ended. What you see is old. Start it again with “proleg ui”, and open the address that it prints.';
-    case 'refused':
-      return `The program does not accept this page (${status.reason || 'without a reason'}). Open the address that “proleg ui” prints.`;
-  }
-}
+// Only in a class.
+const handedOut = loadLater<Stores<'shownPage' | 'state' | 'wantedScenario'>>(() => import('./handed_out_band.js').then((module) => module.HandedOutBand));
 
 // The remaining seconds. They are counted down here, because the document has them only once.
 function Countdown({ ms }: { ms: number }) {
@@ -61,18 +51,13 @@ function RequestBand({ app }: { app: Stores<'operations' | 'state'> }) {
   );
 }
 
-export function Bands({ app }: { app: Stores<'operations' | 'state'> }) {
-  const connection = describeConnection(app.state.connection.value);
-  const isConnecting = app.state.connection.value.state === 'connecting';
+export function Bands({ app, address }: { app: Stores<'operations' | 'shownPage' | 'state' | 'wantedScenario'>; address: PageAddress }) {
+  const hasHandOut = app.state.handedOut.value.length > 0 && !address.onlyLooks;
   const session = app.state.session.value;
   const repeats = app.state.simulation.value?.repeats;
   return (
     <div class="bands">
-      {connection !== null && (
-        <div class={`band ${isConnecting ? 'info' : 'lost'}`} role="alert" data-testid="connection-band">
-          {connection}
-        </div>
-      )}
+      <ConnectionBand status={app.state.connection.value} isSeat={address.isSeat} />
       <BusBands app={app} />
       {session?.failure && (
         <div class="band lost" role="alert">
@@ -90,6 +75,7 @@ export function Bands({ app }: { app: Stores<'operations' | 'state'> }) {
         </div>
       )}
       <RequestBand app={app} />
+      {hasHandOut && <LaterView app={app} part={handedOut()} wait="" />}
     </div>
   );
 }

@@ -1,9 +1,9 @@
 // The bar that is always visible: the robot, its state, the viewer who has control, STOP.
 import type { PageName, Stores } from '../view/robot_view.js';
 import type { PageState } from '../state/page_state.js';
-import { describeStop, isConfirmed } from '../state/stop_report.js';
 import type { SessionDocument } from '../wire/messages.js';
 import { PageTools } from './page_tools.js';
+import { StopArea } from './stop_area.js';
 
 const badges = {
   simulation: { text: 'SIMULATION', title: 'A simulated robot: nothing on the table moves.' },
@@ -32,11 +32,17 @@ function RobotName({ state }: { state: PageState }) {
   const session = state.session.value;
   const isConnected = state.isConnected.value;
   const isAlone = state.isAlone.value;
+  const seat = state.seat.value;
   const badge = robot !== null ? badges[robot.kind] : isAlone ? badges.recording : null;
   // Beside a simulated robot a bus may be open for its modules only.
   const address = robot?.kind === 'bus' ? state.bus.value?.address : '';
   return (
     <div class="robot-name">
+      {seat !== null && (
+        <strong class="person" title={seat.name} data-testid="person">
+          {seat.name}
+        </strong>
+      )}
       {badge !== null && (
         <strong class={`badge ${robot?.kind ?? 'recording'}`} title={`${badge.title} ${address ?? ''}`}>
           {badge.text} {address}
@@ -135,41 +141,6 @@ function Control({ app }: { app: Stores<'operations' | 'state'> }) {
   );
 }
 
-function Stop({ app }: { app: Stores<'state' | 'stop'> }) {
-  const report = app.stop.report.value;
-  const isSimulation = app.state.robot.value?.kind === 'simulation';
-  const keys = isSimulation ? 'Space outside text fields' : 'Esc, or Space outside text fields';
-  return (
-    <div class="stop-area">
-      <span class={`stop-report ${report.state === 'stopped' && !isConfirmed(report) ? 'unconfirmed' : report.state}`} role="status" data-testid="stop-report">
-        {describeStop(report)}
-      </span>
-      <div class="stop-place">
-        <button
-          type="button"
-          class="stop"
-          aria-describedby="stop-note"
-          aria-keyshortcuts={isSimulation ? 'Space' : 'Escape Space'}
-          title={`Stops the robot at once: ${keys}. This does not replace a power switch.`}
-          onPointerDown={(event) => {
-            // STOP acts at the press, not at the release; the click that follows has no second effect.
-            if (event.button === 0) app.stop.press();
-          }}
-          onClick={(event) => {
-            // detail is 0 for a click by the keyboard or by a program that reads the screen.
-            if (event.detail === 0) app.stop.press();
-          }}
-        >
-          STOP <kbd>{isSimulation ? 'Space' : 'Esc'}</kbd>
-        </button>
-        <span id="stop-note" class="stop-note" title="This does not replace a power switch.">
-          does not replace a power switch
-        </span>
-      </div>
-    </div>
-  );
-}
-
 function PageButton({ app, page, title, number }: { app: Stores<'shownPage'>; page: PageName; title: string; number: number }) {
   return (
     <button
@@ -193,13 +164,13 @@ export function TopBar({ app }: { app: Stores<'operations' | 'shownPage' | 'stat
         {!isAlone && <PageButton app={app} page="live" title="Live" number={1} />}
         <PageButton app={app} page="recordings" title="Recordings" number={2} />
         {app.state.hasMake.value && <PageButton app={app} page="make" title="Make" number={3} />}
-        {app.state.modules.value !== null && <PageButton app={app} page="modules" title="Modules" number={4} />}
+        {app.state.hasModules.value && <PageButton app={app} page="modules" title="Modules" number={4} />}
       </nav>
       <RobotName state={app.state} />
       <Figures state={app.state} />
       <Control app={app} />
       <PageTools />
-      {(!isAlone || hasBus) && <Stop app={app} />}
+      {(!isAlone || hasBus) && <StopArea stop={app.stop} isSimulation={app.state.robot.value?.kind === 'simulation'} />}
     </header>
   );
 }

@@ -11,6 +11,7 @@ import type {
   Documents,
   DraftDocument,
   ForesightDocument,
+  HandedOut,
   AlgorithmDocument,
   LibraryItem,
   MissingAlgorithms,
@@ -28,6 +29,7 @@ import type {
   RobotDocument,
   SearchesDocument,
   SearchMethodsDocument,
+  SeatDocument,
   ServerMessage,
   SessionDocument,
   TelemetryDocument,
@@ -88,6 +90,9 @@ export class PageState {
   // Modules on a bus, and the last job with them.
   readonly modules = signal<ModulesDocument | null>(null);
   readonly moduleJob = signal<ModuleJob | null>(null);
+  // In a class: whose robot this is, and what the teacher has handed out.
+  readonly seat = signal<SeatDocument | null>(null);
+  readonly handedOut = signal<readonly HandedOut[]>([]);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -109,6 +114,8 @@ export class PageState {
   readonly isAlone = computed(() => this.recordings.value?.alone === true && this.robot.value === null);
   // Whether there is a scenario to change, or one can be opened.
   readonly hasMake = computed(() => this.draft.value !== null || this.recordings.value?.alone === true);
+  // Whether the page Modules is there; in a class it is for the teacher.
+  readonly hasModules = computed(() => this.modules.value !== null && this.seat.value?.has_modules !== false);
   // Whether this viewer drives.
   readonly isHolder = computed(
     () => this.client.value !== null && this.control.value?.holder?.client === this.client.value,
@@ -222,6 +229,12 @@ export class PageState {
           break;
         case 'module_job':
           this.moduleJob.value = message.value;
+          break;
+        case 'seat':
+          this.seat.value = message.value;
+          break;
+        case 'handed_out':
+          this.handedOut.value = message.value;
           break;
       }
     }

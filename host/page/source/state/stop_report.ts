@@ -37,7 +37,8 @@ export function isConfirmed(report: StopReport): boolean {
   return report.state === 'stopped' && (report.outcome.confirmed === null || report.outcome.confirmed === report.outcome.of);
 }
 
-export function describeStop(report: StopReport): string {
+// `whose`: what has confirmed, if it is not said.
+export function describeStop(report: StopReport, whose = ''): string {
   switch (report.state) {
     case 'none':
       return '';
@@ -47,7 +48,7 @@ export function describeStop(report: StopReport): string {
       return `STOP is not confirmed: ${report.reason}. Use the power switch.`;
     case 'stopped': {
       const { ms, confirmed, of } = report.outcome;
-      const numbers = confirmed === null ? '' : `, ${confirmed} of ${of} confirmed`;
+      const numbers = confirmed === null ? '' : `, ${confirmed} of ${of}${whose} confirmed`;
       const advice = isConfirmed(report) ? '' : '. Use the power switch.';
       return `stopped in ${Math.max(1, Math.round(ms))} ms${numbers}${advice}`;
     }

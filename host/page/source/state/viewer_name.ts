@@ -1,4 +1,8 @@
-// The name of this viewer for others: the browser, the system, and a number, since many have the same.
+// The name of this viewer for others: in a class that of the person, else the browser, the system, and a number, since many
+// have the same.
+
+export const personKey = 'proleg.name'; // in the session storage: the entry of a class writes it
+const mostCharacters = 60; // of a name in the protocol
 
 const browsers: readonly [RegExp, string][] = [
   [/Edg\//, 'Edge'],
@@ -31,4 +35,14 @@ export function viewerNumber(storage: Pick<Storage, 'getItem' | 'setItem'>): num
   const number = 1 + Math.floor(Math.random() * 999);
   storage.setItem(key, String(number));
   return number;
+}
+
+// The name of the person in a class; null: it is not known. `onlyLooks`: the teacher looks at the robot of a learner.
+export function personName(onlyLooks: boolean, storage: Pick<Storage, 'getItem'>): string | null {
+  return onlyLooks ? 'Teacher' : storage.getItem(personKey);
+}
+
+// A name of at most as many characters as the protocol allows; a character outside the basic plane is not cut.
+export function fittingName(name: string): string {
+  return [...name].slice(0, mostCharacters).join('');
 }

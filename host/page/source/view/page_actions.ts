@@ -233,7 +233,7 @@ export function addActions(app: PageStores): void {
       title: 'Page Modules',
       group: 'Page',
       keys: ['4'],
-      isShown: () => state.modules.value !== null,
+      isShown: () => state.hasModules.value,
       run: () => void (app.shownPage.value = 'modules'),
     },
     {

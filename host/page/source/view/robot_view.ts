@@ -72,6 +72,7 @@ export interface PageStores extends RobotView {
   readonly recordingActions: Signal<ActionList | null>; // of the recording on the page Recordings
   readonly makeActions: Signal<ActionList | null>; // of the page Make
   readonly modulesActions: Signal<ActionList | null>; // of the page Modules
+  readonly wantedScenario: Signal<string | null>; // which the page Make is to open
   readonly shownActions: ActionList; // of the page that is shown, for keys and the palette
   // A number for changes that undo takes back together.
   newGesture(): number;

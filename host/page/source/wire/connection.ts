@@ -81,6 +81,7 @@ export class Connection {
     private readonly name: string,
     private readonly ports: ConnectionPorts,
     private readonly events: ConnectionEvents,
+    private readonly wantsControl = true,
   ) {
     this.lastSign = ports.now();
   }
@@ -129,7 +130,8 @@ export class Connection {
 
   private greet(): void {
     // The only viewer of a robot on this computer drives at once: the server decides whether it is that.
-    this.send({ type: 'hello', protocol, token: this.token, name: this.name, wants_control: true });
+    const wish = this.wantsControl ? { wants_control: true } : {};
+    this.send({ type: 'hello', protocol, token: this.token, name: this.name, ...wish });
   }
 
   private receiveBinary(buffer: ArrayBuffer): void {

@@ -2,14 +2,15 @@
 import type { ResultMessage, ServerMessage } from './messages.js';
 import {
   Connection,
+  type ConnectionEvents,
   type ConnectionPorts,
   type ConnectionStatus,
   type OperationRequest,
-  type SocketEvents,
 } from './connection.js';
+import { openSocket } from './web_socket.js';
 
 export type ToConnectionWorker =
-  | { kind: 'open'; url: string; token: string; name: string }
+  | { kind: 'open'; url: string; token: string; name: string; wantsControl: boolean }
   | { kind: 'operation'; request: OperationRequest }
   | { kind: 'subscribe'; signals: string[]; hash: number; newest: boolean }
   | { kind: 'alive' };
@@ -27,21 +28,6 @@ const signPeriod = 200;
 
 const post = (message: FromConnectionWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 
-function openSocket(url: string, events: SocketEvents) {
-  const socket = new WebSocket(url);
-  socket.binaryType = 'arraybuffer';
-  socket.onopen = () => events.opened();
-  socket.onclose = (event) => events.closed(event.code, event.reason);
-  socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
-    if (typeof event.data === 'string') {
-      events.text(event.data);
-    } else {
-      events.binary(event.data);
-    }
-  };
-  return socket;
-}
-
 let connection: Connection | null = null;
 
 self.onmessage = (event: MessageEvent<ToConnectionWorker>) => {
@@ -52,13 +38,14 @@ self.onmessage = (event: MessageEvent<ToConnectionWorker>) => {
       now: () => performance.now(),
       after: (ms, action) => void setTimeout(action, ms),
     };
-    connection = new Connection(message.token, message.name, ports, {
+    const events: ConnectionEvents = {
       status: (status) => post({ kind: 'status', status }),
       message: (received) => post({ kind: 'message', message: received }),
       telemetry: (buffer) => post({ kind: 'telemetry', buffer }, [buffer]),
       result: (key, result) => post({ kind: 'result', key, result }, result.value instanceof ArrayBuffer ? [result.value] : []),
       latency: (ms) => post({ kind: 'latency', ms }),
-    });
+    };
+    connection = new Connection(message.token, message.name, ports, events, message.wantsControl);
     connection.open();
     setInterval(() => post({ kind: 'alive?' }), signPeriod);
   } else if (message.kind === 'operation') {

@@ -277,6 +277,20 @@ export interface RemoteValues {
   bindings: ({ value: number; taken: boolean[] } | null)[];
 }
 
+// The seat of a class at which this program is.
+export interface SeatDocument {
+  name: string;
+  is_teacher: boolean;
+  has_modules: boolean;
+}
+
+// A scenario that the teacher has handed out.
+export interface HandedOut {
+  number: number; // ascending
+  file: string; // of `gallery`
+  title: string;
+}
+
 export interface Documents {
   gallery: { entries: GalleryEntry[] };
   algorithm_folders: AlgorithmFolders;
@@ -304,6 +318,8 @@ export interface Documents {
   recordings: RecordingsDocument;
   modules: ModulesDocument;
   module_job: ModuleJob | null; // null: there was none yet
+  seat: SeatDocument; // only in a class
+  handed_out: HandedOut[]; // only in a class; the oldest first
 }
 
 export type DocumentMessage = {

@@ -8,6 +8,10 @@ describe('the report of STOP', () => {
     assert.equal(describeStop({ state: 'stopped', outcome }), 'stopped in 12 ms, 5 of 5 confirmed');
   });
 
+  it('says what the numbers count if they are not of the modules', () => {
+    assert.equal(describeStop({ state: 'stopped', outcome: { ms: 12, confirmed: 3, of: 3 } }, ' robots'), 'stopped in 12 ms, 3 of 3 robots confirmed');
+  });
+
   it('sends to the power switch if a module has not confirmed', () => {
     const report = { state: 'stopped', outcome: { ms: 500, confirmed: 4, of: 5 } } as const;
     assert.equal(isConfirmed(report), false);

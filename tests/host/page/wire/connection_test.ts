@@ -5,7 +5,7 @@ import type { ResultMessage } from '../../../../host/page/source/wire/messages.j
 import { SocketEnd } from '../support/fake_socket.js';
 import { SteadyClock } from '../support/steady_clock.js';
 
-function setUp() {
+function setUp(wantsControl = true) {
   const clock = new SteadyClock();
   const sockets: SocketEnd[] = [];
   const statuses: ConnectionStatus[] = [];
@@ -30,6 +30,7 @@ function setUp() {
       result: (key, result) => results.push([key, result]),
       latency: (ms) => latencies.push(ms),
     },
+    wantsControl,
   );
   const last = () => sockets[sockets.length - 1] as SocketEnd;
   const greet = () => {
@@ -53,6 +54,13 @@ describe('a connection', () => {
     last().events.opened();
     const hello = { type: 'hello', protocol: 1, token: 'secret', name: 'Firefox on desk-3', wants_control: true };
     assert.deepEqual(last().sent, [hello]);
+  });
+
+  it('that only looks does not ask for control', () => {
+    const { connection, last } = setUp(false);
+    connection.open();
+    last().events.opened();
+    assert.deepEqual(last().sent, [{ type: 'hello', protocol: 1, token: 'secret', name: 'Firefox on desk-3' }]);
   });
 
   it('is open after the welcome', () => {

@@ -1,5 +1,6 @@
 // Bundles the page, or its tests.
-//   node bundle.mjs page FOLDER      index.html, app.js with its chunks, the workers, style.css; FOLDER_sizes.json
+//   node bundle.mjs page FOLDER      index.html, app.js with its chunks, the workers, style.css; the same of a class: class.html
+//                                    and so on; FOLDER_sizes.json
 //   node bundle.mjs player FOLDER    player.html, into which proleg export --html writes a recording
 //   node bundle.mjs tests FOLDER     each *_test.ts of tests/host/page as one program for `node --test`
 //   node bundle.mjs figures FOLDER   the program of tools/page_figures
@@ -20,7 +21,8 @@ const largestMake = 60 * 1024; // the page Make
 const largestSearch = 30 * 1024; // the part Search of Make
 const largestModules = 30 * 1024; // the page Modules
 const largestEditor = 150 * 1024; // of sources, with CodeMirror
-const largestPage = 220 * 1024 + largestMake + largestSearch + largestModules + largestEditor;
+const largestClass = 40 * 1024; // the page of a class with all that it loads
+const largestPage = 220 * 1024 + largestClass + largestMake + largestSearch + largestModules + largestEditor;
 
 // Bytes of the player as it is in every exported recording.
 const largestPlayer = 800 * 1024;
@@ -31,45 +33,60 @@ async function bundlePage(folder) {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
   const page = { ...common, minify: true, outdir: folder, jsx: 'automatic', jsxImportSource: 'preact' };
+  const inChunks = { format: 'esm', splitting: true, chunkNames: 'chunk-[name]-[hash]', metafile: true };
   const result = await build({
     ...page,
     entryPoints: { app: 'source/app.tsx', style: 'source/style/style.css' },
-    format: 'esm',
-    splitting: true,
-    chunkNames: 'chunk-[name]-[hash]',
-    metafile: true,
+    ...inChunks,
+  });
+  // By itself: chunks that both pages share would be smaller, and more of them, for each. Nothing is cached (docs/page-interface.md).
+  const ofClass = await build({
+    ...page,
+    entryPoints: [
+      { in: 'source/class.tsx', out: 'class' },
+      { in: 'source/style/class.css', out: 'class' },
+    ],
+    ...inChunks,
   });
   // Workers are programs of their own: they share no chunk with the page. The warnings of three.js are for people who write
   // scenes; its errors stay.
   await build({
     ...page,
     pure: ['console.warn'],
-    entryPoints: { connection_worker: 'source/wire/connection_worker.ts', scene_worker: 'source/scene/scene_worker.ts' },
+    entryPoints: {
+      connection_worker: 'source/wire/connection_worker.ts',
+      scene_worker: 'source/scene/scene_worker.ts',
+      tile_worker: 'source/class/tile_worker.ts',
+    },
     format: 'iife',
   });
-  cpSync(join(room, 'source/index.html'), join(folder, 'index.html'));
-  return checkSizes(folder, firstFiles(result.metafile));
+  for (const html of ['index.html', 'class.html']) cpSync(join(room, 'source', html), join(folder, html));
+  // What the first paint, the connection and STOP need.
+  const first = [...filesOf(result.metafile, 'app.js', false), 'index.html', 'style.css', 'connection_worker.js'];
+  const all = [...filesOf(ofClass.metafile, 'class.js', true), 'class.html', 'class.css', 'connection_worker.js', 'tile_worker.js'];
+  return checkSizes(folder, new Set(first), new Set(all));
 }
 
-// Names of the files that the first paint, the connection and STOP need.
-function firstFiles(metafile) {
-  const pending = Object.keys(metafile.outputs).filter((file) => file.endsWith('/app.js'));
+// Names of a program and its chunks; `later`: also of those that it loads when it needs them.
+function filesOf(metafile, program, later) {
+  const pending = Object.keys(metafile.outputs).filter((file) => file.endsWith(`/${program}`));
   const found = new Set();
   while (pending.length > 0) {
     const file = pending.pop();
     if (found.has(file)) continue;
     found.add(file);
     for (const imported of metafile.outputs[file].imports) {
-      if (imported.kind === 'import-statement') pending.push(imported.path);
+      if (imported.kind === 'import-statement' || (later && imported.kind === 'dynamic-import')) pending.push(imported.path);
     }
   }
-  return new Set([...found].map((file) => file.split('/').at(-1)).concat('index.html', 'style.css', 'connection_worker.js'));
+  return [...found].map((file) => file.split('/').at(-1));
 }
 
-function checkSizes(folder, first) {
+function checkSizes(folder, first, ofClass) {
   let raw = 0;
   let compressed = 0;
   let compressedFirst = 0;
+  let compressedClass = 0;
   let compressedMake = 0;
   let compressedSearch = 0;
   let compressedModules = 0;
@@ -80,6 +97,7 @@ function checkSizes(folder, first) {
     raw += bytes.length;
     compressed += size;
     compressedFirst += first.has(name) ? size : 0;
+    compressedClass += ofClass.has(name) ? size : 0;
     compressedMake += name.startsWith('chunk-make_page-') ? size : 0;
     compressedSearch += name.startsWith('chunk-search_part-') ? size : 0;
     compressedModules += name.startsWith('chunk-modules_page-') ? size : 0;
@@ -87,11 +105,13 @@ function checkSizes(folder, first) {
     print(name + (first.has(name) ? ' (first)' : ''), bytes.length, size);
   }
   print('first chunk', NaN, compressedFirst);
+  print('the page of a class', NaN, compressedClass);
   print('all', raw, compressed);
   writeFileSync(`${folder}_sizes.json`, `${JSON.stringify({ first: compressedFirst, all: compressed })}\n`);
   let fits = true;
   for (const [what, size, largest] of [
     ['the first chunk', compressedFirst, largestFirstChunk],
+    ['the page of a class', compressedClass, largestClass],
     ['the page Make', compressedMake, largestMake],
     ['the part Search', compressedSearch, largestSearch],
     ['the page Modules', compressedModules, largestModules],

@@ -166,6 +166,7 @@ export function DialogView({ app }: { app: Stores<'newGesture' | 'operations' | 
     case 'value_table':
       return <LaterView app={app} part={valueTable()} wait="" />;
     case 'joint_table': // the page Make shows it
+    case 'class': // the page of a class shows it
     case 'none':
       return null;
   }

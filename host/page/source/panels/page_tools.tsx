@@ -3,6 +3,21 @@ import { toggleDialog } from '../view/dialogs.js';
 import { nextTheme, themeChoice } from '../view/theme.js';
 import { findIcon, themeIcon } from './icons.js';
 
+// `hint`: the key, if the page has one.
+export function ThemeButton({ hint = '' }: { hint?: string }) {
+  return (
+    <button
+      type="button"
+      class="icon-button"
+      aria-label={`Colours: ${themeChoice.value}`}
+      title={`Colours: ${themeChoice.value}${hint}`}
+      onClick={nextTheme}
+    >
+      {themeIcon}
+    </button>
+  );
+}
+
 export function PageTools() {
   return (
     <div class="tools">
@@ -24,15 +39,7 @@ export function PageTools() {
       >
         ?
       </button>
-      <button
-        type="button"
-        class="icon-button"
-        aria-label={`Colours: ${themeChoice.value}`}
-        title={`Colours: ${themeChoice.value} (T)`}
-        onClick={nextTheme}
-      >
-        {themeIcon}
-      </button>
+      <ThemeButton hint=" (T)" />
     </div>
   );
 }

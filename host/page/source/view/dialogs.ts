@@ -1,7 +1,7 @@
 // The dialog that is open.
 import { signal } from '@preact/signals-core';
 
-export type Dialog = 'none' | 'keys' | 'palette' | 'command_line' | 'file_diff' | 'value_table' | 'joint_table';
+export type Dialog = 'none' | 'keys' | 'palette' | 'command_line' | 'file_diff' | 'value_table' | 'joint_table' | 'class';
 
 export const openDialog = signal<Dialog>('none');
 

@@ -99,6 +99,13 @@ export class Connection {
     });
   }
 
+  // Ends it, without new attempts.
+  close(): void {
+    const socket = this.socket;
+    this.forgetSocket();
+    socket?.close();
+  }
+
   // Sends an operation. Returns false if there is no connection: the operation has no effect.
   operate(request: OperationRequest): boolean {
     if (this.client === null) {
@@ -217,9 +224,7 @@ export class Connection {
   }
 
   private lose(code: number, reason: string): void {
-    this.attempt += 1;
-    this.socket = null;
-    this.client = null;
+    const attempt = this.forgetSocket();
     this.isHolder = false;
     this.lastId = 0;
     this.pings.clear();
@@ -235,6 +240,16 @@ export class Connection {
     // Later failed attempts do not change the end of the program.
     this.hasEnded ||= code === goingAway;
     this.events.status(this.hasEnded ? { state: 'ended' } : { state: 'lost', attempts: this.failures });
-    this.ports.after(Math.min(longestDelay, shortestDelay * 2 ** (this.failures - 1)), () => this.open());
+    this.ports.after(Math.min(longestDelay, shortestDelay * 2 ** (this.failures - 1)), () => {
+      if (attempt === this.attempt) this.open();
+    });
+  }
+
+  // What the socket reports from now on has no effect. Returns the number of the attempt that is then the last one.
+  private forgetSocket(): number {
+    this.attempt += 1;
+    this.socket = null;
+    this.client = null;
+    return this.attempt;
   }
 }

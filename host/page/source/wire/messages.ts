@@ -19,10 +19,12 @@ import type {
   RunDocument,
   ServoDocument,
 } from './make_messages.js';
+import type { ClassDocument, ClassOperations } from './class_messages.js';
 import type { ModuleJob, ModuleOperations, ModulesDocument } from './module_messages.js';
 import type { InternalValue, Parameter, PoseArray } from './robot_messages.js';
 import type { Experiment, SearchEngine, SearchesDocument, SearchMethodsDocument } from './search_messages.js';
 
+export type * from './class_messages.js';
 export type * from './make_messages.js';
 export type * from './module_messages.js';
 export type * from './robot_messages.js';
@@ -318,6 +320,7 @@ export interface Documents {
   recordings: RecordingsDocument;
   modules: ModulesDocument;
   module_job: ModuleJob | null; // null: there was none yet
+  class: ClassDocument; // only for the page of a class
   seat: SeatDocument; // only in a class
   handed_out: HandedOut[]; // only in a class; the oldest first
 }
@@ -376,7 +379,7 @@ export interface FileDiffEntry {
   joints: number[];
 }
 
-export interface Operations extends ModuleOperations {
+export interface Operations extends ClassOperations, ModuleOperations {
   'algorithm.refresh': Record<string, never>;
   'algorithm.read': { folder: string };
   'algorithm.create': AlgorithmForm;

@@ -8,6 +8,7 @@ import { collectText, seatAddress } from './tile_text.js';
 
 export function CollectDialog({ app }: { app: ClassApp }) {
   const text = useSignal('Copying …');
+  const areThere = useSignal(false);
   const failures = useSignal<readonly string[]>([]);
   const room = app.room.value;
   const nameOf = (seat: number) => room?.learners.find((learner) => learner.seat === seat)?.name ?? `seat ${seat}`;
@@ -16,6 +17,7 @@ export function CollectDialog({ app }: { app: ClassApp }) {
       (value) => {
         const result = value as CollectResult;
         text.value = collectText(result);
+        areThere.value = result.copied + result.known > 0;
         failures.value = result.failed.map(({ seat, error }) => `${nameOf(seat)}: ${error}`);
       },
       (error: Error) => (text.value = error.message),
@@ -32,9 +34,9 @@ export function CollectDialog({ app }: { app: ClassApp }) {
             {failure}
           </p>
         ))}
-        <p class="hint">They are in the Recordings of your own robot.</p>
+        {areThere.value && <p class="hint">They are in the Recordings of your own robot.</p>}
         <div class="fields">
-          {room?.teacher != null && (
+          {areThere.value && room?.teacher != null && (
             <a class="button primary" href={seatAddress(room.teacher, 'recordings')} target="_blank" rel="noopener">
               Show them
             </a>

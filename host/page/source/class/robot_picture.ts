@@ -20,9 +20,10 @@ export interface PictureColours {
 export const lightColours: PictureColours = { sky: '#eaf0f7', ground: '#cfd6de', mark: '#aab4c0', text: '#46505c', obstacle: '#d3c7b0', link: '#6f8fb5', head: '#1f5fae', edge: '#34445a' };
 export const darkColours: PictureColours = { sky: '#14181e', ground: '#2a3038', mark: '#4a5461', text: '#a9b4c0', obstacle: '#5b4f3b', link: '#6f8fb5', head: '#62aeff', edge: '#dbe6f3' };
 
-const shownLengths = 1.9; // width of the picture in lengths of the robot
+const shownLengths = 1.6; // width of the picture in lengths of the robot
 const groundLevel = 0.72; // of the height of the picture, from above
 const mostMarks = 6;
+const labelWidth = 36; // pixels
 const largestObstacle = 40; // metres; what is larger is ground
 const mostObstacles = 300;
 
@@ -78,12 +79,16 @@ export class RobotPicture {
       [middle(0) - width / 2 / scale, level - height / scale],
       [middle(0) + width / 2 / scale, level + height / scale],
     ];
-    this.drawGround(context, plane, toPicture, window, height, colours);
+    this.drawGround(context, plane, toPicture, window, [width, height], colours);
     context.fillStyle = colours.obstacle;
     for (const points of this.obstacles[plane]) {
       if (points.some(([right]) => right > window[0][0]) && points.some(([right]) => right < window[1][0])) fill(context, points.map(toPicture));
     }
+    // What is between the links: joints have no shapes.
     context.strokeStyle = colours.edge;
+    context.lineWidth = 3;
+    trace(context, places.map(toPicture));
+    context.stroke();
     context.lineWidth = 1;
     this.robot.links.forEach(({ shapes }, i) => {
       context.fillStyle = i === 0 ? colours.head : colours.link;
@@ -99,7 +104,7 @@ export class RobotPicture {
     plane: Plane,
     toPicture: (point: Point) => Point,
     [lowest, highest]: [Point, Point],
-    height: number,
+    [width, height]: readonly [number, number],
     colours: PictureColours,
   ): void {
     const step = markStep((highest[0] - lowest[0]) / mostMarks);
@@ -117,6 +122,7 @@ export class RobotPicture {
     for (let mark = Math.ceil(lowest[0] / step) * step; mark <= highest[0]; mark += step) {
       const [x, y] = plane === 'side' ? toPicture([mark, 0]) : [toPicture([mark, 0])[0], 0];
       line(context, [x, y], [x, plane === 'side' ? y + 9 : height]);
+      if (x < labelWidth / 2 || x > width - labelWidth / 2) continue;
       context.fillText(markText(mark), x, plane === 'side' ? Math.min(y + 20, height - 3) : height - 4);
     }
     if (plane === 'side') return;
@@ -135,15 +141,17 @@ export class RobotPicture {
 }
 
 function line(context: CanvasRenderingContext2D, from: Point, to: Point): void {
-  context.beginPath();
-  context.moveTo(...from);
-  context.lineTo(...to);
+  trace(context, [from, to]);
   context.stroke();
 }
 
-function fill(context: CanvasRenderingContext2D, points: readonly Point[]): void {
+function trace(context: CanvasRenderingContext2D, points: readonly Point[]): void {
   context.beginPath();
   for (const point of points) context.lineTo(...point);
+}
+
+function fill(context: CanvasRenderingContext2D, points: readonly Point[]): void {
+  trace(context, points);
   context.closePath();
   context.fill();
 }

@@ -14,7 +14,7 @@ export function tileSession(session: SessionDocument): TileSession {
   const simulation = session.kind === 'bus' ? null : session;
   return {
     state: session.state,
-    speed: simulation?.recent_speed ?? null,
+    speed: session.state === 'running' ? (simulation?.recent_speed ?? null) : null,
     distance: simulation?.measures?.['distance'] ?? null,
     servoProblem: simulation?.servo_problem ?? null,
     failure: session.failure,

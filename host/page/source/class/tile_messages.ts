@@ -13,7 +13,7 @@ export type TileRobot = Pick<RobotDocument, 'joints' | 'links' | 'terrain'>;
 
 export interface TileSession {
   state: SimulationSession['state'] | 'off' | 'starting' | 'held' | 'stopping';
-  speed: number | null; // m/s, over the last two strides
+  speed: number | null; // m/s, over the last two strides; null: it does not run, or not yet for so long
   distance: number | null; // metres
   servoProblem: string | null;
   failure: string | null;

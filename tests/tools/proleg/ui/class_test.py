@@ -657,7 +657,9 @@ def test_a_damaged_class_is_one_line():
         for text in ("", "x", "[]", "null", whole[:len(whole) // 2], "\0" * 100, "[" * 100_000, changed(version=2), changed(version="1"), changed(code=7), changed(code="12345"),
                      changed(code="12345x"), changed(learners={"a": 1}), changed(learners=7), changed(learners=[7]), changed(learners=[[]]), learner(folder=".."), learner(folder="a/b"),
                      learner(folder=""), learner(folder="/tmp"), learner(folder="."), learner(token="x"), learner(token=7), learner(seat=-1), learner(seat=10_000), learner(seat="1"),
-                     learner(name="a\nb"), learner(name=""), learner(key=7), learner(key=""), learner(is_let_in="x"), learner(seat=1.5)):
+                     learner(name="a\nb"), learner(name=""), learner(name="x" * 1000), learner(key=7), learner(key=""), learner(is_let_in="x"), learner(seat=1.5), learner(seat=2**32 + 1),
+                     learner(seat=True), learner(folder=".x"), learner(folder="a\0b"), changed(learners=None), changed(learners={}), changed(learners=[value["learners"][1]] * 2),
+                     changed(learners=[value["learners"][1], {**value["learners"][1], "seat": 2}])):
             file.write_text(text)
             error = refused_start("--class", "3", program.folder, folder=folder)
             assert "class.json" in error, (text[:80], error)

@@ -145,6 +145,18 @@ def test_a_body_of_another_form_is_refused():
         assert program.join("Anna").seat == 1, "nothing of this has taken a name"
 
 
+def test_a_browser_that_has_lost_its_answer_asks_again():
+    """With a key that it has made itself."""
+    with a_class() as program:
+        key = "k" * 42 + "A"
+        anna = program.join("Anna", key=key)
+        assert anna.key == key
+        assert program.join("Anna", key=key).token == anna.token
+        program.not_joined(409, "Anna", key="k" * 42 + "E")
+        for weak in ("1", "k" * 42, "k" * 44, "k" * 42 + "!", " " + key):
+            assert program.join(f"Bob {len(weak)}{weak[-1]}", key=weak).key != weak, "a key that is easy to guess is replaced"
+
+
 def test_a_full_class_takes_no_name():
     """Who finds no room can come later under the same name."""
     with a_class(2) as program, program.teacher() as teacher:

@@ -7,7 +7,7 @@ import { ClassPage } from './class/class_page.js';
 import { EntryPage } from './class/entry_page.js';
 import { EntryState } from './class/entry_state.js';
 import { codeInHash } from './class/join.js';
-import { KeyStore } from './class/key_store.js';
+import { KeyStore, makeKey } from './class/key_store.js';
 import { personKey } from './state/viewer_name.js';
 import { closeFront } from './view/front.js';
 import { listenToKeys } from './view/keyboard.js';
@@ -20,7 +20,7 @@ const longestWait = 20_000; // milliseconds, for the robot of a learner
 const root = document.getElementById('app') as HTMLElement;
 
 function showEntry(): void {
-  const entry = new EntryState(codeInHash(location.hash), new KeyStore(localStorage), {
+  const entry = new EntryState(codeInHash(location.hash), new KeyStore(localStorage), new KeyStore(sessionStorage), {
     post: async (wish) => {
       const response = await fetch('/join', { method: 'POST', body: JSON.stringify(wish), signal: abortAfter(longestWait) });
       return { status: response.status, body: await response.text() };
@@ -29,6 +29,7 @@ function showEntry(): void {
       sessionStorage.setItem(personKey, name);
       location.assign(`${path}#${token}`);
     },
+    makeKey,
   });
   // Back from the robot: a browser may show this page as it was left.
   window.addEventListener('pageshow', () => (entry.isBusy.value = false));

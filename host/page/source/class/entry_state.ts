@@ -7,6 +7,7 @@ export interface EntryPorts {
   // POST /join. Rejects if there is no answer; with an AbortError after the time that an entry waits.
   post(wish: JoinWish): Promise<{ status: number; body: string }>;
   enter(answer: JoinAnswer): void; // goes to the robot
+  makeKey(): string;
 }
 
 export class EntryState {
@@ -16,10 +17,12 @@ export class EntryState {
   readonly isBusy = signal(false);
   readonly known = signal<readonly string[]>([]); // names whose keys this computer has
 
-  // `codeOfLink`: null: the learner writes it.
+  // `codeOfLink`: null: the learner writes it. `pending`: keys that were sent and not answered yet: with the same key a learner
+  // gets the seat whose answer was lost.
   constructor(
     readonly codeOfLink: string | null,
     private readonly keys: KeyStore,
+    private readonly pending: KeyStore,
     private readonly ports: EntryPorts,
   ) {
     this.code.value = codeOfLink ?? '';
@@ -31,7 +34,7 @@ export class EntryState {
     const code = cleanCode(this.code.value);
     const key = this.keys.keyOf(name);
     this.problem.value = problemOfWish(name, code, key === null);
-    if (this.problem.value === null) await this.join({ name, code, ...(key === null ? {} : { key }) });
+    if (this.problem.value === null) await this.join({ name, code, key: key ?? this.newKey(name) });
   }
 
   // A name that has joined at this computer before.
@@ -66,6 +69,12 @@ export class EntryState {
       };
       this.isBusy.value = false;
     }
+  }
+
+  private newKey(name: string): string {
+    const key = this.pending.keyOf(name) ?? this.ports.makeKey();
+    this.pending.keep(name, key);
+    return key;
   }
 
   private readKnown(): void {

@@ -6,7 +6,7 @@ const codeDigits = 6;
 export interface JoinWish {
   name: string;
   code: string;
-  key?: string;
+  key: string;
 }
 
 export interface JoinAnswer {

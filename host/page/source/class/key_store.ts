@@ -20,6 +20,12 @@ function isNameKey(value: unknown): value is NameKey {
   return typeof name === 'string' && typeof key === 'string';
 }
 
+// 256 random bits in base64url, as the program makes them.
+export function makeKey(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(32));
+  return btoa(String.fromCharCode(...bytes)).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '');
+}
+
 export class KeyStore {
   constructor(private readonly storage: KeyStorage) {}
 

@@ -10,10 +10,13 @@ type Post = (wish: JoinWish) => Promise<{ status: number; body: string }>;
 
 function setUp(post: Post = async () => ({ status: 200, body: JSON.stringify(joined) }), codeOfLink: string | null = null) {
   const keys = new KeyStore(new MemoryStorage());
+  const pending = new KeyStore(new MemoryStorage());
+  let made = 0;
   const wishes: JoinWish[] = [];
   const entered: JoinAnswer[] = [];
   const make = () =>
-    new EntryState(codeOfLink, keys, {
+    new EntryState(codeOfLink, keys, pending, {
+      makeKey: () => `made ${(made += 1)}`,
       post: (wish) => {
         wishes.push(wish);
         return post(wish);
@@ -30,7 +33,7 @@ describe('the entry of a class', () => {
     entry.name.value = ' anna ';
     entry.code.value = '482 913';
     await entry.submit();
-    assert.deepEqual(wishes, [{ name: 'anna', code: '482913' }]);
+    assert.deepEqual(wishes, [{ name: 'anna', code: '482913', key: 'made 1' }]);
     assert.deepEqual(entered, [joined]);
     assert.equal(keys.keyOf('Anna'), 'k');
     assert.equal(entry.isBusy.value, true, 'until the browser has left the page');
@@ -42,7 +45,7 @@ describe('the entry of a class', () => {
     const entry = make();
     entry.name.value = 'Anna';
     await entry.submit();
-    assert.deepEqual(wishes, [{ name: 'Anna', code: '482913' }]);
+    assert.deepEqual(wishes, [{ name: 'Anna', code: '482913', key: 'made 1' }]);
   });
 
   it('goes on with the key, without a code', async () => {
@@ -95,6 +98,17 @@ describe('the entry of a class', () => {
       assert.match(entry.problem.value?.text ?? '', text);
       assert.equal(entry.isBusy.value, false);
     }
+  });
+
+  it('asks again with the same key, for an answer may have been lost; also after a reload', async () => {
+    const { keys, wishes, make } = setUp(() => Promise.reject(new TypeError('failed')));
+    for (const entry of [make(), make()]) {
+      entry.name.value = 'Anna';
+      entry.code.value = '482913';
+      await entry.submit();
+    }
+    assert.deepEqual(wishes.map(({ key }) => key), ['made 1', 'made 1']);
+    assert.deepEqual(keys.all(), [], 'nobody has joined');
   });
 
   it('asks once, however often Go is pressed', async () => {

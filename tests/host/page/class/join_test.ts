@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 import { cleanCode, cleanName, codeInHash, problemOfAnswer, problemOfWish, readAnswer } from '../../../../host/page/source/class/join.js';
 
 const answer = { seat: 3, name: 'Anna', path: '/robots/3/', token: 't', key: 'k' };
-const wish = { name: 'Anna', code: '000000' };
+const wish = { name: 'Anna', code: '000000', key: 'k' };
 
 describe('what a learner writes', () => {
   it('has its name in one composed form, with single spaces', () => {
@@ -50,7 +50,7 @@ describe('the answer of the program', () => {
     assert.equal(problemOfAnswer(400, line, wish).field, 'name');
     assert.deepEqual(problemOfAnswer(413, 'too large', wish), { field: 'name', text: 'The name is too long.' });
     assert.match(problemOfAnswer(403, line, wish).text, /not the code/);
-    assert.match(problemOfAnswer(403, line, { ...wish, code: '', key: 'old' }).text, /no robot of this name any more/);
+    assert.match(problemOfAnswer(403, line, { ...wish, code: '' }).text, /no robot of this name any more/);
     assert.equal(problemOfAnswer(403, line, wish).field, 'code');
     assert.equal(problemOfAnswer(429, line, wish).field, 'code');
     assert.equal(problemOfAnswer(503, line, wish).field, 'button');

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { KeyStore } from '../../../../host/page/source/class/key_store.js';
+import { KeyStore, makeKey } from '../../../../host/page/source/class/key_store.js';
 import { MemoryStorage } from '../support/memory_storage.js';
 
 describe('the keys of the people at a computer', () => {
@@ -37,6 +37,11 @@ describe('the keys of the people at a computer', () => {
       store.keep(name, `key of ${name}`);
       assert.equal(store.keyOf(name), `key of ${name}`);
     }
+  });
+
+  it('are as hard to guess as those of the program', () => {
+    assert.match(makeKey(), /^[A-Za-z0-9_-]{43}$/);
+    assert.notEqual(makeKey(), makeKey());
   });
 
   it('ignore what something else has stored', () => {

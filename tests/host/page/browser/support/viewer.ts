@@ -50,6 +50,16 @@ export class Viewer {
     return viewer;
   }
 
+  // A page without a robot, such as the entry of a class.
+  static openPage(browser: Browser, address: string, options: BrowserContextOptions = {}): Promise<Viewer> {
+    return Viewer.goTo(browser, address, options, () => {});
+  }
+
+  // Another tab, which a link has opened.
+  static of(page: Page): Viewer {
+    return new Viewer(page, page.context());
+  }
+
   private static async goTo(
     browser: Browser,
     address: string,

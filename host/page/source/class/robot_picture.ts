@@ -20,8 +20,8 @@ export interface PictureColours {
 export const lightColours: PictureColours = { sky: '#eaf0f7', ground: '#cfd6de', mark: '#aab4c0', text: '#46505c', obstacle: '#d3c7b0', link: '#6f8fb5', head: '#1f5fae', edge: '#34445a' };
 export const darkColours: PictureColours = { sky: '#14181e', ground: '#2a3038', mark: '#4a5461', text: '#a9b4c0', obstacle: '#5b4f3b', link: '#6f8fb5', head: '#62aeff', edge: '#dbe6f3' };
 
-const shownLengths = 1.6; // width of the picture in lengths of the robot
-const groundLevel = 0.72; // of the height of the picture, from above
+const shownLengths = 1.9; // width of the picture in lengths of the robot
+const groundLevel = 0.8; // of the height of the picture, from above
 const mostMarks = 6;
 const labelWidth = 36; // pixels
 const largestObstacle = 40; // metres; what is larger is ground

@@ -37,8 +37,9 @@ namespace {
 std::string png_of(const std::string& svg) {
   const ScratchFolder folder;
   write_file(folder.path() / "picture.svg", svg);
-  const ProgramResult result = run_program(
-      {"rsvg-convert", "--format", "png", "--zoom", "2", "--output", "picture.png", "picture.svg"}, folder.path().string());
+  const ProgramResult result =
+      run_program({"rsvg-convert", "--format", "png", "--zoom", "2", "--output", "picture.png", "picture.svg"},
+                  folder.path().string());
   if (!result.was_found) {
     throw BadInput(
         "--png: found no program rsvg-convert, expected it in PATH (on Debian: apt install librsvg2-bin); without "

@@ -101,9 +101,7 @@ json ClassSession::carry_out(const host::OperationRequest& operation) {
                                                             {"class.let_in", &ClassSession::let_in},
                                                             {"class.restart", &ClassSession::restart},
                                                             {"class.remove", &ClassSession::remove}};
-  json value = (this->*handler_of(handlers, operation.name))(operation.arguments);
-  publish();  // a viewer sees the effect not after the answer
-  return value;
+  return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
 json ClassSession::send_message(const json& arguments) {

@@ -2,7 +2,6 @@
 // have the same.
 
 export const personKey = 'proleg.name'; // in the session storage: the entry of a class writes it
-const mostCharacters = 60; // of a name in the protocol
 
 const browsers: readonly [RegExp, string][] = [
   [/Edg\//, 'Edge'],
@@ -40,9 +39,4 @@ export function viewerNumber(storage: Pick<Storage, 'getItem' | 'setItem'>): num
 // The name of the person in a class; null: it is not known. `onlyLooks`: the teacher looks at the robot of a learner.
 export function personName(onlyLooks: boolean, storage: Pick<Storage, 'getItem'>): string | null {
   return onlyLooks ? 'Teacher' : storage.getItem(personKey);
-}
-
-// A name of at most as many characters as the protocol allows; a character outside the basic plane is not cut.
-export function fittingName(name: string): string {
-  return [...name].slice(0, mostCharacters).join('');
 }

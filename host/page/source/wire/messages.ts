@@ -506,3 +506,10 @@ export type ClientMessage =
   | { type: 'subscribe'; signals: string[]; hash: number; newest: boolean }
   | { type: 'beat'; age_ms: number }
   | { type: 'stop' };
+
+const mostNameCharacters = 60;
+
+// The name of a viewer, of at most as many characters as the protocol allows; a character outside the basic plane is not cut.
+export function fittingName(name: string): string {
+  return [...name].slice(0, mostNameCharacters).join('');
+}

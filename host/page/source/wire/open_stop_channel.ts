@@ -1,5 +1,5 @@
 // Opens the channel for STOP of the program at an address.
-import { fittingName } from '../state/viewer_name.js';
+import { fittingName } from './messages.js';
 import type { PageAddress } from './page_address.js';
 import { StopChannel } from './stop_channel.js';
 import { openSocket } from './web_socket.js';

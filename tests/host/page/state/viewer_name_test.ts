@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { fittingName, personName, viewerName, viewerNumber } from '../../../../host/page/source/state/viewer_name.js';
+import { personName, viewerName, viewerNumber } from '../../../../host/page/source/state/viewer_name.js';
+import { fittingName } from '../../../../host/page/source/wire/messages.js';
 
 describe('the name of a viewer', () => {
   it('is browser, system and number, so that a person can tell two of them apart', () => {

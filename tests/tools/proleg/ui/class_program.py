@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
-SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
+SOURCE, PROGRAMS = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/support")]
 import web_client  # noqa: E402
 from served_page import make_certificate  # noqa: E402

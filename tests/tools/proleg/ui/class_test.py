@@ -489,7 +489,7 @@ def test_a_teacher_restarts_and_removes():
         page = anna.page()
         process = program.seat_process("Anna")
         teacher.must("remove", seat=anna.seat)
-        assert teacher.entry(anna.seat) is None
+        teacher.until(lambda: teacher.entry(anna.seat) is None)
         page.viewer.until_closed()
         page.close()
         wait_until(lambda: not runs(process))
@@ -578,8 +578,8 @@ def test_a_teacher_lets_in_who_came_in_an_earlier_lesson():
         program.start()
         with program.teacher() as teacher:
             program.not_joined(409, "Anna")
-            entry = next((entry for entry in teacher.document["learners"] if entry["name"] == "Anna"), None)
-            assert entry is not None, "the teacher sees the name"
+            teacher.until(lambda: any(entry["name"] == "Anna" for entry in teacher.document["learners"]))
+            entry = teacher.entry(anna.seat)
             assert entry["state"] == "ended" and entry["connections"] == 0, entry
             teacher.must("let_in", seat=entry["seat"])
             again = program.join("Anna")

@@ -20,16 +20,16 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr WrongCodes::Time start{};
+constexpr WrongCodes::Time first_moment{};
 constexpr const char* desk = "192.0.2.1";
 
 class ClassRegisterTest : public ::testing::Test {
  protected:
   Learner join(const std::string& name, const std::string& key = {}) {
-    return class_->join({name, key.empty() ? class_->code() : "", key}, desk, start);
+    return class_->join({name, key.empty() ? class_->code() : "", key}, desk, first_moment);
   }
   /// The status of the refusal; 200: none.
-  unsigned status(const JoinWish& wish, const char* computer = desk, WrongCodes::Time now = start) {
+  unsigned status(const JoinWish& wish, const char* computer = desk, WrongCodes::Time now = first_moment) {
     try {
       static_cast<void>(class_->join(wish, computer, now));
       return 200;
@@ -98,20 +98,20 @@ TEST_F(ClassRegisterTest, ANameBelongsToWhoHasItsKey) {
 
 TEST_F(ClassRegisterTest, ABrowserThatMadeItsKeyCanAskAgainWhenTheAnswerWasLost) {
   const std::string key = host::AccessToken::make().text();
-  const Learner first = class_->join({"Anna", class_->code(), key}, desk, start);
+  const Learner first = class_->join({"Anna", class_->code(), key}, desk, first_moment);
   EXPECT_EQ(first.key, key);
-  EXPECT_EQ(class_->join({"Anna", class_->code(), key}, desk, start).seat, first.seat);
-  EXPECT_NE(class_->join({"Bob", class_->code(), "123"}, desk, start).key, "123") << "that is no key";
+  EXPECT_EQ(class_->join({"Anna", class_->code(), key}, desk, first_moment).seat, first.seat);
+  EXPECT_NE(class_->join({"Bob", class_->code(), "123"}, desk, first_moment).key, "123") << "that is no key";
 }
 
 TEST_F(ClassRegisterTest, WhereThereIsNoRoomNothingChanges) {
   const auto no_room = [](const Learner*) { throw JoinRefusal(503, "full"); };
-  EXPECT_THROW(class_->join({"Anna", class_->code(), ""}, desk, start, no_room), JoinRefusal);
+  EXPECT_THROW(class_->join({"Anna", class_->code(), ""}, desk, first_moment, no_room), JoinRefusal);
   const Learner anna = join("Anna");
   EXPECT_EQ(anna.seat, 1U);
   EXPECT_EQ(anna.folder, "Anna");
   class_->let_in(anna.seat);
-  EXPECT_THROW(class_->join({"Anna", class_->code(), ""}, desk, start, no_room), JoinRefusal);
+  EXPECT_THROW(class_->join({"Anna", class_->code(), ""}, desk, first_moment, no_room), JoinRefusal);
   EXPECT_EQ(join("Anna").seat, anna.seat) << "still let in";
 }
 
@@ -121,7 +121,7 @@ TEST_F(ClassRegisterTest, ACodeCannotBeGuessed) {
   }
   EXPECT_EQ(status({"Bob", class_->code(), ""}), 429U);
   EXPECT_EQ(status({"Carl", class_->code(), ""}, "192.0.2.2"), 200U) << "others are not affected";
-  EXPECT_EQ(status({"Bob", class_->code(), ""}, desk, start + WrongCodes::period), 200U);
+  EXPECT_EQ(status({"Bob", class_->code(), ""}, desk, first_moment + WrongCodes::period), 200U);
 }
 
 TEST_F(ClassRegisterTest, NobodyNewJoinsALockedClass) {

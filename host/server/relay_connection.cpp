@@ -110,21 +110,20 @@ void RelayConnection::end_by_force() {
 }
 
 void RelayConnection::read_client() {
-  client_.async_read_some(asio::buffer(from_client_),
-                          [self = shared_from_this()](const error_code& error, std::size_t bytes) {
-                            if (error && self->has_program_ended_) {
-                              self->end_by_force();
-                            } else if (error == asio::error::eof || error == asio::ssl::error::stream_truncated) {
-                              error_code ignored;
-                              self->program_.shutdown(tcp::socket::shutdown_send, ignored);
-                            } else if (error) {
-                              self->end_by_force();
-                            } else if (self->has_program_ended_) {
-                              self->read_client();  // bytes that are not read would discard what was sent last
-                            } else {
-                              self->write_program(bytes);
-                            }
-                          });
+  client_.async_read_some(
+      asio::buffer(from_client_), [self = shared_from_this()](const error_code& error, std::size_t bytes) {
+        const bool is_end = error == asio::error::eof || error == asio::ssl::error::stream_truncated;
+        if (error && (self->has_program_ended_ || !is_end)) {
+          self->end_by_force();
+        } else if (error) {
+          error_code ignored;
+          self->program_.shutdown(tcp::socket::shutdown_send, ignored);
+        } else if (self->has_program_ended_) {
+          self->read_client();  // bytes that are not read would discard what was sent last
+        } else {
+          self->write_program(bytes);
+        }
+      });
 }
 
 void RelayConnection::write_program(std::size_t bytes) {

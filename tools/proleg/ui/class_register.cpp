@@ -156,6 +156,7 @@ void ClassRegister::read(const std::string& text) {
   }
   try {
     code_ = file.at("code").get<std::string>();
+    is_locked_ = file.value("is_locked", false);
     if (!file.at("learners").is_array()) {
       fail("no list of learners");
     }
@@ -195,7 +196,8 @@ void ClassRegister::save() const {
                         {"token", learner.token.text()},
                         {"is_let_in", learner.is_let_in}});
   }
-  const json file{{"version", register_version}, {"code", code_}, {"learners", std::move(learners)}};
+  const json file{
+      {"version", register_version}, {"code", code_}, {"is_locked", is_locked_}, {"learners", std::move(learners)}};
   host::write_private_file(folder_ / register_name, file.dump(2) + "\n");
 }
 
@@ -286,6 +288,16 @@ const Learner& ClassRegister::join(const JoinWish& wish, const std::string& comp
   }
   require_room(nullptr);
   return add(seat, wish.name, wish.key);
+}
+
+void ClassRegister::lock(bool is_locked) {
+  const bool before = std::exchange(is_locked_, is_locked);
+  try {
+    save();
+  } catch (...) {
+    is_locked_ = before;
+    throw;
+  }
 }
 
 void ClassRegister::let_in(host::SeatNumber seat) {

@@ -86,8 +86,8 @@ class ClassRegister {
   /// What a learner types to join.
   [[nodiscard]] const std::string& code() const { return code_; }
   [[nodiscard]] bool is_locked() const { return is_locked_; }
-  /// Nobody new may join.
-  void lock(bool is_locked) { is_locked_ = is_locked; }
+  /// Nobody new may join, also after a restart. Throws FileError.
+  void lock(bool is_locked);
 
   /// Null: nobody has this seat. The pointer is valid until the next change.
   [[nodiscard]] const Learner* find(host::SeatNumber seat) const;

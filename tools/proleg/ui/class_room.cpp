@@ -159,7 +159,7 @@ ClassRoom::Place& ClassRoom::start_place(host::SeatNumber number) {
   require_room(learner);
   Place& place = places_[number];
   place.absent_since = Clock::now();
-  start_program(*learner, place);
+  start_program(*learner, place, false);
   return place;
 }
 
@@ -192,12 +192,15 @@ void ClassRoom::require_room(const Learner* learner) {
 
 fs::path ClassRoom::folder_of(const Learner& learner) const { return register_.folder() / learner.folder; }
 
-void ClassRoom::start_program(const Learner& learner, Place& place) {
+void ClassRoom::start_program(const Learner& learner, Place& place, bool is_paused) {
   const fs::path folder = folder_of(learner);
   std::error_code error;
   fs::create_directories(folder, error);
   const bool is_teacher = learner.seat == ClassRegister::teacher;
   std::vector<std::string> command = options_.command;
+  if (is_paused) {
+    command.emplace_back("--paused");
+  }
   if (options_.first_scenario) {
     command.push_back(options_.first_scenario->copy_once_to(folder).string());
   }
@@ -259,7 +262,7 @@ void ClassRoom::poll_place(host::SeatNumber number, Place& place, Clock::time_po
   }
   place.restarts.push_back(now);
   try {
-    start_program(*learner, place);
+    start_program(*learner, place, true);  // whatever it did before, such as a STOP
   } catch (const std::exception& error) {
     news_.push_back(name + ": " + one_line(error.what()));
   }

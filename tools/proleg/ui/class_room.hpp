@@ -85,7 +85,7 @@ class ClassRoom final : public host::SeatDirectory {
   [[nodiscard]] std::vector<std::string> take_news();
 
   void lock(bool is_locked);
-  // These throw InputError if the seat is not that of a learner, and FileError.
+  // These throw InputError if the seat is not that of a learner, and FileError, as lock() does.
   void let_in(host::SeatNumber number);
   void restart(host::SeatNumber number);
   void remove(host::SeatNumber number);
@@ -121,7 +121,7 @@ class ClassRoom final : public host::SeatDirectory {
 
   /// The place of a learner, with a program that runs. Throws JoinRefusal if the class is full.
   Place& start_place(host::SeatNumber number);
-  void start_program(const Learner& learner, Place& place);
+  void start_program(const Learner& learner, Place& place, bool is_paused);
   /// Ends the robot of somebody who is away, if this learner (null: a new one) has none that runs and there is no room.
   /// Throws JoinRefusal.
   void require_room(const Learner* learner);

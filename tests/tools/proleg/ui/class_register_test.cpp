@@ -129,6 +129,10 @@ TEST_F(ClassRegisterTest, NobodyNewJoinsALockedClass) {
   class_->lock(true);
   EXPECT_EQ(status({"Bob", class_->code(), ""}), 409U);
   EXPECT_EQ(join("Anna", anna.key).seat, anna.seat);
+  open_again();
+  EXPECT_EQ(status({"Bob", class_->code(), ""}), 409U) << "also after a restart";
+  class_->lock(false);
+  EXPECT_EQ(status({"Bob", class_->code(), ""}), 200U);
 }
 
 TEST_F(ClassRegisterTest, AnotherBrowserIsLetInOnceAndTheFirstHasLostTheName) {

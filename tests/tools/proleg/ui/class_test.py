@@ -543,6 +543,7 @@ def test_a_program_that_was_killed_starts_again():
         teacher.until(lambda: any("Anna" in text and "signal 9" in text for text in teacher.viewer.notices))
         with anna.page() as page:
             assert page.drives
+            page.until_state("paused")
         process = program.seat_process("Teacher")
         os.kill(process, signal.SIGKILL)
         wait_until(lambda: program.seat_process("Teacher") not in (None, process))

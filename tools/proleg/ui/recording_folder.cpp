@@ -70,9 +70,12 @@ json RecordingFolder::list() {
   std::map<std::string, Entry> found;
   const auto enters_all = [](const fs::path& /*folder*/) { return true; };
   const auto note = [&](const fs::path& path) {
-    std::error_code ignored;
-    if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, ignored)) ||
-        !is_inside(folder_, fs::canonical(path, ignored)) || ignored) {
+    std::error_code error;
+    if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, error))) {
+      return;
+    }
+    // What is no link is inside, as links to folders are not followed.
+    if (fs::is_symlink(path, error) && (!is_inside(folder_, fs::canonical(path, error)) || error)) {
       return;
     }
     const std::string name = path.lexically_relative(folder_).string();
@@ -94,6 +97,7 @@ json RecordingFolder::list() {
     found.erase(newest.back().second);
   }
   entries_ = std::move(found);
+  undescribed_.clear();
   json files = json::array();
   for (const auto& [time, name] : newest) {
     const Entry& known = entries_.at(name);
@@ -103,17 +107,23 @@ json RecordingFolder::list() {
     file["time_ms"] = known.version.time_ns / 1'000'000;
     file["described"] = !known.description.is_null();
     files.push_back(std::move(file));
+    if (!known.is_described) {
+      undescribed_.push_back(name);
+    }
   }
+  std::ranges::reverse(undescribed_);
   return files;
 }
 
 bool RecordingFolder::describe_some() {
-  const auto next = std::ranges::find_if(entries_, [](const auto& entry) { return !entry.second.is_described; });
-  if (next == entries_.end()) {
+  if (undescribed_.empty()) {
     return false;
   }
-  next->second.description = describe(folder_ / next->first);
-  next->second.is_described = true;
+  const std::string name = std::move(undescribed_.back());
+  undescribed_.pop_back();
+  Entry& next = entries_.at(name);
+  next.description = describe(folder_ / name);
+  next.is_described = true;
   return true;
 }
 

@@ -5,14 +5,15 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace proleg::tools {
 
 /// The recordings in a folder and the folders in it. Nothing outside can be reached, also not by symbolic links.
 class RecordingFolder {
  public:
-  /// The newest of more files are listed.
-  static constexpr std::size_t max_files = 1000;
+  /// The newest of more files are listed: a list of all goes to the page every two seconds.
+  static constexpr std::size_t max_files = 5000;
 
   /// Throws InputError if it is no folder.
   explicit RecordingFolder(const std::filesystem::path& folder);
@@ -20,7 +21,7 @@ class RecordingFolder {
   /// An array with an object for each file (docs/page-interface.md, Recordings), the newest first. What has to be read
   /// from the files is null until describe_some() has read it.
   [[nodiscard]] nlohmann::json list();
-  /// Reads one file of the last list(); false if all are read.
+  /// Reads one file of the last list(), the newest first; false if all are read.
   bool describe_some();
 
   /// The file that a name of the list means. Throws InputError for anything else.
@@ -43,6 +44,7 @@ class RecordingFolder {
 
   std::filesystem::path folder_;  ///< without symbolic links
   std::map<std::string, Entry> entries_;
+  std::vector<std::string> undescribed_;  ///< names, the newest last
 };
 
 /// Where a new recording with this name goes. Throws InputError for a name that is no plain file name with .proleg, and

@@ -65,15 +65,17 @@ function FileRow({ app, file }: { app: RecordingsApp; file: RecordedFile }) {
   );
 }
 
-const mostRows = 200;
+const fewRows = 200; // at first, and with each click more
 
 export function RecordingList({ app }: { app: RecordingsApp }) {
   const wanted = useSignal('');
+  const mostRows = useSignal(fewRows);
   const files = app.files.value;
   const folder = app.page.state.recordings.value?.folder ?? '';
   const words = wanted.value.toLowerCase().split(/\s+/).filter(Boolean);
   const text = (file: RecordedFile) => `${file.name} ${file.scenario ?? ''} ${file.algorithms?.join(' ') ?? ''} ${file.program ?? ''}`;
   const matching = (files ?? []).filter((file) => words.every((word) => text(file).toLowerCase().includes(word)));
+  const left = matching.length - mostRows.value;
   return (
     <section class="panel recording-list" aria-label="List of recordings">
       <div class="panel-head">
@@ -106,14 +108,21 @@ export function RecordingList({ app }: { app: RecordingsApp }) {
               <td />
             </TableHead>
             <tbody>
-              {matching.slice(0, mostRows).map((file) => (
+              {matching.slice(0, mostRows.value).map((file) => (
                 <FileRow key={file.name} app={app} file={file} />
               ))}
             </tbody>
           </table>
         </div>
       )}
-      {matching.length > mostRows && <p class="hint">{matching.length - mostRows} more; write a part of the name above.</p>}
+      {left > 0 && (
+        <p class="hint">
+          <button type="button" onClick={() => (mostRows.value += fewRows)}>
+            {Math.min(left, fewRows)} of {left} more
+          </button>{' '}
+          Or write a part of the name above.
+        </p>
+      )}
     </section>
   );
 }

@@ -11,6 +11,7 @@ import { seek } from './seek.js';
 import { soak } from './soak.js';
 import { sizes, start } from './start.js';
 import { bytes, intake } from './telemetry.js';
+import { week } from './week.js';
 
 // A new figure is a new entry here.
 const measurements: Record<string, Measurement> = {
@@ -25,6 +26,7 @@ const measurements: Record<string, Measurement> = {
   sizes,
   seek,
   daemon: besideSimulation,
+  week,
   soak,
 };
 

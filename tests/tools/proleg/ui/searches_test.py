@@ -16,50 +16,8 @@ from pathlib import Path
 
 SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
 sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/tools/proleg/ui", "tests/support")]
-from ui_program import UiProgram  # noqa: E402
+from search_program import SECONDS, SearchProgram, experiment, rows_of  # noqa: E402
 from waiting import wait_until  # noqa: E402
-
-SECONDS = 1  # of a run
-
-
-class Program(UiProgram):
-    def __init__(self, programs, folder):
-        super().__init__(programs, folder)
-        self.must("draft.run", name="duration", value=SECONDS)
-
-    def searches(self):
-        """The searches by their names, as they are now."""
-        self.must("search.refresh")
-        self.viewer.until(lambda: "searches" in self.viewer.documents)
-        return {search["name"]: search for search in self.document()["searches"]}
-
-    def document(self):
-        return self.viewer.documents["searches"]["value"]
-
-    def when(self, name, is_so):
-        """The search, when it is as it is waited for."""
-        return wait_until(lambda: (found := self.searches().get(name)) and is_so(found) and found,
-                          lambda: f"{name}: {self.searches().get(name)}")
-
-    def refused(self, name, /, **arguments):
-        result = self.ask(name, **arguments)
-        assert not result["ok"], (name, arguments, result)
-        assert "\n" not in result["error"], result
-        return result["error"]
-
-
-def experiment(**changes):
-    """CMA-ES for the amplitudes of the caterpillar."""
-    return {"method": "cmaEs", "settings": {"popsize": "8", "sigma0": "0.5"},
-            "parameters": [{"module": 0, "parameter": "amplitude", "joints": None, "same": False, "lower": "0", "upper": "60",
-                            "step": "0.5", "with_lower": True, "with_upper": True, "set": None}],
-            "objectives": [{"terms": [{"measure": "distance", "weight": ""}]}], "evaluations": "40", "seed": "7", **changes}
-
-
-def rows_of(folder):
-    """What a search has found, without what depends on time."""
-    with contextlib.closing(sqlite3.connect(f"file:{folder}/store.sqlite?mode=ro", uri=True)) as store:
-        return store.execute("SELECT number, candidate, seed, distance, smoothness FROM evaluation ORDER BY number").fetchall()
 
 
 def simulate(file):
@@ -311,7 +269,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         shutil.copytree(SOURCE / "sim/scenarios/travelling_wave", folder, dirs_exist_ok=True)
-        with Program(PROGRAMS, folder) as program:
+        with SearchProgram(PROGRAMS, folder) as program:
             program.must("draft.save")  # the duration
             a_form_becomes_a_better_gait(program)
             bad_input_is_one_line_and_leaves_nothing(program)

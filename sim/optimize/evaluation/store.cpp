@@ -37,6 +37,7 @@ class Store::Implementation {
       database_->require_own_file();
       statements_ = std::make_unique<Statements>(*database_, columns_);
       read_last_numbers();
+      lock_->note_writer();
     });
   }
   ~Implementation() {

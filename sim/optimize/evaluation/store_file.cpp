@@ -7,8 +7,10 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <random>
 #include <system_error>
 #include <thread>
@@ -135,7 +137,7 @@ StoreLock::StoreLock(const std::filesystem::path& store, const std::string& fail
   }
   if (is_locked) {
     close(descriptor_);
-    throw StoreError(store.string() + ": another program is writing to it; wait until it ends, or stop it");
+    throw StoreError(store.string() + ": " + std::string(another_writer) + "; wait until it ends, or stop it");
   }
 }
 
@@ -147,6 +149,13 @@ StoreLock::~StoreLock() {
 
 StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
+void StoreLock::note_writer() const {
+  // Always as long: it needs no further room on a disk that is full. Without it only writer_of() has no answer.
+  std::array<char, 16> number{};
+  const int length = std::snprintf(number.data(), number.size(), "%-10d\n", getpid());
+  static_cast<void>(pwrite(descriptor_, number.data(), static_cast<std::size_t>(length), 0));
+}
+
 bool is_being_written(const std::filesystem::path& store) {
   const int descriptor = open((store.string() + ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
@@ -155,6 +164,16 @@ bool is_being_written(const std::filesystem::path& store) {
   const bool is_locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor);  // releases the lock
   return is_locked;
+}
+
+std::optional<pid_t> writer_of(const std::filesystem::path& store) {
+  if (!is_being_written(store)) {
+    return std::nullopt;
+  }
+  std::ifstream lock(store.string() + ".lock");
+  std::string number;
+  lock >> number;
+  return parse_whole<pid_t>(number);
 }
 
 void request_stop(const std::filesystem::path& store) {

@@ -2,6 +2,8 @@
 
 // Creates, locks and checks the file of a store. All functions throw StoreError or SqliteError.
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -38,9 +40,13 @@ struct StoredExperiment {
   std::vector<sim::SourceFile> sources;  ///< every file that was read
 };
 
+/// What StoreLock says of a store that another program writes to.
+inline constexpr std::string_view another_writer = "another program is writing to it";
+
 /// The lock of the one program that writes to a store. The system releases it when the process ends, in any way.
-/// Readers do not need it. (SQLite's own locks exist only while it writes.) The lock is on an empty file beside the
-/// store, which remains: on a network file system a lock on the store itself would lock SQLite out.
+/// Readers do not need it. (SQLite's own locks exist only while it writes.) The lock is on a file beside the store,
+/// which remains: on a network file system a lock on the store itself would lock SQLite out. The file has the number of
+/// the process that was ready to write last.
 class StoreLock {
  public:
   /// Throws StoreError if another program has the lock, or if its file cannot be made. The message then says `failure`.
@@ -49,12 +55,18 @@ class StoreLock {
   StoreLock(StoreLock&& other) noexcept;
   StoreLock& operator=(StoreLock&&) = delete;
 
+  /// The store is open and can be written: writer_of() is this process.
+  void note_writer() const;
+
  private:
   int descriptor_;
 };
 
 /// Whether a program writes to the store now. False for a store on a file system without such locks.
 [[nodiscard]] bool is_being_written(const std::filesystem::path& store);
+/// The process that writes to the store now, by its number on the computer where it runs. Nothing, or the one before,
+/// if there is none or it is not ready yet.
+[[nodiscard]] std::optional<pid_t> writer_of(const std::filesystem::path& store);
 
 /// Asks the program that writes to a store to stop, as Ctrl-C does, on whatever computer it runs: by a file beside the
 /// store. Throws StoreError if no program writes to it, or if the file cannot be made.

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <stdexcept>
 
@@ -34,5 +35,7 @@ std::optional<int> DetachedProgram::status() {
   }
   return status_;
 }
+
+void DetachedProgram::interrupt() const { kill(process_, SIGINT); }
 
 }  // namespace proleg::tools

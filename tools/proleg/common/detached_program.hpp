@@ -18,6 +18,9 @@ class DetachedProgram {
   /// Its exit status; nothing as long as it runs. Does not wait. Without this call an ended program stays in the
   /// system's list until this one ends.
   [[nodiscard]] std::optional<int> status();
+  [[nodiscard]] pid_t process() const { return process_; }
+  /// As Ctrl-C does. Not after status() has returned one.
+  void interrupt() const;
 
  private:
   pid_t process_ = -1;

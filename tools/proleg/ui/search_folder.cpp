@@ -29,6 +29,17 @@ constexpr const char* store_name = "store.sqlite";
 /// A list comes in this time, also of many searches; the rest of it comes later.
 constexpr std::chrono::milliseconds time_to_read{100};
 
+std::int64_t modified_ns(const struct stat& status) {
+  constexpr std::int64_t second = 1'000'000'000;
+  return status.st_mtim.tv_sec * second + status.st_mtim.tv_nsec;
+}
+
+/// 0 if there is no such file.
+std::int64_t modified_ns(const fs::path& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 ? modified_ns(status) : 0;
+}
+
 }  // namespace
 
 void SearchSpeed::note(std::uint64_t made, Clock::time_point now) {
@@ -71,7 +82,8 @@ std::string SearchFolder::failure_of(const fs::path& search) {
   const std::string end(std::istreambuf_iterator<char>(log), {});
   const std::string last = last_line_of(end);
   constexpr std::string_view program = "proleg optimise: ";
-  const bool is_failure = last.starts_with(program) && last.find(": interrupted ") == std::string::npos;
+  const bool is_failure = last.starts_with(program) && last.find(": interrupted ") == std::string::npos &&
+                          last.find(optimize::another_writer) == std::string::npos;
   return is_failure ? last.substr(program.size()) : std::string();
 }
 
@@ -81,10 +93,9 @@ SearchFolder::Version SearchFolder::version_of(const fs::path& store) {
   for (const char* suffix : {"-wal", ""}) {
     struct stat status {};
     if (::stat((store.string() + suffix).c_str(), &status) == 0) {
-      constexpr std::int64_t second = 1'000'000'000;
       version.inode = status.st_ino;
       version.size += static_cast<std::uint64_t>(status.st_size);
-      version.time_ns = std::max(version.time_ns, status.st_mtim.tv_sec * second + status.st_mtim.tv_nsec);
+      version.time_ns = std::max(version.time_ns, modified_ns(status));
     }
   }
   return version;
@@ -157,7 +168,9 @@ json SearchFolder::object_of(const std::string& name, const fs::path& search, co
     left = entry.speed.time_of(summary.planned - summary.made);
   }
   object["left_s"] = left ? json(*left) : json();
-  if (object["state"] == "interrupted") {
+  // What was printed before the store was written last is of an earlier program.
+  if (object["state"] == "interrupted" ||
+      (object["state"] == "ended" && modified_ns(log_of(search)) > modified_ns(store_of(search)))) {
     object["problem"] = text_or_null(failure_of(search));
   }
   return object;

@@ -57,7 +57,8 @@ class SearchFolder {
   [[nodiscard]] static std::filesystem::path store_of(const std::filesystem::path& search);
   /// What `proleg optimise` prints when this program has started it.
   [[nodiscard]] static std::filesystem::path log_of(const std::filesystem::path& search);
-  /// The last line of that file, if it says why the search failed; else nothing.
+  /// The last line of that file, if it says why the search failed; else nothing. That another program was faster to
+  /// continue it is no failure of the search.
   [[nodiscard]] static std::string failure_of(const std::filesystem::path& search);
 
  private:

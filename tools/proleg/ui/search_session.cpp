@@ -100,6 +100,30 @@ bool has_evaluations(const fs::path& store) {
   }
 }
 
+/// Asks a search to stop that may have ended just now.
+void stop_if_running(const fs::path& store) {
+  try {
+    optimize::request_stop(store);
+  } catch (const optimize::StoreError&) {
+    if (optimize::is_being_written(store)) {
+      throw;
+    }
+  }
+}
+
+/// Why a search has not begun whose program has ended with this status.
+std::string refusal_of(const fs::path& search, int status) {
+  if (optimize::is_being_written(SearchFolder::store_of(search))) {
+    return "another program has begun to continue this search";
+  }
+  std::string line = SearchFolder::failure_of(search);
+  constexpr std::uintmax_t little = 64 * 1024;
+  if (std::error_code error; line.empty() && fs::space(search, error).available < little) {
+    line = "no space left on the disk";  // not even for the reason
+  }
+  return line.empty() ? "the search has ended with status " + std::to_string(status) : line;
+}
+
 /// Why the reduced engine cannot make the search; null: it can.
 json refusal_of_reduced(Experiment experiment) {
   experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
@@ -140,9 +164,9 @@ void SearchSession::serve() {
   if (folder_.has_unread()) {
     return;
   }
-  if (!beginnings_.empty() || job_) {
+  if (job_ || !std::ranges::all_of(beginnings_, &Beginning::is_answered)) {
     requests_.wait_until(Clock::now() + look_period);
-  } else if (!running_.empty()) {
+  } else if (!beginnings_.empty() || !running_.empty()) {
     requests_.wait_until(Clock::now() + reap_period);
   } else {
     requests_.wait();
@@ -151,14 +175,23 @@ void SearchSession::serve() {
 
 void SearchSession::fail(const std::string& why) {
   for (Beginning& beginning : beginnings_) {
-    output_.refuse(beginning.request, why);
+    if (!beginning.is_answered) {
+      output_.refuse(beginning.request, why);
+    }
     running_.push_back(std::move(beginning.program));
   }
   beginnings_.clear();
   end_job(why);
 }
 
-void SearchSession::close() { end_job("the program ends"); }
+void SearchSession::close() {
+  end_job("the program ends");
+  for (Beginning& beginning : beginnings_) {
+    if (beginning.stops && !beginning.program.status()) {
+      beginning.program.interrupt();  // nobody is left who would stop it when it has begun
+    }
+  }
+}
 
 json SearchSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{
@@ -418,35 +451,32 @@ bool SearchSession::look_at(Beginning& beginning) {
   const fs::path store = SearchFolder::store_of(beginning.folder);
   const std::optional<int> status = beginning.program.status();
   std::error_code error;
-  // The log of the store is there when the program has taken the store for its own.
-  const bool is_open = optimize::is_being_written(store) && fs::exists(store.string() + "-wal", error);
+  // Another program may have been faster, and writes to it.
+  const bool is_open = optimize::writer_of(store) == beginning.program.process();
   const bool has_begun = fs::exists(store, error) && (is_open || status == exit_success);
   if (has_begun) {
     folder_.look_again();
     if (beginning.stops && is_open) {
-      optimize::request_stop(store);
+      stop_if_running(store);
     }
-    output_.answer(beginning.request, {{"name", beginning.name}});
+    if (!beginning.is_answered) {
+      output_.answer(beginning.request, {{"name", beginning.name}});
+    }
     running_.push_back(std::move(beginning.program));
     return true;
   }
-  const bool is_late = Clock::now() >= beginning.until;
-  if (!status && !is_late) {
+  if (!status) {
+    if (!beginning.is_answered && Clock::now() >= beginning.until) {
+      output_.refuse(beginning.request, "the search has not begun in time; it may begin later");
+      beginning.is_answered = true;
+    }
     return false;
   }
-  constexpr std::uintmax_t little = 64 * 1024;
-  std::string line = SearchFolder::failure_of(beginning.folder);
-  if (line.empty() && fs::space(beginning.folder, error).available < little) {
-    line = "no space left on the disk";  // not even for the reason
+  if (!beginning.is_answered) {
+    output_.refuse(beginning.request, refusal_of(beginning.folder, *status));
   }
-  output_.refuse(beginning.request, is_late        ? "the search has not begun in time; it may begin later"
-                                    : line.empty() ? "the search has ended with status " + std::to_string(*status)
-                                                   : line);
-  if (status && beginning.is_new && !has_evaluations(store)) {
+  if (beginning.is_new && !has_evaluations(store)) {
     fs::remove_all(beginning.folder, error);
-  }
-  if (!status) {
-    running_.push_back(std::move(beginning.program));
   }
   return true;
 }

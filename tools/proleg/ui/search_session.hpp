@@ -53,8 +53,9 @@ class SearchSession final : private SessionThread {
     std::filesystem::path folder;
     DetachedProgram program;
     Clock::time_point until;
-    bool is_new;         ///< its folder is removed if it does not begin
-    bool stops = false;  ///< a viewer has asked it to stop meanwhile
+    bool is_new;               ///< its folder is removed if it does not begin
+    bool stops = false;        ///< a viewer has asked it to stop meanwhile
+    bool is_answered = false;  ///< it is late: the request was refused
   };
   /// An estimate or a confirmation that goes on.
   struct Job {

@@ -246,7 +246,25 @@ describe('a class', () => {
     await anna.viewer.button('Live').click();
   });
 
-  it('hands out to one learner, and sends a message to one or all', async () => {
+  it('hands out to one learner, whose unsaved draft is asked about', async () => {
+    await ben.viewer.button('Make').click();
+    await ben.page.getByRole('region', { name: 'Library' }).getByRole('button', { name: 'box', exact: true }).click();
+    await ben.viewer.button('Add box').click();
+    assert.ok(await waitUntil(() => ben.viewer.button('Undo').isEnabled()));
+    await teacher.tile('Ben').getByRole('button', { name: /Hand out$/ }).click();
+    await teacher.dialog().getByRole('button', { name: /^Forward/ }).first().click();
+    await teacher.dialog().getByRole('button', { name: 'Hand out', exact: true }).click();
+    await teacher.page.getByTestId('hand-out-result').getByRole('listitem').first().waitFor();
+    assert.equal(await teacher.page.getByTestId('hand-out-result').getByRole('listitem').count(), 1);
+    await teacher.viewer.button('Done').click();
+    await ben.page.getByTestId('handed-out').getByRole('button', { name: 'Open' }).click();
+    await ben.page.getByTestId('loss-question').getByRole('button', { name: 'Go on without them' }).click();
+    await ben.page.getByTestId('draft-file').getByText('forward.simulation.xml').waitFor();
+    assert.equal(await anna.page.getByTestId('handed-out').count(), 0);
+    await ben.viewer.button('Live').click();
+  });
+
+  it('sends a message to one or all', async () => {
     await teacher.tile('Ben').getByRole('button', { name: /Message$/ }).click();
     await teacher.page.getByLabel('Text').fill('Well done');
     await teacher.page.keyboard.press('Enter');

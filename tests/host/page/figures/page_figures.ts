@@ -4,9 +4,11 @@ import type { Bench, Measurement } from './bench.js';
 import { sliderToSetpoint, stopToStopped } from './controls.js';
 import { besideSimulation, stalledViewer } from './daemon.js';
 import { drawing } from './drawing.js';
+import { flash } from './flash.js';
 import { describeMachine, machineText } from './machine.js';
 import { make } from './make.js';
 import { summarise, summaryText, type Summary } from './report.js';
+import { search } from './search.js';
 import { seek } from './seek.js';
 import { soak } from './soak.js';
 import { sizes, start } from './start.js';
@@ -27,6 +29,8 @@ const measurements: Record<string, Measurement> = {
   seek,
   daemon: besideSimulation,
   week,
+  search,
+  flash,
   soak,
 };
 

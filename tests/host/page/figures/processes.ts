@@ -11,6 +11,32 @@ export function threadTimes(pid: number): number[] {
 
 export const sum = (values: readonly number[]) => values.reduce((total, value) => total + value, 0);
 
+// What follows the name in /proc/PID/stat: it may have spaces.
+const statOf = (pid: number) => readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ').at(-1)!.split(' ');
+
+// Processor time of all its threads, also of those that have ended, in milliseconds.
+export function processorTime(pid: number): number {
+  const [user, system] = statOf(pid).slice(11, 13).map(Number);
+  return 10 * ((user as number) + (system as number));
+}
+
+// Processes that another one has started, and those that these have started, whose command has this word.
+export function descendants(pid: number, word: string): number[] {
+  const parents = new Map<number, number>();
+  for (const name of readdirSync('/proc').filter((entry) => /^\d+$/.test(entry))) {
+    try {
+      parents.set(Number(name), Number(statOf(Number(name))[1]));
+    } catch {
+      // It has ended since.
+    }
+  }
+  const isBelow = (process: number): boolean => {
+    const parent = parents.get(process);
+    return parent !== undefined && (parent === pid || isBelow(parent));
+  };
+  return [...parents.keys()].filter((process) => isBelow(process) && readFileSync(`/proc/${process}/cmdline`, 'utf8').includes(word));
+}
+
 // In KiB. `VmRSS`: present; `VmHWM`: the largest so far.
 export function residentMemory(pid: number, field: 'VmRSS' | 'VmHWM' = 'VmRSS'): number {
   const status = readFileSync(`/proc/${pid}/status`, 'utf8');

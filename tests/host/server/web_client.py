@@ -8,6 +8,7 @@ import select
 import socket
 import ssl
 import struct
+import threading
 import time
 
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
@@ -248,6 +249,29 @@ class Viewer:
 
     def has_data(self, wait_s):
         return bool(self.data) or bool(select.select([self.sock], [], [], wait_s)[0])
+
+
+def live(viewer):
+    """Says more than twice a second that a page lives, as long as the event that this returns is set."""
+    lives = threading.Event()
+    lives.set()
+    send, lock = viewer.send_bytes, threading.Lock()
+
+    def send_alone(data):
+        with lock:
+            send(data)
+
+    def beat():
+        while lives.wait():
+            try:
+                viewer.send({"type": "beat", "age_ms": 0})
+            except OSError:
+                return
+            time.sleep(0.3)
+
+    viewer.send_bytes = send_alone
+    threading.Thread(target=beat, daemon=True).start()
+    return lives
 
 
 def decode_rows(payload):

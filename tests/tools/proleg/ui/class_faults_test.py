@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 
-from class_program import (LONGEST, ClassProgram, Closed, SeatPage, a_class, beat, copy_of_scenario, encrypted, run_tests, runs, school, wait_until)
+from class_program import (LONGEST, ClassProgram, Closed, SeatPage, a_class, copy_of_scenario, encrypted, live, run_tests, runs, school, wait_until)
 from web_client import TEXT, Viewer, connect, frame, read_all, request
 
 SEED = random.randrange(2**32)

@@ -13,7 +13,7 @@ import threading
 import time
 from pathlib import Path
 
-from class_program import Closed, ClassProgram, Viewer, beat, school
+from class_program import Closed, ClassProgram, Viewer, live, school
 from web_client import TEXT, frame
 
 SLIDER_HZ = 60
@@ -44,7 +44,7 @@ class Slider:
     def __init__(self, port, path, token, name):
         self.viewer = Viewer(port, token, name, path=f"{path}socket", wants_control=True)
         self.viewer.until(lambda: {"control", "session", "telemetry"} <= set(self.viewer.documents))
-        beat(self.viewer)
+        live(self.viewer)
         self.viewer.send({"type": "subscribe", "signals": ["angle", "head"]})
         self.moves = threading.Event()
         self.ends = False

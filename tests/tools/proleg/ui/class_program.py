@@ -11,7 +11,6 @@ import ssl
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,32 +19,13 @@ sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 SOURCE, PROGRAMS = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/support")]
 import web_client  # noqa: E402
+from processes import children, runs  # noqa: E402
 from served_page import make_certificate  # noqa: E402
 from waiting import LONGEST, wait_until  # noqa: E402
-from web_client import Closed, Viewer, request  # noqa: E402
+from web_client import Closed, Viewer, live, request  # noqa: E402
 
 SCENARIO = SOURCE / "sim/scenarios/travelling_wave/uniform.simulation.xml"
 TITLES = {"class.html": "<!doctype html><title>class</title>", "index.html": "<!doctype html><title>robot</title>"}
-
-
-def children(process):
-    """The programs that another one has started, by process, with their arguments."""
-    found = {}
-    for status in Path("/proc").glob("[0-9]*/status"):
-        try:
-            text = status.read_text()
-            if re.search(rf"\nPPid:\t{process}\n", text) and not re.search(r"\nState:\tZ", text):
-                found[int(status.parent.name)] = (status.parent / "cmdline").read_text().split("\0")[:-1]
-        except (FileNotFoundError, ProcessLookupError):
-            pass
-    return found
-
-
-def runs(process):
-    try:
-        return not re.search(r"\nState:\t[ZX]", Path(f"/proc/{process}/status").read_text())
-    except (FileNotFoundError, ProcessLookupError):
-        return False
 
 
 class Learner:
@@ -317,26 +297,6 @@ def encrypted(folder):
         web_client.TLS = None
 
 
-def beat(viewer):
-    """Says that a page lives, until its connection ends. Other threads may send, too."""
-    send, lock = viewer.send_bytes, threading.Lock()
-
-    def send_alone(data):
-        with lock:
-            send(data)
-
-    def run():
-        while True:
-            try:
-                viewer.send({"type": "beat", "age_ms": 0})
-            except OSError:
-                return
-            time.sleep(0.3)
-
-    viewer.send_bytes = send_alone
-    threading.Thread(target=run, daemon=True).start()
-
-
 def run_tests(tests, wanted=""):
     for name, test in tests.items():
         if name.startswith("test_") and wanted in name:
@@ -353,4 +313,4 @@ def copy_of_scenario(folder):
 
 
 __all__ = ["Closed", "SOURCE", "PROGRAMS", "SCENARIO", "LONGEST", "TITLES", "wait_until", "children", "runs", "Learner",
-           "SeatPage", "Teacher", "ClassProgram", "school", "a_class", "encrypted", "beat", "run_tests", "copy_of_scenario"]
+           "SeatPage", "Teacher", "ClassProgram", "school", "a_class", "encrypted", "live", "run_tests", "copy_of_scenario"]

@@ -13,7 +13,7 @@ import sys
 import time
 from pathlib import Path
 
-from class_program import (LONGEST, PROGRAMS, SCENARIO, SOURCE, TITLES, ClassProgram, Closed, Learner, a_class, beat, copy_of_scenario, run_tests,
+from class_program import (LONGEST, PROGRAMS, SCENARIO, SOURCE, TITLES, ClassProgram, Closed, Learner, a_class, copy_of_scenario, live, run_tests,
                            runs, school, wait_until)
 from web_client import Viewer
 

@@ -6,8 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-import threading
-import time
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
@@ -15,6 +13,7 @@ SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
 sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/support")]
 from ui_program import UiProgram  # noqa: E402
 from waiting import LONGEST, wait_until  # noqa: E402
+from web_client import live  # noqa: E402
 
 SCENARIO = SOURCE / "sim/scenarios/travelling_wave/uniform.simulation.xml"
 
@@ -40,29 +39,6 @@ class Bus:
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
         self.process.communicate(timeout=LONGEST)
-
-
-def live(viewer):
-    """Says more than twice a second that a page lives, as long as the event that this returns is set."""
-    lives = threading.Event()
-    lives.set()
-    send, lock = viewer.send_bytes, threading.Lock()
-
-    def send_alone(data):
-        with lock:
-            send(data)
-
-    def beat():
-        while lives.wait():
-            try:
-                viewer.send({"type": "beat", "age_ms": 0})
-            except OSError:
-                return
-            time.sleep(0.3)
-
-    viewer.send_bytes = send_alone
-    threading.Thread(target=beat, daemon=True).start()
-    return lives
 
 
 class Table(UiProgram):

@@ -18,8 +18,9 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
-from module_table import LONGEST, PROGRAMS, SCENARIO, SOURCE, Bus, Table, live, proleg, wait_until
-from web_client import Closed, Viewer
+from module_table import LONGEST, PROGRAMS, SCENARIO, SOURCE, Bus, Table, proleg, wait_until
+from processes import children, runs
+from web_client import Closed, Viewer, live
 
 JOINTS = [f"J{number}" for number in range(1, 6)]
 BUILT_IMAGE = PROGRAMS.parent.parent / "stm32f405/bin/proleg_stm32f405.pimg"
@@ -67,26 +68,6 @@ def make_image(table, version, content=None, board=1):
                     "--schema", "2"], check=True, capture_output=True)
     table.must("modules.look")
     return name
-
-
-def children(process):
-    """The programs that another one has started, by name."""
-    found = {}
-    for status in Path("/proc").glob("[0-9]*/status"):
-        try:
-            text = status.read_text()
-            if re.search(rf"\nPPid:\t{process}\n", text) and not re.search(r"\nState:\tZ", text):
-                found[int(status.parent.name)] = Path(status.parent / "cmdline").read_text().split("\0")[0].split("/")[-1]
-        except (FileNotFoundError, ProcessLookupError):
-            continue
-    return found
-
-
-def lives(process):
-    try:
-        return not re.search(r"\nState:\t[ZX]", Path(f"/proc/{process}/status").read_text())
-    except (FileNotFoundError, ProcessLookupError):
-        return False
 
 
 def drives(bus):
@@ -457,13 +438,13 @@ def test_the_program_ends_in_the_middle_of_a_job():
                     table.must("modules.flash", image=make_image(table, "0.4.0", program(4, 80_000)))
                     table.job(lambda job: "progress" in job["latest"])
                 programs = children(table.process.pid)
-                assert list(programs.values()) == [f"proleg-{kind}"], programs
+                assert [words[0].split("/")[-1] for words in programs.values()] == [f"proleg-{kind}"], programs
                 begin = time.monotonic()
                 table.process.send_signal(number)
                 status = table.process.wait(timeout=LONGEST)
                 assert number == signal.SIGKILL or status == 0, status
                 at = time.monotonic()
-                wait_until(lambda: not any(lives(process) for process in programs), lambda: programs)
+                wait_until(lambda: not any(runs(process) for process in programs), lambda: programs)
                 print(f"   {signal.Signals(number).name}, {kind}: the page ended after {at - begin:.1f} s, its child after "
                       f"{time.monotonic() - begin:.1f} s")
                 # Nobody can take the power from a joint whose host has gone: its module holds it in the safe pose.

@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
+SOURCE, PROGRAMS = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/tools/proleg/ui", "tests/support")]
 from search_program import SearchProgram, experiment, rows_of  # noqa: E402
 from ui_program import UiProgram  # noqa: E402

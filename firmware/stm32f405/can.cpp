@@ -16,6 +16,7 @@ namespace {
 constexpr std::uint32_t prescaler = 3;
 constexpr std::uint32_t segment_1 = 11;
 constexpr std::uint32_t segment_2 = 2;
+constexpr std::uint32_t jump_width = 2;  // as much as segment_2 allows: edges may ring on a bus with many stubs
 static_assert(board::apb1 / prescaler / (1 + segment_1 + segment_2) == 1'000'000);
 
 /// Number of reads within which the controller enters initialization mode. It does so after the current frame: 135 bits
@@ -72,7 +73,7 @@ void accept_common_frames() {
   namespace identifier = canopen::identifier;
   constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank | 1U << every_frame_bank;
   constexpr std::uint32_t all_banks = (1U << can1::filter_banks) - 1U;
-  can1::fmr.write(can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
+  can1::fmr.change(can1::fmr_mask, can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
   can1::fa1r.write(0);
   can1::fm1r.write(all_banks & ~with_masks);
   can1::fs1r.write(0);
@@ -91,7 +92,7 @@ void accept_common_frames() {
   every_frame.first.write(masked(0, 0));
   every_frame.second.write(masked(0, 0));
   can1::fa1r.write(banks_of_every_robot);
-  can1::fmr.write(can1::fmr_can2sb_of(can1::filter_banks));
+  can1::fmr.clear(can1::fmr_finit);
 }
 
 /// A word of data without the bytes from `length` on, which the controller does not define.
@@ -127,7 +128,7 @@ bool Can::start() {
   if (!wait_until_set(can1::msr, can1::msr_inak, reads_for_a_frame)) {
     return false;
   }
-  can1::btr.write(can1::btr_of(prescaler, segment_1, segment_2, 1));
+  can1::btr.write(can1::btr_of(prescaler, segment_1, segment_2, jump_width));
   accept_common_frames();
   can1::ier.write(can1::ier_tmeie | can1::ier_fmpie0 | can1::ier_fovie0 | can1::ier_bofie | can1::ier_errie);
   can1::mcr.write(can1::mcr_dbf);

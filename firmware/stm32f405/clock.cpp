@@ -8,9 +8,10 @@
 namespace proleg::stm32f405 {
 namespace {
 
-// Factors of the PLL: its input must be 1 to 2 MHz, the VCO 100 to 432 MHz; Q gives 48 MHz.
-constexpr std::uint32_t pll_m = 8;
-constexpr std::uint32_t pll_n = 336;
+// Factors of the PLL: its input must be 1 to 2 MHz, where 2 gives the least jitter (RM0090, section 7.3.2), the VCO 100
+// to 432 MHz; Q gives 48 MHz.
+constexpr std::uint32_t pll_m = 4;
+constexpr std::uint32_t pll_n = 168;
 constexpr std::uint32_t pll_p = 2;
 constexpr std::uint32_t pll_q = 7;
 static_assert(board::crystal / pll_m * pll_n / pll_p == board::core);
@@ -23,7 +24,10 @@ constexpr std::uint32_t wait_states = (board::core - 1) / 30'000'000;
 /// table 33) and gets 50; the PLL locks in 0.3 ms and gets 5.
 constexpr std::uint32_t reads_in_50_ms = board::internal_oscillator / 20 / 5;
 
+bool has_wait_states() { return wait_until_set(flash_interface::acr, wait_states, reads_in_50_ms); }
+
 bool switch_to_pll() {
+  rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_pll);
   for (std::uint32_t reads = reads_in_50_ms / 10; reads != 0; --reads) {
     if ((rcc::cfgr.read() & rcc::cfgr_sws_mask) == rcc::cfgr_sws_pll) {
       return true;
@@ -51,8 +55,8 @@ ClockResult start_clocks() {
                                                                      flash_interface::acr_icen |
                                                                      flash_interface::acr_dcen);
   rcc::cfgr.change(rcc::cfgr_prescalers_mask, rcc::cfgr_hpre_1 | rcc::cfgr_ppre1_4 | rcc::cfgr_ppre2_2);
-  rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_pll);
-  if (!switch_to_pll()) {
+  // The flash may take new wait states some cycles later: they are read back (section 3.5.1).
+  if (!has_wait_states() || !switch_to_pll()) {
     // The source is switched back first: a PLL that locks late would clock the buses without prescalers. The prescalers
     // are set back because the console needs the initial frequency of APB1.
     rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_hsi);

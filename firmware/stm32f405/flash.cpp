@@ -15,7 +15,8 @@ using namespace flash_interface;
 
 /// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
 /// Returns the status register. It may call no function and read only registers and the stack, because everything else
-/// is in flash.
+/// is in flash. After the timeout this write to CR, and the next instruction in flash, stall the CPU until the
+/// operation ends (RM0090, section 3.6.1): it is reported late, or the watchdog resets the chip.
 [[gnu::section(".ram_code"), gnu::noinline, gnu::noclone]] std::uint32_t operate(std::uint32_t control,
                                                                                  std::uintptr_t address,
                                                                                  std::uint32_t word,
@@ -52,16 +53,15 @@ bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std:
   return (operate(control, address, word, timeout_us) & (sr_bsy | sr_errors)) == 0;
 }
 
-/// Clears the data cache, which may hold the data before the erase (RM0090, section 3.5.2). Programming keeps it up to
-/// date.
+/// Clears the data cache, so that what is read next are the cells. It may hold the data before an erase (RM0090,
+/// section 3.5.2). Programming changes what it holds, too (section 3.6.4): a weak cell would be read as if it had taken
+/// its value.
 void clear_data_cache() {
   acr.clear(acr_dcen);
   acr.set(acr_dcrst);
   acr.clear(acr_dcrst);
   acr.set(acr_dcen);
 }
-
-constexpr unsigned first_sector = 1;  // of the board records
 
 /// Time after which an erase of 16 KiB has failed: twice the maximum of the data sheet.
 constexpr std::uint32_t erase_timeout_us = 1'000'000;
@@ -88,11 +88,12 @@ bool program_words(std::uint32_t address, std::span<const std::uint8_t> bytes) {
       return false;
     }
   }
+  clear_data_cache();
   return true;
 }
 
 bool BoardRecordFlash::erase(unsigned sector) {
-  return sector < sector_count && erase_sector(first_sector + sector, erase_timeout_us);
+  return sector < sector_count && erase_sector(flash_layout::first_sector_of_records + sector, erase_timeout_us);
 }
 
 bool BoardRecordFlash::program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) {

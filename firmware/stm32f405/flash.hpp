@@ -24,7 +24,7 @@ namespace proleg::stm32f405 {
 /// Time after which programming a word has failed: at least twice the maximum of the data sheet.
 inline constexpr std::uint32_t program_timeout_us = 1'000;
 
-/// Sectors 1 and 2 of the flash, 16 KiB each at 0x08004000 and 0x08008000: sectors 0 and 1 of the port (RM0090, section
+/// Sectors 2 and 3 of the flash, 16 KiB each at 0x08008000 and 0x0800C000: sectors 0 and 1 of the port (RM0090, section
 /// 3.3, table 5). An operation takes up to half a second; the timer repeats the servo's last pulse meanwhile. The
 /// class must be used only while the servo has no power.
 class BoardRecordFlash final : public firmware::FlashPort {

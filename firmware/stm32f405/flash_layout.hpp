@@ -8,8 +8,12 @@
 
 namespace proleg::stm32f405::flash_layout {
 
-/// Sectors 1 and 2, 16 KiB each: the log of board records (firmware/module/board_record.hpp).
-inline constexpr std::uint32_t board_records = 0x0800'4000;
+/// Sectors 0 and 1, 16 KiB each: the bootloader. The chip starts from the first.
+inline constexpr std::uint32_t bootloader = 0x0800'0000;
+inline constexpr std::uint32_t bootloader_size = 2 * 16 * 1024;
+/// Sectors 2 and 3, 16 KiB each: the log of board records (firmware/module/board_record.hpp).
+inline constexpr unsigned first_sector_of_records = 2;
+inline constexpr std::uint32_t board_records = 0x0800'8000;
 inline constexpr std::uint32_t board_records_size = 2 * 16 * 1024;
 /// Sectors 5 to 7: the image. Its header comes first, then the body, with the vector table first.
 inline constexpr std::uint32_t slot_a = 0x0802'0000;
@@ -23,8 +27,6 @@ struct Sector {
   std::uint32_t size = 0;
 };
 
-/// The sector from which the chip starts.
-inline constexpr Sector bootloader_sector{0, 0x0800'0000, 16 * 1024};
 /// The slots of the bootloader (firmware/bootloader/slots.hpp). An image is much smaller than one of these sectors.
 inline constexpr Sector image_sector_a{5, slot_a, 128 * 1024};
 inline constexpr Sector image_sector_b{8, 0x0808'0000, 128 * 1024};

@@ -32,12 +32,23 @@ void connect(Pin pin, unsigned function) {
 
 void set_low(Pin pin) { GpioPort(pin.port).bsrr().write(1U << (pin.number + 16U)); }
 
-void start_pins() {
+namespace {
+
+void enable_ports() {
   rcc::ahb1enr.set(rcc::ahb1enr_gpioa | rcc::ahb1enr_gpiob | rcc::ahb1enr_gpioc);
   static_cast<void>(rcc::ahb1enr.read());  // the clock starts two cycles later (RM0090, section 7.2.13)
+}
 
+}  // namespace
+
+void hold_servo_low() {
+  enable_ports();
   set_low(board::servo);
   set_mode(board::servo, PinMode::output);
+}
+
+void start_pins() {
+  hold_servo_low();
   for (const Pin pin : board::contacts) {
     set_pull(pin, Pull::up);
     set_mode(pin, PinMode::input);

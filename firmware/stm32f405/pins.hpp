@@ -65,6 +65,9 @@ void connect_function(Pin pin, unsigned function);
 void connect(Pin pin, unsigned function);
 void set_low(Pin pin);
 
+/// Makes the servo's pin low, which floats from the reset on. Nothing else is needed before: it may be the first call.
+void hold_servo_low();
+
 /// Enables the clocks of the ports and sets all pins of the board: the servo's pin is low, the others are inputs or
 /// belong to their peripherals.
 void start_pins();

@@ -5,8 +5,8 @@
 
 namespace proleg::stm32f405 {
 
-/// The program in slot A of the flash, and the bootloader in sector 0 if it has started the program. With the start
-/// stub in its place (docs/board.md) no image can be installed over the bus.
+/// The program in slot A of the flash, and the bootloader in sectors 0 and 1 if it has started the program. With the
+/// start stub in its place (docs/board.md) no image can be installed over the bus.
 class ProgramPlace final : public firmware::ProgramPort {
  public:
   /// servo: ends its last pulse before a restart; must outlive the object.

@@ -1,7 +1,8 @@
-// The start of a program: fills the RAM.
+// The start of a program: makes the servo's pin low and fills the RAM.
 
 #include <cstdint>
 
+#include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
 
 extern "C" {
@@ -34,6 +35,8 @@ extern "C" {
 
 // No constructors run: the linker script checks that there are none (all static objects are constinit).
 void reset_handler() {
+  // First of all: the pin floats, and the RAM takes half a millisecond at the clock after a reset.
+  proleg::stm32f405::hold_servo_low();
   proleg::stm32f405::copy(ram_code_load, ram_code_start, ram_code_end);
   proleg::stm32f405::copy(data_load, data_start, data_end);
   for (std::uint32_t* word = bss_start; word != bss_end; ++word) {

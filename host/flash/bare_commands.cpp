@@ -38,7 +38,7 @@ class RomSteps {
   explicit RomSteps(const BarePlan& plan) : plan_(plan) {}
 
   std::vector<BareStep> make() {
-    read("read sector 0", plan_.bootloader, plan_.bootloader_size, bare_file::present, "");
+    read("read the place of the bootloader", plan_.bootloader, plan_.bootloader_size, bare_file::present, "");
     if (plan_.settings_size > 0) {
       write("the board record", plan_.settings, plan_.settings_size, bare_file::settings);
     }
@@ -130,9 +130,10 @@ option_bytes
 
 )";
 
-constexpr std::string_view script_opens_sector_0 = R"(  # Bit 16, nWRP of sector 0, is 0: it is protected.
-  if {!([option_bytes] & 0x10000)} {
-    flash protect 0 0 0 off
+constexpr std::string_view script_lifts_protection =
+    R"(  # Bits 16 and 17, nWRP of sectors 0 and 1: a sector whose bit is 0 is protected.
+  if {([option_bytes] & 0x30000) != 0x30000} {
+    flash protect 0 0 1 off
     reset halt
   }
 )";
@@ -143,13 +144,13 @@ constexpr std::string_view script_end = R"(
 if {[option_bytes] & 0x0C} {
   stm32f2x options_write 0 [expr {[option_bytes] & 0xF0}]
 }
-if {[option_bytes] & 0x10000} {
-  flash protect 0 0 0 on
+if {[option_bytes] & 0x30000} {
+  flash protect 0 0 1 on
 }
 reset halt
 set word [option_bytes]
-if {$word & 0x1000C} {
-  refuse [format "found the option bytes 0x%08X, expected bits 16, 3 and 2 to be 0: the chip did not take them" $word]
+if {$word & 0x3000C} {
+  refuse [format "found the option bytes 0x%08X, expected bits 17, 16, 3 and 2 to be 0: the chip did not take them" $word]
 }
 reset run
 set file [open end.txt w]
@@ -195,7 +196,8 @@ constexpr Symptom openocd_symptoms[] = {
     {"unable to connect to the target", no_chip},
     {"Error connecting DP", no_chip},
     {"stm32x device protected",
-     "found a sector that is write-protected, expected at most sector 0 to be: 'flash protect' of openocd shows how"},
+     "found a sector that is write-protected, expected at most sectors 0 and 1 to be: 'flash protect' of openocd shows "
+     "how"},
     {"contents differ", "found other bytes in the flash than were written, expected the same: check supply and wires"},
 };
 
@@ -235,7 +237,7 @@ std::span<const Symptom> symptoms_of(BareProbe probe) {
 constexpr std::string_view repeat_hint = "; the command can be repeated";
 
 std::string_view protection_hint(const BareStep& step) {
-  return step.is_for_other_bootloader ? "; if sector 0 is write-protected, flash with --probe stlink" : "";
+  return step.is_for_other_bootloader ? "; if sectors 0 and 1 are write-protected, flash with --probe stlink" : "";
 }
 
 }  // namespace
@@ -257,7 +259,7 @@ std::string bare_script(const BarePlan& plan) {
   write_sectors(script, "", bare_file::image, plan.image);
   script << "\ndump_image " << bare_file::present << ' ' << address_word(plan.bootloader) << ' ' << plan.bootloader_size
          << "\nif {[bytes_of " << bare_file::present << "] ne [bytes_of " << bare_file::bootloader << "]} {\n"
-         << script_opens_sector_0;
+         << script_lifts_protection;
   write_sectors(script, "  ", bare_file::bootloader, plan.bootloader);
   script << "}\n" << script_end;
   return script.str();

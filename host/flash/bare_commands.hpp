@@ -47,7 +47,7 @@ inline constexpr const char* end = "end.txt";  ///< the last command of the scri
 struct BarePlan {
   BareProbe probe = BareProbe::stlink;
   std::string port;                   ///< the serial line; only for `uart`
-  FlashPart bootloader;               ///< sector 0
+  FlashPart bootloader;               ///< sectors 0 and 1
   FlashPart settings;                 ///< the sectors of board records
   FlashPart image;                    ///< the sector of slot A that the bootloader uses
   std::uint32_t bootloader_size = 0;  ///< bytes of the file; a multiple of 4
@@ -70,8 +70,8 @@ struct BareStep {
 /// The steps in their order. With openocd there is one, which runs bare_script().
 [[nodiscard]] std::vector<BareStep> bare_steps(const BarePlan& plan);
 
-/// The script for openocd, in Tcl. It also writes option bytes: brown-out level 3 and the write protection of sector
-/// 0, each only if the chip does not have it.
+/// The script for openocd, in Tcl. It also writes option bytes: brown-out level 3 and the write protection of
+/// sectors 0 and 1, each only if the chip does not have it.
 [[nodiscard]] std::string bare_script(const BarePlan& plan);
 
 /// Whether the steps set the option bytes. The ROM bootloader takes them, too, but as 16 bytes with the read protection

@@ -275,7 +275,7 @@ std::vector<std::uint8_t> bootloader_of(const std::string& file, Bytes bytes, co
   contents.resize((contents.size() + 3) / 4 * 4, erased);
   if (contents.size() > sector.size) {
     reject(file, std::to_string(contents.size()) + " bytes",
-           "at most " + std::to_string(sector.size) + ", for which the sector of the bootloader has room");
+           "at most " + std::to_string(sector.size) + ", for which the place of the bootloader has room");
   }
   if (find_format(contents) != ProgramFormat::raw) {
     reject(file, "no vector table at " + hexadecimal(sector.address, 8), a_bootloader);

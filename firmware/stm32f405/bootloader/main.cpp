@@ -1,9 +1,9 @@
-// The bootloader, in flash sector 0, from which the chip starts. It starts the module's program, or stays on the bus to
-// receive another one (docs/flashing.md).
+// The bootloader, in flash sectors 0 and 1, from which the chip starts. It starts the module's program, or stays on the
+// bus to receive another one (docs/flashing.md).
 //
-// A confirmed image is started at once: after its checksum, with the chip as it is after a reset. Everything else, a
-// start on trial or the return to the backup, needs clocks and flash operations. It ends with a reset of the chip,
-// after which the program is started in the same way.
+// A confirmed image is started at once: after its checksum, with the chip as it is after a reset but for the servo's
+// pin. Everything else, a start on trial or the return to the backup, needs clocks and flash operations. It ends with a
+// reset of the chip, after which the program is started in the same way.
 
 #include <algorithm>
 #include <optional>

@@ -18,7 +18,8 @@ class SlotMemory final : public bootloader::SlotFlash {
 /// Board and place of images on the reference board.
 [[nodiscard]] image::Place image_place();
 
-/// Starts the program in slot A. The chip must be as after a reset, except for the watchdog.
+/// Starts the program in slot A. The chip must be as after a reset, except for the watchdog and the
+/// servo's pin, which is low.
 [[noreturn]] void start_program();
 
 }  // namespace proleg::stm32f405

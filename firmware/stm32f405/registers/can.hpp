@@ -79,10 +79,11 @@ inline constexpr Register fmr{base + 0x200};
 inline constexpr std::uint32_t fmr_finit = 1U << 0U;
 /// Bits of FMR by which the banks from this number on belong to CAN2.
 [[nodiscard]] constexpr std::uint32_t fmr_can2sb_of(unsigned bank) { return bank << 8U; }
-inline constexpr Register fm1r{base + 0x204};   ///< 0: identifier and mask
-inline constexpr Register fs1r{base + 0x20C};   ///< 1: 32 bits, 0: 16 bits
-inline constexpr Register ffa1r{base + 0x214};  ///< 0: into FIFO 0
-inline constexpr Register fa1r{base + 0x21C};   ///< 1: in use
+inline constexpr std::uint32_t fmr_mask = fmr_finit | 0x3FU << 8U;  ///< the other bits keep the values of the reset
+inline constexpr Register fm1r{base + 0x204};                       ///< 0: identifier and mask
+inline constexpr Register fs1r{base + 0x20C};                       ///< 1: 32 bits, 0: 16 bits
+inline constexpr Register ffa1r{base + 0x214};                      ///< 0: into FIFO 0
+inline constexpr Register fa1r{base + 0x21C};                       ///< 1: in use
 /// The two words of a bank, 0 to 27. In 16-bit scale each holds two identifiers, or an identifier and, in the upper
 /// half, its mask (1: the bit must be equal).
 struct FilterBank {

@@ -625,6 +625,9 @@ void Stm32f405::set_pll(bool locks) {
 void Stm32f405::set_adc(bool converts) {
   implementation_->change_outside([this, converts] { implementation_->adc_.set_hanging(!converts); });
 }
+void Stm32f405::set_weak_word(std::uint32_t address, std::uint32_t bits) {
+  implementation_->change_outside([=, this] { implementation_->flash_.set_weak_word(address, bits); });
+}
 void Stm32f405::begin_serial_input(BusTime start, const SerialCharacter& character, BusTime bit) {
   constexpr BusTime ns_per_us = 1'000;
   const LocalTime local_bit = (bit * local_time_per_us + ns_per_us / 2) / ns_per_us;

@@ -73,6 +73,8 @@ class Stm32f405 {
   void set_pll(bool locks);
   /// Sets whether ADC1 converts, or hangs.
   void set_adc(bool converts);
+  /// Makes a word of the flash weak (FlashInterface::set_weak_word()).
+  void set_weak_word(std::uint32_t address, std::uint32_t bits);
   /// Sets VDD, 3,300 mV at the start. Below the threshold of the brown-out reset (ChipSettings) or of the power-down
   /// reset the chip is held in reset; below the latter it loses its memory. The analogue supply stays.
   void set_supply(std::uint32_t mv);

@@ -34,7 +34,7 @@ FlashImage read_bootloader(const std::filesystem::path& file) {
   for (const ElfImage::Segment& segment : image.elf().segments()) {
     if (segment.load_address + segment.bytes.size() > layout::board_records) {
       throw ElfError(file.string() + ": found a program with bytes at " + hexadecimal(segment.load_address, 8) +
-                     ", expected " + the_bootloader + ", all of it in sector 0, below " +
+                     ", expected " + the_bootloader + ", all of it in sectors 0 and 1, below " +
                      hexadecimal(layout::board_records, 8));
     }
   }

@@ -173,8 +173,10 @@ std::optional<std::string> BxCanFilters::write(std::uint32_t offset, std::uint32
     if (((value & can2sb) >> 8U) > bank_count) {
       return "CAN2SB is above 28";
     }
-    // The reserved bits keep their values of the reset.
-    master_ = (master_ & ~(finit | can2sb)) | (value & (finit | can2sb));
+    if (((value ^ master_) & ~(finit | can2sb)) != 0) {
+      return "the reserved bits must keep their values of the reset (RM0090, section 32.9.4)";
+    }
+    master_ = value;
     return std::nullopt;
   }
   if (offset >= f0r1) {

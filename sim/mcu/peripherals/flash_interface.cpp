@@ -1,9 +1,12 @@
 #include "sim/mcu/peripherals/flash_interface.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "shared/fixed/little_endian.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -18,6 +21,8 @@ constexpr RegisterName registers[] = {{acr, "ACR"}, {keyr, "KEYR"}, {optkeyr, "O
                                       {sr, "SR"},   {cr, "CR"},     {optcr, "OPTCR"}};
 
 constexpr std::uint32_t acr_bits = 0x1F07;  // DCRST, ICRST, DCEN, ICEN, PRFTEN, LATENCY
+constexpr std::uint32_t acr_dcen = 1U << 10U;
+constexpr std::uint32_t acr_dcrst = 1U << 12U;
 
 constexpr std::uint32_t sr_eop = 1U << 0U;
 constexpr std::uint32_t sr_operr = 1U << 1U;
@@ -44,6 +49,7 @@ constexpr std::uint32_t optcr_brown_out = 3U << 2U;
 
 constexpr std::uint32_t flash_bytes = 1024 * 1024;
 constexpr unsigned x64 = 3;
+constexpr std::size_t bytes_of_word = 4;
 
 constexpr LocalTime ms = 1000 * local_time_per_us;
 
@@ -90,7 +96,23 @@ void FlashInterface::set_brown_out_level(unsigned level) {
 
 unsigned FlashInterface::brown_out_level() const { return field(option_bytes_, 2, 2); }
 
+void FlashInterface::set_weak_word(std::uint32_t address, std::uint32_t bits) {
+  clear_data_cache();
+  weak_ = WeakWord{address, bits, std::nullopt};
+}
+
+void FlashInterface::clear_data_cache() {
+  if (!weak_ || !weak_->cells) {
+    return;
+  }
+  std::array<std::uint8_t, bytes_of_word> bytes{};
+  write_little_endian(bytes, 0, bytes.size(), *weak_->cells);
+  weak_->cells.reset();
+  memory_->write(weak_->address, bytes);
+}
+
 void FlashInterface::reset() {
+  clear_data_cache();
   acr_ = 0;
   sr_ = 0;
   cr_ = cr_lock;
@@ -121,6 +143,17 @@ void FlashInterface::finish(const Operation& operation) {
     memory_->read(operation.address, bytes);
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       bytes[i] &= static_cast<std::uint8_t>(operation.value >> (8 * i));
+    }
+  }
+  if (weak_ && weak_->address - operation.address < operation.size) {
+    weak_->cells.reset();
+    if (!operation.erase && operation.address == weak_->address && operation.size == bytes_of_word) {
+      const std::uint32_t written = read_little_endian(bytes, 0, bytes_of_word);
+      if ((acr_ & acr_dcen) != 0) {
+        weak_->cells = written | weak_->bits;
+      } else {
+        write_little_endian(bytes, 0, bytes.size(), written | weak_->bits);
+      }
     }
   }
   memory_->write(operation.address, bytes);
@@ -269,6 +302,9 @@ void FlashInterface::write_acr(std::uint32_t value) {
                  std::to_string(states) + " wait states, HCLK needs " + std::to_string(needed) + " (RM0090, table 10)");
   }
   acr_ = value & acr_bits;
+  if ((value & acr_dcen) == 0 || (value & acr_dcrst) != 0) {
+    clear_data_cache();
+  }
 }
 
 void FlashInterface::check_unlock(Lock& lock, std::uint32_t offset, std::uint32_t value, std::uint32_t first,

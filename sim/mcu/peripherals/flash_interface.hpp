@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -90,6 +91,11 @@ class FlashInterface final : public RegisterBlock {
   /// seed leaves the same bits. Changes nothing if no operation is under way.
   void cut(std::uint64_t seed);
 
+  /// Makes a word weak: these bits of its cells cannot be programmed to 0 any more. address: a multiple of 4. The
+  /// program reads what it has written as long as the data cache is on and was not cleared, since programming changes
+  /// the cache, too (RM0090, 3.6.4): as if the word were always in it.
+  void set_weak_word(std::uint32_t address, std::uint32_t bits);
+
   /// Wait states that the program has set (FLASH_ACR.LATENCY).
   [[nodiscard]] unsigned wait_states() const { return acr_ & 0x7U; }
 
@@ -106,6 +112,8 @@ class FlashInterface final : public RegisterBlock {
   void begin(const Operation& operation);
   void settle();
   void finish(const Operation& operation);
+  /// The data cache has no word any more: the program reads the cells.
+  void clear_data_cache();
   void fail(std::uint32_t flags);
   void start_erase(std::uint32_t value);
   void write_acr(std::uint32_t value);
@@ -114,9 +122,16 @@ class FlashInterface final : public RegisterBlock {
   void write_optcr(std::uint32_t value);
   void update_interrupt();
 
+  struct WeakWord {
+    std::uint32_t address;
+    std::uint32_t bits;
+    std::optional<std::uint32_t> cells;  ///< what they contain if the data cache has something else
+  };
+
   FlashMemory* memory_;
   std::uint32_t option_bytes_;  ///< as OPTCR shows them after reset
   InterruptLine interrupt_;
+  std::optional<WeakWord> weak_;
   std::uint32_t acr_ = 0;
   std::uint32_t sr_ = 0;
   std::uint32_t cr_ = 0;

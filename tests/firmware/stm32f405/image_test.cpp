@@ -22,8 +22,8 @@ namespace {
 using sim::ElfImage;
 
 // Addresses of docs/board.md, and of RM0090, tables 1 and 5.
-constexpr std::uint32_t sector_0 = 0x0800'0000;
-constexpr std::uint32_t sector_0_size = 16 * 1024;
+constexpr std::uint32_t flash_start = 0x0800'0000;  // of the bootloader or the start stub
+constexpr std::uint32_t start_size = 32 * 1024;
 constexpr std::uint32_t slot_a = 0x0802'0000;
 constexpr std::uint32_t slot_a_size = 384 * 1024;
 constexpr std::uint32_t image_body = slot_a + image::header_size;
@@ -105,12 +105,12 @@ TEST_P(ImageTest, KeepsToItsLimitsOfFlashRamAndStack) {
   EXPECT_EQ(table["flash"], flash(slot_a, slot_a_size).size());
 }
 
-TEST_P(ImageTest, LiesInSectorZeroAndSlotAOnly) {
+TEST_P(ImageTest, LiesWhereTheChipStartsAndInSlotAOnly) {
   for (const ElfImage::Segment& segment : image_.segments()) {
     const std::uint32_t end = segment.load_address + static_cast<std::uint32_t>(segment.bytes.size());
-    const bool is_in_sector_0 = segment.load_address >= sector_0 && end <= sector_0 + sector_0_size;
+    const bool is_at_start = segment.load_address >= flash_start && end <= flash_start + start_size;
     const bool is_in_slot_a = segment.load_address >= slot_a && end <= slot_a + slot_a_size;
-    EXPECT_TRUE(is_in_sector_0 || is_in_slot_a) << std::hex << segment.load_address << " to " << end;
+    EXPECT_TRUE(is_at_start || is_in_slot_a) << std::hex << segment.load_address << " to " << end;
   }
 }
 
@@ -149,11 +149,11 @@ TEST_P(ImageTest, HasAVectorTableBehindItsHeaderWhoseEveryEntryIsAFunctionOfTheI
 }
 
 TEST_P(ImageTest, TheStartStubIsWhereTheChipStarts) {
-  const std::vector<std::uint8_t> bytes = flash(sector_0, sector_0_size);
+  const std::vector<std::uint8_t> bytes = flash(flash_start, start_size);
   EXPECT_GT(word_at(bytes, 0), ram);
   EXPECT_LE(word_at(bytes, 0), ram + ram_size);
   EXPECT_EQ(word_at(bytes, 4), image_.symbol("stub_reset").address | 1U);
-  EXPECT_LT(word_at(bytes, 4), sector_0 + bytes.size());
+  EXPECT_LT(word_at(bytes, 4), flash_start + bytes.size());
 }
 
 TEST_P(ImageTest, TheImageFileIsSlotAAndNothingElseWithARightHeader) {
@@ -184,7 +184,7 @@ TEST_P(ImageTest, TheCodeInRamCallsAndReadsNothingOutsideRam) {
     EXPECT_TRUE((first & 0xFF00U) != 0x4700U || first == 0x4770U) << "BX or BLX at offset " << offset;
     if (offset % 4 == 0) {
       const std::uint32_t word = word_at(segment->bytes, offset);
-      EXPECT_FALSE(word >= sector_0 && word < sector_0 + 1024 * 1024) << "an address in flash at offset " << offset;
+      EXPECT_FALSE(word >= start && word < start + 1024 * 1024) << "an address in flash at offset " << offset;
     }
   }
 }
@@ -197,11 +197,11 @@ INSTANTIATE_TEST_SUITE_P(Images, ImageTest, testing::Values("proleg_stm32f405", 
                          [](const auto& name) { return name.param; });
 
 // What follows from the bootloader's place beside the module's program.
-TEST(BootloaderImageTest, LiesInSectorZeroAndUsesTheRamThatIsNotTheProgramsOrTheImagesBuffer) {
+TEST(BootloaderImageTest, LiesWhereTheChipStartsAndUsesTheRamThatIsNotTheProgramsOrTheImagesBuffer) {
   const ElfImage image(built("proleg_boot_stm32f405.elf"));
   for (const ElfImage::Segment& segment : image.segments()) {
-    EXPECT_GE(segment.load_address, sector_0);
-    EXPECT_LE(segment.load_address + segment.bytes.size(), sector_0 + sector_0_size);
+    EXPECT_GE(segment.load_address, flash_start);
+    EXPECT_LE(segment.load_address + segment.bytes.size(), flash_start + start_size);
   }
   const std::uint32_t buffer = image.symbol("image_buffer_start").address;
   const std::uint32_t buffer_end = image.symbol("image_buffer_end").address;

@@ -64,13 +64,14 @@ TEST(BareFailures, OfAnotherKindNameTheStep) {
 }
 
 TEST(BareFailures, OfTheBootloaderNameTheWriteProtection) {
-  EXPECT_EQ(failure(BareProbe::dfu, "dfu-util: ERASE_PAGE not correctly executed\n", true),
-            "found an error of tool in the step 'write the image', expected none: its last lines say more; if sector 0 "
-            "is write-protected, flash with --probe stlink; the command can be repeated");
+  EXPECT_EQ(
+      failure(BareProbe::dfu, "dfu-util: ERASE_PAGE not correctly executed\n", true),
+      "found an error of tool in the step 'write the image', expected none: its last lines say more; if sectors 0 "
+      "and 1 are write-protected, flash with --probe stlink; the command can be repeated");
   EXPECT_EQ(
       bare_difference({"read the bootloader back", {}, "", "", true}),
-      "found other bytes in the step 'read the bootloader back' than were written, expected the same; if sector 0 "
-      "is write-protected, flash with --probe stlink; the command can be repeated");
+      "found other bytes in the step 'read the bootloader back' than were written, expected the same; if sectors 0 "
+      "and 1 are write-protected, flash with --probe stlink; the command can be repeated");
 }
 
 TEST(BareFailures, OfMissingProgramsNameThePackage) {
@@ -86,10 +87,10 @@ BarePlan plan_of(BareProbe probe) {
   BarePlan plan;
   plan.probe = probe;
   plan.port = probe == BareProbe::uart ? "/dev/ttyUSB0" : "";
-  plan.bootloader = {0x0800'0000, 0x4000};
-  plan.settings = {0x0800'4000, 0x8000};
+  plan.bootloader = {0x0800'0000, 0x8000};
+  plan.settings = {0x0800'8000, 0x8000};
   plan.image = {0x0802'0000, 0x2'0000};
-  plan.bootloader_size = 15'588;
+  plan.bootloader_size = 23'588;
   plan.image_size = 63'796;
   return plan;
 }
@@ -130,25 +131,25 @@ TEST(BareCommands, OfOtherProbesAtSwdSelectItSinceTheyHaveJtagToo) {
 
 TEST(BareCommands, OfDfuReadBackWhatTheyWrite) {
   EXPECT_EQ(texts_of(plan_with_settings(BareProbe::dfu)),
-            (Words{"dfu-util -d ,0483:df11 -a 0 -s 0x08000000:15588 -U present.bin",
-                   "dfu-util -d ,0483:df11 -a 0 -s 0x08004000 -D settings.bin",
-                   "dfu-util -d ,0483:df11 -a 0 -s 0x08004000:32768 -U read_settings.bin",
+            (Words{"dfu-util -d ,0483:df11 -a 0 -s 0x08000000:23588 -U present.bin",
+                   "dfu-util -d ,0483:df11 -a 0 -s 0x08008000 -D settings.bin",
+                   "dfu-util -d ,0483:df11 -a 0 -s 0x08008000:32768 -U read_settings.bin",
                    "dfu-util -d ,0483:df11 -a 0 -s 0x08020000 -D image.pimg",
                    "dfu-util -d ,0483:df11 -a 0 -s 0x08020000:63796 -U read_image.pimg",
                    "dfu-util -d ,0483:df11 -a 0 -s 0x08000000 -D bootloader.bin",
-                   "dfu-util -d ,0483:df11 -a 0 -s 0x08000000:15588 -U read_bootloader.bin"}));
+                   "dfu-util -d ,0483:df11 -a 0 -s 0x08000000:23588 -U read_bootloader.bin"}));
 }
 
 // Without a length stm32flash erases up to the end of the flash, and with it the sectors that it covers.
 TEST(BareCommands, OfAUartEraseTheirSectorsOnly) {
   EXPECT_EQ(texts_of(plan_with_settings(BareProbe::uart)),
-            (Words{"stm32flash -b 115200 -r present.bin -S 0x08000000:15588 /dev/ttyUSB0",
-                   "stm32flash -b 115200 -c -f -w settings.bin -S 0x08004000:32768 /dev/ttyUSB0",
-                   "stm32flash -b 115200 -c -r read_settings.bin -S 0x08004000:32 /dev/ttyUSB0",
+            (Words{"stm32flash -b 115200 -r present.bin -S 0x08000000:23588 /dev/ttyUSB0",
+                   "stm32flash -b 115200 -c -f -w settings.bin -S 0x08008000:32768 /dev/ttyUSB0",
+                   "stm32flash -b 115200 -c -r read_settings.bin -S 0x08008000:32 /dev/ttyUSB0",
                    "stm32flash -b 115200 -c -f -w image.pimg -S 0x08020000:131072 /dev/ttyUSB0",
                    "stm32flash -b 115200 -c -r read_image.pimg -S 0x08020000:63796 /dev/ttyUSB0",
-                   "stm32flash -b 115200 -c -f -w bootloader.bin -S 0x08000000:16384 /dev/ttyUSB0",
-                   "stm32flash -b 115200 -c -r read_bootloader.bin -S 0x08000000:15588 /dev/ttyUSB0"}));
+                   "stm32flash -b 115200 -c -f -w bootloader.bin -S 0x08000000:32768 /dev/ttyUSB0",
+                   "stm32flash -b 115200 -c -r read_bootloader.bin -S 0x08000000:23588 /dev/ttyUSB0"}));
 }
 
 TEST(BareCommands, WriteTheBootloaderLastAndOnlyIfItIsAnother) {
@@ -171,7 +172,7 @@ TEST(BareCommands, LeaveTheSettingsWithoutABoardRecord) {
       all += text;
     }
     EXPECT_FALSE(contains(all, "settings"));
-    EXPECT_FALSE(contains(all, "0x08004000"));
+    EXPECT_FALSE(contains(all, "0x08008000"));
   }
 }
 
@@ -193,13 +194,13 @@ TEST(BareScript, ErasesOnlyWhatItWritesInTheOrderThatCanBeRepeated) {
   const std::string script = bare_script(plan_with_settings(BareProbe::stlink));
   std::size_t at = 0;
   for (const char* part :
-       {"init\n", "reset halt\n", "flash erase_address 0x08004000 32768\n",
-        "flash write_image settings.bin 0x08004000 bin\n", "verify_image settings.bin 0x08004000 bin\n",
+       {"init\n", "reset halt\n", "flash erase_address 0x08008000 32768\n",
+        "flash write_image settings.bin 0x08008000 bin\n", "verify_image settings.bin 0x08008000 bin\n",
         "flash erase_address 0x08020000 131072\n", "flash write_image image.pimg 0x08020000 bin\n",
-        "verify_image image.pimg 0x08020000 bin\n", "dump_image present.bin 0x08000000 15588\n",
-        "flash protect 0 0 0 off\n", "flash erase_address 0x08000000 16384\n",
+        "verify_image image.pimg 0x08020000 bin\n", "dump_image present.bin 0x08000000 23588\n",
+        "flash protect 0 0 1 off\n", "flash erase_address 0x08000000 32768\n",
         "flash write_image bootloader.bin 0x08000000 bin\n", "verify_image bootloader.bin 0x08000000 bin\n",
-        "stm32f2x options_write 0 ", "flash protect 0 0 0 on\n", "reset run\n", "shutdown\n"}) {
+        "stm32f2x options_write 0 ", "flash protect 0 0 1 on\n", "reset run\n", "shutdown\n"}) {
     const std::size_t found = script.find(part, at);
     ASSERT_NE(found, std::string::npos) << part << " is not behind the parts before it";
     at = found;
@@ -210,8 +211,8 @@ TEST(BareScript, ErasesOnlyWhatItWritesInTheOrderThatCanBeRepeated) {
 }
 
 TEST(BareText, CanBeTypedIntoAShell) {
-  EXPECT_EQ(shell_text({"stm32flash", "-S", "0x08000000:16384", "/dev/ttyUSB0"}),
-            "stm32flash -S 0x08000000:16384 /dev/ttyUSB0");
+  EXPECT_EQ(shell_text({"stm32flash", "-S", "0x08000000:32768", "/dev/ttyUSB0"}),
+            "stm32flash -S 0x08000000:32768 /dev/ttyUSB0");
   EXPECT_EQ(shell_text({"a b", "", "it's", "$x"}), R"('a b' '' 'it'\''s' '$x')");
 }
 

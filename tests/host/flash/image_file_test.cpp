@@ -1,5 +1,5 @@
 // An image file is read as it was made, or refused with one line that a person can act on.
-// A bootloader of a file becomes the bytes of its sector, or is refused.
+// A bootloader of a file becomes the bytes of its place, or is refused.
 
 #include "host/flash/image_file.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr FlashPart sector_0{0x0800'0000, 0x4000};
+constexpr FlashPart the_place{0x0800'0000, 0x8000};
 
 void append(Bytes& bytes, std::uint32_t value, unsigned size = 4) {
   for (unsigned i = 0; i < size; ++i) {
@@ -76,14 +76,14 @@ Bytes elf_of(const std::vector<Part>& parts) {
   return elf;
 }
 
-Bytes contents_of(const Bytes& file) { return bootloader_of("FILE", file, sector_0); }
+Bytes contents_of(const Bytes& file) { return bootloader_of("FILE", file, the_place); }
 
 std::string refusal_of(const Bytes& file) {
   return message_of<InputError>([&] { static_cast<void>(contents_of(file)); });
 }
 
 TEST(BootloaderFiles, OfRawBytesAreTakenAsTheyAre) {
-  for (const std::size_t size : {std::size_t{20}, std::size_t{0x4000}}) {
+  for (const std::size_t size : {std::size_t{20}, std::size_t{0x8000}}) {
     EXPECT_EQ(contents_of(program_of(size)), program_of(size));
   }
 }
@@ -119,17 +119,17 @@ TEST(BootloaderFiles, AreRefusedIfTheyAreNoBootloader) {
 }
 
 TEST(BootloaderFiles, AreRefusedIfTheyBelongElsewhere) {
-  EXPECT_EQ(refusal_of(program_of(0x4001)),
-            "FILE: found 16388 bytes, expected at most 16384, for which the sector of the bootloader has room");
+  EXPECT_EQ(refusal_of(program_of(0x8001)),
+            "FILE: found 32772 bytes, expected at most 32768, for which the place of the bootloader has room");
   EXPECT_EQ(refusal_of(program_of(64, 0x0802'0211)),
-            "FILE: found the reset vector 0x08020211, expected one within 0x08000000 to 0x08003FFF, where the chip "
+            "FILE: found the reset vector 0x08020211, expected one within 0x08000000 to 0x08007FFF, where the chip "
             "starts");
   EXPECT_EQ(
-      refusal_of(elf_of({{1, 0x0800'3FFC, Bytes(8, 0)}})),
-      "FILE: found a program with bytes from 0x08003FFC to 0x08004003, expected one for 0x08000000 to 0x08003FFF");
+      refusal_of(elf_of({{1, 0x0800'7FFC, Bytes(8, 0)}})),
+      "FILE: found a program with bytes from 0x08007FFC to 0x08008003, expected one for 0x08000000 to 0x08007FFF");
   EXPECT_EQ(
       refusal_of(elf_of({{1, 0x07FF'FFFC, Bytes(8, 0)}})),
-      "FILE: found a program with bytes from 0x07FFFFFC to 0x08000003, expected one for 0x08000000 to 0x08003FFF");
+      "FILE: found a program with bytes from 0x07FFFFFC to 0x08000003, expected one for 0x08000000 to 0x08007FFF");
   Bytes other = elf_of({{1, 0x0800'0000, program_of(64)}});
   other[18] = 62;  // x86-64
   EXPECT_EQ(refusal_of(other),

@@ -28,13 +28,14 @@ from fake_rom import DfuRom, UartRom  # noqa: E402
 from fake_stm32 import FACTORY_OPTIONS, FLASH, SECTORS, Stm32F405  # noqa: E402
 
 LONGEST = 300  # seconds that a command may take on a busy computer
-SLOT_A, SETTINGS = 0x08020000, 0x08004000
+SLOT_A, SETTINGS = 0x08020000, 0x08008000
+PLACE = 32 * 1024  # of the bootloader: sectors 0 and 1
 ERASED = 0xFF
 KEPT = 0x5A
 PROBES = ("stlink", "dfu", "uart")  # one of each tool
 SWD_PROBES = ("stlink", "jlink", "cmsis-dap")
-# Brown-out level 3 (bits 3:2 are 0) and sector 0 protected (bit 16 is 0); all else as delivered: RM0090, section 3.9.10.
-RIGHT_OPTIONS = FACTORY_OPTIONS & ~3 & ~0x1000C
+# Brown-out level 3 (bits 3:2 are 0) and sectors 0 and 1 protected (bits 16 and 17 are 0); all else as delivered: RM0090, section 3.9.10.
+RIGHT_OPTIONS = FACTORY_OPTIONS & ~3 & ~0x3000C
 NO_PROBE = "adapter driver hla\nhla_layout stlink\nhla_device_desc none\nhla_vid_pid 0x0000 0x0000\n"
 # dfu-util ends when it finds one; stm32flash goes on without it.
 WRONG_OPTION = re.compile("(invalid|unrecognized) option")
@@ -67,8 +68,8 @@ def elf(parts):
 
 
 # Small, since each bit of them passes through JTAG; larger than one block of 256 bytes of stm32flash.
-BOOTLOADER = program(FLASH, 300, seed=2)
-OTHER_BOOTLOADER = program(FLASH, 360, seed=3)
+BOOTLOADER = program(FLASH, 17_000, seed=2)  # more than a sector
+OTHER_BOOTLOADER = program(FLASH, 20_000, seed=3)
 IMAGE = image()
 
 
@@ -147,8 +148,8 @@ class FlashBare(unittest.TestCase):
     def expect_sector(self, number, content, rest=ERASED):
         self.assertEqual(self.chip.sector(number), content + bytes([rest]) * (SECTORS[number] - len(content)))
 
-    def expect_complete(self, probe, bootloader=BOOTLOADER):
-        self.expect_sector(0, bootloader)
+    def expect_complete(self, probe, bootloader=BOOTLOADER, rest=ERASED):
+        self.assertEqual(self.chip.read(FLASH, PLACE), bootloader + bytes([rest]) * (PLACE - len(bootloader)))
         self.expect_sector(5, IMAGE)
         self.assertEqual(self.chip.options, RIGHT_OPTIONS if probe in SWD_PROBES else FACTORY_OPTIONS & ~3)
 
@@ -163,7 +164,7 @@ class FlashBare(unittest.TestCase):
                 self.chip = Stm32F405()
                 self.expect_flashed(self.flash(probe))
                 self.expect_complete(probe)
-                for sector in (1, 2, 3, 4, 6, 7, 8, 9, 10, 11):
+                for sector in (2, 3, 4, 6, 7, 8, 9, 10, 11):
                     self.expect_sector(sector, b"")
                 self.assertEqual(list((self.folder / "temporary").iterdir()), [])
 
@@ -175,9 +176,9 @@ class FlashBare(unittest.TestCase):
                     self.chip.fill(sector, KEPT)
                 self.expect_flashed(self.flash(probe))
                 self.expect_complete(probe)
-                self.assertEqual(self.chip.sectors("erase"), [5, 0])
+                self.assertEqual(self.chip.sectors("erase"), [5, 0, 1])
                 self.assertNotIn(("mass erase",), self.chip.events)
-                for sector in (1, 2, 3, 4, 6, 7, 8, 9, 10, 11):
+                for sector in (2, 3, 4, 6, 7, 8, 9, 10, 11):
                     self.expect_sector(sector, b"", rest=KEPT)
 
     def test_with_a_node_id_the_settings_are_those_of_a_new_board(self):
@@ -187,29 +188,29 @@ class FlashBare(unittest.TestCase):
         for probe in PROBES:
             with self.subTest(probe=probe):
                 self.chip = Stm32F405()
-                self.chip.fill(1, KEPT)
                 self.chip.fill(2, KEPT)
+                self.chip.fill(3, KEPT)
                 self.expect_flashed(self.flash(probe, "--node", "3"))
                 self.expect_complete(probe)
-                self.assertEqual(self.chip.read(SETTINGS, 2 * SECTORS[1]), record.read_bytes())
-                self.assertEqual(self.chip.sectors("erase"), [1, 2, 5, 0])
+                self.assertEqual(self.chip.read(SETTINGS, 2 * SECTORS[2]), record.read_bytes())
+                self.assertEqual(self.chip.sectors("erase"), [2, 3, 5, 0, 1])
 
     def test_the_image_is_there_before_the_bootloader_and_the_option_bytes_come_last(self):
         self.expect_flashed(self.flash("stlink"))
         self.assertEqual([event[:2] if event[0] != "options" else event[0] for event in self.chip.events],
-                         [("erase", 5), ("program", 5), ("erase", 0), ("program", 0), "options", "options"])
+                         [("erase", 5), ("program", 5), ("erase", 0), ("erase", 1), ("program", 0), ("program", 1), "options", "options"])
         self.assertEqual(self.core.runs, 1)
         self.assertFalse(self.core.is_halted)
 
-    def test_no_option_byte_but_brown_out_level_and_protection_of_sector_0_ever_changes(self):
+    def test_no_option_byte_but_brown_out_level_and_protection_of_the_bootloader_ever_changes(self):
         for options in (FACTORY_OPTIONS, 0x0FFFAA0D, 0x0FF0AA4D, 0x0FFFAAE1):
             with self.subTest(options=hex(options)):
                 self.chip = Stm32F405()
                 self.chip.options = options & ~3
                 self.expect_flashed(self.flash("stlink"))
                 for value in self.option_values():
-                    self.assertEqual((value ^ options) & ~3 & ~0x1000C, 0, hex(value))
-                self.assertEqual(self.chip.options, options & ~3 & ~0x1000C)
+                    self.assertEqual((value ^ options) & ~3 & ~0x3000C, 0, hex(value))
+                self.assertEqual(self.chip.options, options & ~3 & ~0x3000C)
 
     def test_only_a_probe_at_swd_sets_option_bytes_and_the_others_say_so(self):
         for probe in ("dfu", "uart"):
@@ -255,7 +256,7 @@ class FlashBare(unittest.TestCase):
         self.chip.events = []
         self.expect_flashed(self.flash("stlink", bootloader="other.bin"))
         self.expect_complete("stlink", bootloader=OTHER_BOOTLOADER)
-        self.assertEqual(self.option_values(), [RIGHT_OPTIONS | 0x10000, RIGHT_OPTIONS])
+        self.assertEqual(self.option_values(), [RIGHT_OPTIONS | 0x30000, RIGHT_OPTIONS])
 
     def test_a_protected_bootloader_stays_if_no_st_link_is_there(self):
         self.expect_flashed(self.flash("stlink"))
@@ -336,7 +337,7 @@ class FlashBare(unittest.TestCase):
 
     def test_openocd_refuses_a_script_with_a_wrong_word(self):
         for right, wrong in (("flash erase_address", "flash erase_adress"), ("verify_image", "verify_imag"),
-                             ("flash protect 0 0 0 on", "flash protect 0 0 0 onn"),
+                             ("flash protect 0 0 1 on", "flash protect 0 0 1 onn"),
                              ("stm32f2x options_write 0", "stm32f2x option_write 0"),
                              ("image.pimg 0x08020000 bin", "image.pimg 0x08020000 raw"),
                              ("[mrw 0x40023C14]", "[mrww 0x40023C14]"), (None, None)):
@@ -410,7 +411,7 @@ class FlashBare(unittest.TestCase):
         self.write("other_board.pimg", image(board=2))
         self.write("slot_b.pimg", image(address=0x08080200))
         self.write("large.pimg", image(size=90112 - 508))
-        self.write("large.bin", program(FLASH, 16388, seed=4))
+        self.write("large.bin", program(FLASH, PLACE + 4, seed=4))
         self.write("slot_a.bin", program(SLOT_A, 1000, seed=4))
         self.write("slot_a.elf", elf([(SLOT_A, program(SLOT_A, 1000, seed=4))]))
         good = {"--probe": "dfu", "--bootloader": "boot.bin"}
@@ -429,7 +430,7 @@ class FlashBare(unittest.TestCase):
                 ("large.pimg", {}, "large.pimg: found"),
                 ("module.pimg", {"--bootloader": None}, "proleg_boot_stm32f405.bin: found no file"),
                 ("module.pimg", {"--bootloader": "module.pimg"}, "module.pimg: found an image, expected a bootloader"),
-                ("module.pimg", {"--bootloader": "large.bin"}, "large.bin: found 16388 bytes, expected at most 16384"),
+                ("module.pimg", {"--bootloader": "large.bin"}, "large.bin: found 32772 bytes, expected at most 32768"),
                 ("module.pimg", {"--bootloader": "slot_a.bin"}, "slot_a.bin: found the reset vector 0x08020011"),
                 ("module.pimg", {"--bootloader": "slot_a.elf"}, "slot_a.elf: found a program with bytes from 0x08020000"),
         ):

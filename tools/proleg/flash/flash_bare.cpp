@@ -143,7 +143,7 @@ Work read_work(const BareOptions& options) {
   BarePlan& plan = work.plan;
   plan.probe = parse_probe(options.probe);
   plan.port = parse_port(options, plan.probe);
-  plan.bootloader = {flash_layout::bootloader_sector.address, flash_layout::bootloader_sector.size};
+  plan.bootloader = {flash_layout::bootloader, flash_layout::bootloader_size};
   plan.settings = {flash_layout::board_records, flash_layout::board_records_size};
   plan.image = {flash_layout::image_sector_a.address, flash_layout::image_sector_a.size};
   if (options.node) {
@@ -224,10 +224,10 @@ void run_all(const Work& work) {
 void print_end(const BarePlan& plan) {
   std::cout << "flashed  the bootloader and the image, which starts on trial\n";
   if (sets_option_bytes(plan.probe)) {
-    std::cout << "options  brown-out level 3, sector 0 write-protected\n";
+    std::cout << "options  brown-out level 3, sectors 0 and 1 write-protected\n";
     return;
   }
-  std::cout << "options  not set: brown-out level and write protection of sector 0 are as they were. The same command "
+  std::cout << "options  not set: brown-out level and write protection of sectors 0 and 1 are as they were. The same command "
                "with a probe at SWD (--probe stlink, jlink or cmsis-dap) sets them, once for each board\n"
                "to do    set BOOT0 to low and reset the board\n";
 }

@@ -8,7 +8,7 @@ import { program as proleg, UiProgram } from '../browser/support/ui_program.js';
 import { Viewer } from '../browser/support/viewer.js';
 import type { Bench, Measurement } from './bench.js';
 
-const pairs = 6;
+const pairs = 4;
 const slot = 0x08020200; // where the program of a module begins
 const words = 20_000; // of 4 bytes: as large as the image of the firmware
 const limit = 1.1; // of the ratio: as fast, but for what a busy computer does

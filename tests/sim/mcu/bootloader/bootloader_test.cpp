@@ -226,6 +226,24 @@ TEST_F(ChipBootloader, AConfirmedProgramStartsAtOnceWithTheSameSerialNumber) {
   EXPECT_NE(rig->board.console.find("started by power on"), std::string::npos) << rig->board.console;
 }
 
+TEST_F(ChipBootloader, TheServosLineIsLowFromTheFirstInstructionsOnUntilTheServoGetsPower) {
+  write_slot(slot_a, program(), true);
+  rig->board.servo_pulls_up = true;
+  std::vector<BusTime> rises;
+  std::vector<BusTime> falls;
+  rig->chip.set_pin_watch('A', 5, [&](BusTime time, bool high) { (high ? rises : falls).push_back(time); });
+  for (const bool by_pin : {false, true}) {
+    rises.clear();
+    falls.clear();
+    const BusTime start = rig->bus.now();
+    by_pin ? rig->chip.pull_reset_pin() : rig->power_on();
+    ASSERT_TRUE(starts_program(1'000 * ms));
+    ASSERT_FALSE(falls.empty());
+    EXPECT_LT(falls.back() - start, 50 * us);
+    EXPECT_TRUE(rises.empty() || rises.back() < falls.back());
+  }
+}
+
 TEST_F(ChipBootloader, AnImageThatComesByBroadcastIsInstalledAndRuns) {
   start_bootloader();
   const BusTime start = rig->bus.now();

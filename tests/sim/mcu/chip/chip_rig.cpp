@@ -21,7 +21,7 @@ const FlashImage& image(const std::string& name) {
 
 std::optional<bool> TestBoard::pin(char port, unsigned number) {
   if (port == 'A' && number == 5) {
-    return false;  // the pull-down of the servo's line
+    return servo_pulls_up;  // else the pull-down of the servo's line wins
   }
   const bool closed = port == 'B' && ((unsigned{low_pins_of_b} >> number) & 1U) != 0;
   return closed ? std::optional(false) : std::nullopt;

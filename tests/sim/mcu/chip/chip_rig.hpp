@@ -39,6 +39,7 @@ struct TestBoard final : BoardSignals {
   [[nodiscard]] std::int32_t chip_temperature() override { return temperature; }
   void serial_output(unsigned usart, std::uint8_t byte) override;
 
+  bool servo_pulls_up = false;      ///< the servo has a pull-up at its signal, as many have
   std::uint16_t low_pins_of_b = 0;  ///< switches to ground on port B that are closed
   std::array<std::uint32_t, 16> uv{};
   std::function<std::uint32_t(unsigned channel)> voltage;  ///< in microvolts, now; instead of `uv`
@@ -95,7 +96,7 @@ struct RigSettings {
 class ChipRig {
  public:
   static constexpr std::uint8_t node = 3;
-  static constexpr std::uint32_t settings_address = 0x0800'4000;
+  static constexpr std::uint32_t settings_address = 0x0800'8000;
   static constexpr std::uint32_t settings_size = 32 * 1024;
 
   /// The chip is off.

@@ -137,6 +137,22 @@ TEST_F(ChipSettingsTest, SavesItsParametersAndKeepsThemOverARestart) {
   EXPECT_EQ(rig->read(0x6064, 0), 0x80000000U) << "not measured";
 }
 
+TEST_F(ChipSettingsTest, AWeakCellOfTheFlashIsNoticedAndTheRecordBeforeStays) {
+  make(ChipRig::node);
+  power_on();
+  rig->write(0x200A, 1, 2, 1234);
+  // The second word of the next record; the first record is at the beginning of the log.
+  rig->chip.set_weak_word(ChipRig::settings_address + firmware::BoardRecord::size + 4, 0xFFFF'FFFF);
+  const BusTime start = rig->bus.now();
+  rig->host.send({0x603, 8, {0x23, 0x10, 0x10, 0x01, 's', 'a', 'v', 'e'}});
+  ASSERT_TRUE(rig->run_until_true([&] { return !rig->frames(0x583, start).empty(); }));
+  EXPECT_EQ(rig->frames(0x583, start)[0].frame.data[0], 0x80) << "aborted";
+  EXPECT_TRUE(rig->events.empty());
+  power_on();
+  EXPECT_EQ(rig->frames(0x703).size(), 2U) << "its node id";
+  EXPECT_NE(rig->read(0x200A, 1), 1234U);
+}
+
 /// Cuts while the log is searched, while a record is written and while a sector is erased.
 TEST_F(ChipSettingsTest, APowerCutAtAnyInstantOfASaveLeavesTheOldSettingsOrTheNew) {
   constexpr unsigned seed = 2020;

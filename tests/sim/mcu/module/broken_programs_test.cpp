@@ -153,7 +153,7 @@ TEST(FaultyProgram, WithAnUndefinedInstructionIsNamed) {
 TEST(FaultyProgram, ThatStoresToLockedFlashChangesNothingThere) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
-  constexpr std::uint32_t address = 0x0800'4000;  // the board record
+  constexpr std::uint32_t address = 0x0800'8000;  // the board record
   std::vector<std::uint8_t> before(64);
   robot.module(broken_joint).chip().read(address, before);
   const Patch patch(robot.module(broken_joint).chip(), store_to(address));

@@ -245,7 +245,7 @@ TEST_F(RefusedFlashing, NamesABootloaderThatIsMissing) {
 
 TEST_F(RefusedFlashing, NamesAProgramThatIsNoBootloader) {
   expect_line(refusal(flashed_image(), PROLEG_IMAGE),
-              {PROLEG_IMAGE, "found a program with bytes at 0x0802", "expected the bootloader", "below 0x08004000"});
+              {PROLEG_IMAGE, "found a program with bytes at 0x0802", "expected the bootloader", "below 0x08008000"});
   const std::filesystem::path other = std::filesystem::path(PROLEG_IMAGE).parent_path() / "cpu_programs.elf";
   expect_line(refusal(flashed_image(), other),
               {"cpu_programs.elf: found a program that sends no boot-up", "expected the bootloader"});

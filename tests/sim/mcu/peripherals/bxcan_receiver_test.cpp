@@ -13,6 +13,7 @@ namespace {
 using Match = BxCanFilters::Match;
 
 constexpr std::uint32_t fmr = 0x200;
+constexpr std::uint32_t reserved = 0x2A1C'0000;  ///< bits of FMR (RM0090, section 32.9.4)
 constexpr std::uint32_t fm1r = 0x204;
 constexpr std::uint32_t fs1r = 0x20C;
 constexpr std::uint32_t ffa1r = 0x214;
@@ -26,8 +27,8 @@ class Filters : public testing::Test {
     EXPECT_FALSE(rejection) << *rejection;
   }
   /// All banks belong to CAN1.
-  void begin() { write(fmr, (28U << 8U) | 1U); }
-  void end() { write(fmr, 28U << 8U); }
+  void begin() { write(fmr, reserved | (28U << 8U) | 1U); }
+  void end() { write(fmr, reserved | 28U << 8U); }
 
   BxCanFilters filters;
 };
@@ -103,9 +104,9 @@ TEST_F(Filters, TwoMasksOf16BitsAndFourListed) {
 TEST_F(Filters, BanksFromCan2sbOnBelongToCan2) {
   write(fs1r, 1U << 14U);
   write(fa1r, 1U << 14U);  // lets everything pass
-  write(fmr, 14U << 8U);
+  write(fmr, reserved | 14U << 8U);
   EXPECT_FALSE(filters.match(0x123));
-  write(fmr, 15U << 8U);
+  write(fmr, reserved | 15U << 8U);
   EXPECT_TRUE(filters.match(0x123));
 }
 
@@ -153,7 +154,7 @@ TEST_F(Filters, RandomBanksDecideAsTheManualsRulesDo) {
     const std::uint32_t wide = random() & 0x0FFF'FFFFU;
     const std::uint32_t assignment = random() & 0x0FFF'FFFFU;
     const std::uint32_t active = random() & 0x0FFF'FFFFU;
-    write(fmr, (can1_banks << 8U) | 1U);
+    write(fmr, reserved | (can1_banks << 8U) | 1U);
     write(fm1r, lists);
     write(fs1r, wide);
     write(ffa1r, assignment);
@@ -203,7 +204,7 @@ TEST_F(Filters, RandomBanksDecideAsTheManualsRulesDo) {
         }
       }
     }
-    write(fmr, can1_banks << 8U);
+    write(fmr, reserved | can1_banks << 8U);
     for (unsigned identifier = 0x0F0; identifier < 0x150; ++identifier) {
       const Drawn* best = nullptr;
       for (const Drawn& filter : drawn) {  // in the order of banks

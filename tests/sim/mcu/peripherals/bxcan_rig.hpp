@@ -131,7 +131,7 @@ class BxCanRig : public testing::Test {
     write(can1::f0r1, 0);
     write(can1::f0r1 + 4, 0);
     write(can1::fa1r, 1);
-    write(can1::fmr, 28U << 8U);
+    write(can1::fmr, 0x2A1C'0000U | 28U << 8U);
     write(can1::mcr, control);
     run_for(200'000);
     ASSERT_EQ(read(can1::msr) & (can1::inak | can1::slak), 0U);

@@ -396,7 +396,7 @@ TEST_F(BxCanTest, ALockedFifoKeepsTheOldest) {
 
 TEST_F(BxCanTest, FiltersDirectFramesToEitherFifoOrNone) {
   start();
-  write(can1::fmr, (28U << 8U) | 1U);
+  write(can1::fmr, 0x2A1C'0000U | (28U << 8U) | 1U);
   write(can1::fs1r, 6);   // banks 1 and 2: 32 bits
   write(can1::fm1r, 6);   // lists
   write(can1::ffa1r, 4);  // bank 2 to FIFO 1
@@ -409,7 +409,7 @@ TEST_F(BxCanTest, FiltersDirectFramesToEitherFifoOrNone) {
   run_for(1'000'000);
   EXPECT_EQ(read(can1::rf0r) + read(can1::rf1r), 0U) << "FINIT deactivates reception";
   EXPECT_EQ(partner.sent.size(), 1U) << "but the frame is acknowledged";
-  write(can1::fmr, 28U << 8U);
+  write(can1::fmr, 0x2A1C'0000U | 28U << 8U);
   for (const std::uint16_t identifier : std::vector<std::uint16_t>{0x101, 0x201, 0x300}) {
     partner_sends(identifier);
     run_for(1'000'000);
@@ -452,9 +452,9 @@ TEST_F(BxCanTest, FifoInterruptsFollowPendingFullAndOverrun) {
     const std::uint32_t status = fifo == 0 ? can1::rf0r : can1::rf1r;
     can.reset();
     start();
-    write(can1::fmr, (28U << 8U) | 1U);
+    write(can1::fmr, 0x2A1C'0000U | (28U << 8U) | 1U);
     write(can1::ffa1r, fifo);
-    write(can1::fmr, 28U << 8U);
+    write(can1::fmr, 0x2A1C'0000U | 28U << 8U);
     write(can1::ier, 2U << (3 * fifo));
     partner_sends(0x100);
     run_for(1'000'000);
@@ -662,7 +662,8 @@ TEST_F(BxCanTest, WhatTheProtocolDoesNotUseIsRejectedWithRegisterAndValue) {
   expect_rejected(can1::ier, 0x80, {"CAN1_IER = 0x80", "reserved"});
   expect_rejected(can1::btr, can1::megabit, {"CAN1_BTR", "initialisation mode"});
   expect_rejected(can1::ri0r, 0, {"CAN1_RI0R", "write-protected"});
-  expect_rejected(can1::fmr, 29U << 8U, {"CAN1_FMR", "CAN2SB"});
+  expect_rejected(can1::fmr, 0x2A1C'0000U | 29U << 8U, {"CAN1_FMR", "CAN2SB"});
+  expect_rejected(can1::fmr, 28U << 8U | 1U, {"CAN1_FMR", "reserved bits must keep"});
   expect_rejected(can1::fa1r, 1U << 28U, {"CAN1_FA1R", "28 filter banks"});
   expect_rejected(0x20, 0, {"CAN1 at offset 0x20"});
   expect_rejected(0x320, 0, {"CAN1 at offset 0x320"});

@@ -252,6 +252,30 @@ TEST_F(FlashTest, ProtectedSectorsDoNotChange) {
   EXPECT_EQ(guarded.read(sr), bsy);
 }
 
+// RM0090, section 3.6.4: a write changes the flash and the data cache.
+TEST_F(FlashTest, AWeakWordIsReadAsItWasWrittenUntilTheDataCacheIsCleared) {
+  constexpr std::uint32_t address = 0x0800'8000;
+  constexpr std::uint32_t dcen = 1U << 10U;
+  constexpr std::uint32_t dcrst = 1U << 12U;
+  flash.set_weak_word(address, 0x11);
+  unlock();
+  flash.write(cr, pg | x32);
+  for (const bool has_cache : {true, false}) {
+    memory.cells[address - flash_start] = 0xFF;
+    flash.write(acr, has_cache ? dcen : 0);
+    EXPECT_TRUE(flash.program(address, 4, 0xFFFF'FF00));
+    finish();
+    EXPECT_EQ(memory.word(address), has_cache ? 0xFFFF'FF00U : 0xFFFF'FF11U);
+    flash.write(acr, 0);
+    flash.write(acr, dcrst);
+    EXPECT_EQ(memory.word(address), 0xFFFF'FF11U);
+    EXPECT_EQ(flash.read(sr) & ~eop, 0U) << "the hardware does not report it";
+  }
+  EXPECT_TRUE(flash.program(address + 4, 4, 0));
+  finish();
+  EXPECT_EQ(memory.word(address + 4), 0U);
+}
+
 TEST_F(FlashTest, RandomProgramsAndErasesDoWhatAnArrayDoes) {
   constexpr unsigned seed = 20'240;
   std::mt19937 random(seed);

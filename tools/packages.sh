@@ -46,6 +46,9 @@ lab_packages=(
   python3
 )
 
+# The slow test of the board's schematic: KiCad 6 with its libraries, and a screen for its windows.
+kicad_packages=(kicad kicad-symbols kicad-footprints xvfb xdotool)
+
 # The web page: tools/page. Only where there is no other node and npm.
 page_packages=(nodejs npm)
 browser_packages=(chromium)  # its tests

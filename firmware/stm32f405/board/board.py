@@ -55,6 +55,8 @@ def docs(board, options):
 
 
 def draw(board, options):
+    if has_faults(board):
+        return EXIT_FAILED
     options.file.parent.mkdir(parents=True, exist_ok=True)
     options.file.write_text(schematic.write(board))
     print(options.file)

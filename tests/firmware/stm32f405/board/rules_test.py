@@ -6,9 +6,11 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
-from board_tables import FOLDER, Copy, run  # noqa: E402
+from board_tables import FOLDER, Copy, run, seeded  # noqa: E402
 
+import pages  # noqa: E402
 import rules  # noqa: E402
+import schematic  # noqa: E402
 import tables  # noqa: E402
 
 PINS_HPP = FOLDER.parent / "pins.hpp"
@@ -161,6 +163,37 @@ def planted(change, expected):
 
 for name, (change, expected) in PLANTED.items():
     setattr(Planted, "test_" + name.replace(" ", "_").replace("-", "_"), planted(change, expected))
+
+
+class RandomChanges(unittest.TestCase):
+    def test_are_read_and_judged_or_rejected_and_what_has_no_fault_can_be_drawn(self):
+        """Rows that are removed, and cells that come from other rows: each table that can be read gets a verdict."""
+        source = seeded(405)
+        judged = 0
+        for _ in range(150):
+            copy = Copy(self)
+            for _ in range(source.randint(1, 3)):
+                name = source.choice(("nets.tsv", "parts.tsv", "netlist.tsv"))
+                lines = copy.lines(name)[:-1]
+                first = next(number for number, line in enumerate(lines) if not line.startswith("#")) + 1
+                one, other = source.randrange(first, len(lines)), source.randrange(first, len(lines))
+                if source.random() < 0.3:
+                    del lines[one]
+                else:
+                    cells = lines[one].split("\t")
+                    column = source.randrange(len(cells))
+                    cells[column] = lines[other].split("\t")[column]
+                    lines[one] = "\t".join(cells)
+                (copy.folder / name).write_text("\n".join(lines) + "\n")
+            try:
+                board = tables.read_board(copy.folder)
+            except tables.TableError:
+                continue
+            judged += 1
+            if not rules.faults(board):
+                schematic.write(board)
+                pages.parts(board)
+        self.assertGreater(judged, 50)
 
 
 class PlantedInPinsHpp(unittest.TestCase):

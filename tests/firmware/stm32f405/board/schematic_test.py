@@ -139,10 +139,18 @@ class Schematic(unittest.TestCase):
 
     def test_a_changed_net_changes_the_drawing(self):
         copy = Copy(self)
-        copy.set_pin("R20.1", net="VDDA")
+        copy.set_pin("JP2.1", net="VDDA")
         nets, _, _ = nets_of(parse(self.write(copy.folder).read_text()))
-        self.assertIn("R20.1", nets["VDDA"])
-        self.assertNotIn("R20.1", nets["3V3"])
+        self.assertIn("JP2.1", nets["VDDA"])
+        self.assertNotIn("JP2.1", nets["3V3"])
+
+    def test_tables_with_a_fault_are_not_drawn(self):
+        copy = Copy(self)
+        copy.set_pin("R20.1", net="VDDA")
+        result = run("schematic", copy.folder / "a.kicad_sch", folder=copy.folder)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("U2.1 (TXD): found no resistor to 3V3", result.stderr)
+        self.assertFalse((copy.folder / "a.kicad_sch").exists())
 
     def test_symbols_do_not_overlap(self):
         places = {}

@@ -14,7 +14,7 @@
 namespace proleg::image {
 namespace {
 
-constexpr std::uint32_t seed = 1;
+constexpr std::uint32_t sha512_seed = 1;
 
 std::string sha512_digits(const std::vector<std::uint8_t>& bytes) { return hexadecimal_digits(sha512(bytes)); }
 
@@ -42,16 +42,16 @@ TEST(ImageSha512, HasThePublishedValues) {
 }
 
 TEST(ImageSha512, IsOpensslsForAllLengthsOfAFewBlocks) {
-  std::mt19937 random(seed);
+  std::mt19937 random(sha512_seed);
   std::vector<std::uint8_t> bytes;
   for (int length = 0; length <= 600; ++length) {
-    ASSERT_EQ(sha512_digits(bytes), openssl_digits(bytes)) << length << " bytes, seed " << seed;
+    ASSERT_EQ(sha512_digits(bytes), openssl_digits(bytes)) << length << " bytes, seed " << sha512_seed;
     bytes.push_back(static_cast<std::uint8_t>(random()));
   }
 }
 
 TEST(ImageSha512, IsTheSameInPiecesOfAnySize) {
-  std::mt19937 random(seed);
+  std::mt19937 random(sha512_seed);
   std::vector<std::uint8_t> bytes(1'000'003);
   for (std::uint8_t& byte : bytes) {
     byte = static_cast<std::uint8_t>(random());
@@ -63,7 +63,7 @@ TEST(ImageSha512, IsTheSameInPiecesOfAnySize) {
     pieces.add(rest.first(size));
     rest = rest.subspan(size);
   }
-  EXPECT_EQ(hexadecimal_digits(pieces.finish()), openssl_digits(bytes)) << "seed " << seed;
+  EXPECT_EQ(hexadecimal_digits(pieces.finish()), openssl_digits(bytes)) << "seed " << sha512_seed;
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ bool decode_opposite(Point& opposite, const PublicKey& key) {
     }
   }
   make_canonical(x);
-  if ((x.front() & 1U) == sign) {
+  if ((x.front() & 1U) == sign) {  // the opposite has the other sign
     subtract(x, Element{}, x);
   }
   opposite.z = one;

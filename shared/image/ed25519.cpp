@@ -63,12 +63,12 @@ void add_point(Point& sum, const Point& other) {
   multiply(sum.y, h, b);
 }
 
-/// Whether the order of a point is 1, 2, 4 or 8. The point becomes eight times itself.
+/// Whether the order of a point is 1, 2, 4 or 8. The point becomes four times itself.
 bool has_small_order(Point& point) {
-  for (unsigned i = 0; i < 3; ++i) {
+  for (unsigned i = 0; i < 2; ++i) {
     add_point(point, point);
   }
-  // Eight times a point has the order 1 or L. Only the neutral point has x = 0 then.
+  // Only the points of the orders 1 and 2 have x = 0.
   return is_same(point.x, Element{});
 }
 

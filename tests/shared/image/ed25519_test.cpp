@@ -272,5 +272,14 @@ TEST(Ed25519, RejectsAnAddedPointOfSmallOrder) {
   }
 }
 
+// The sum is r B. Only the highest bit of its encoding differs from that of R = -r B.
+TEST(Ed25519, RejectsTheOppositeOfThePoint) {
+  std::mt19937 random(signer_seed);
+  const Signer owner = signer(random);
+  const Scalar r = random_scalar(random);
+  const Encoding point = with_other_sign(multiple_of_base(r));
+  EXPECT_FALSE(is_signed_by(owner.key, signature_of(point, r, owner.key, owner.secret, {}), {}));
+}
+
 }  // namespace
 }  // namespace proleg::image

@@ -68,8 +68,9 @@ def elf(parts):
 
 
 # Small, since each bit of them passes through JTAG; larger than one block of 256 bytes of stm32flash.
-BOOTLOADER = program(FLASH, 17_000, seed=2)  # more than a sector
-OTHER_BOOTLOADER = program(FLASH, 20_000, seed=3)
+BOOTLOADER = program(FLASH, 300, seed=2)
+OTHER_BOOTLOADER = program(FLASH, 360, seed=3)
+LARGE_BOOTLOADER = program(FLASH, 17_000, seed=5)  # more than a sector
 IMAGE = image()
 
 
@@ -148,10 +149,16 @@ class FlashBare(unittest.TestCase):
     def expect_sector(self, number, content, rest=ERASED):
         self.assertEqual(self.chip.sector(number), content + bytes([rest]) * (SECTORS[number] - len(content)))
 
-    def expect_complete(self, probe, bootloader=BOOTLOADER, rest=ERASED):
-        self.assertEqual(self.chip.read(FLASH, PLACE), bootloader + bytes([rest]) * (PLACE - len(bootloader)))
+    def expect_complete(self, probe, bootloader=BOOTLOADER):
+        erased = SECTORS[0] if len(bootloader) <= SECTORS[0] else PLACE
+        self.assertEqual(self.chip.read(FLASH, erased), bootloader + bytes([ERASED]) * (erased - len(bootloader)))
         self.expect_sector(5, IMAGE)
         self.assertEqual(self.chip.options, RIGHT_OPTIONS if probe in SWD_PROBES else FACTORY_OPTIONS & ~3)
+
+    @staticmethod
+    def place_of_bootloader(probe):
+        """The sectors that are erased for a bootloader that fits into one: dfu-util erases what it writes."""
+        return [0] if probe == "dfu" else [0, 1]
 
     def option_values(self):
         return self.chip.sectors("options")
@@ -176,10 +183,16 @@ class FlashBare(unittest.TestCase):
                     self.chip.fill(sector, KEPT)
                 self.expect_flashed(self.flash(probe))
                 self.expect_complete(probe)
-                self.assertEqual(self.chip.sectors("erase"), [5, 0, 1])
+                self.assertEqual(self.chip.sectors("erase"), [5, *self.place_of_bootloader(probe)])
                 self.assertNotIn(("mass erase",), self.chip.events)
                 for sector in (2, 3, 4, 6, 7, 8, 9, 10, 11):
                     self.expect_sector(sector, b"", rest=KEPT)
+
+    def test_a_bootloader_may_be_larger_than_a_sector(self):
+        self.write("large_boot.bin", LARGE_BOOTLOADER)
+        self.expect_flashed(self.flash("dfu", bootloader="large_boot.bin"))
+        self.expect_complete("dfu", bootloader=LARGE_BOOTLOADER)
+        self.assertEqual(self.chip.sectors("erase"), [5, 0, 1])
 
     def test_with_a_node_id_the_settings_are_those_of_a_new_board(self):
         record = self.folder / "record.bin"
@@ -193,12 +206,12 @@ class FlashBare(unittest.TestCase):
                 self.expect_flashed(self.flash(probe, "--node", "3"))
                 self.expect_complete(probe)
                 self.assertEqual(self.chip.read(SETTINGS, 2 * SECTORS[2]), record.read_bytes())
-                self.assertEqual(self.chip.sectors("erase"), [2, 3, 5, 0, 1])
+                self.assertEqual(self.chip.sectors("erase"), [2, 3, 5, *self.place_of_bootloader(probe)])
 
     def test_the_image_is_there_before_the_bootloader_and_the_option_bytes_come_last(self):
         self.expect_flashed(self.flash("stlink"))
         self.assertEqual([event[:2] if event[0] != "options" else event[0] for event in self.chip.events],
-                         [("erase", 5), ("program", 5), ("erase", 0), ("erase", 1), ("program", 0), ("program", 1), "options", "options"])
+                         [("erase", 5), ("program", 5), ("erase", 0), ("erase", 1), ("program", 0), "options", "options"])
         self.assertEqual(self.core.runs, 1)
         self.assertFalse(self.core.is_halted)
 

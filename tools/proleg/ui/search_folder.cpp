@@ -27,7 +27,7 @@ using nlohmann::json;
 constexpr const char* store_name = "store.sqlite";
 
 /// A list comes in this time, also of many searches; the rest of it comes later.
-constexpr std::chrono::milliseconds time_to_read{100};
+constexpr std::chrono::milliseconds time_to_read{50};
 
 std::int64_t modified_ns(const struct stat& status) {
   constexpr std::int64_t second = 1'000'000'000;

@@ -65,7 +65,7 @@ function FileRow({ app, file }: { app: RecordingsApp; file: RecordedFile }) {
   );
 }
 
-const fewRows = 200; // at first, and with each click more
+const fewRows = 50; // at first, and with each click more
 
 export function RecordingList({ app }: { app: RecordingsApp }) {
   const wanted = useSignal('');

@@ -150,8 +150,12 @@ json SearchResults::rows(const fs::path& search, std::uint32_t run, std::uint64_
     }
     scores.push_back(std::move(its_scores));
     values.push_back(std::move(its_values));
+    bool has_others = true;
+    for (std::size_t i = 1; i < experiment.objectives.size(); ++i) {
+      has_others = has_others && optimize::has_own_score(experiment, evaluation, i);
+    }
     flags.push_back((optimize::has_own_score(experiment, evaluation, 0) ? 0 : 1) + (evaluation.given_up ? 2 : 0) +
-                    (evaluation.reused ? 4 : 0));
+                    (evaluation.reused ? 4 : 0) + (has_others ? 0 : 8));
   }
   return {{"from", from},
           {"made", store.evaluation_count(run)},

@@ -197,9 +197,10 @@ export interface OpenedSearch {
   result: SearchResult | null; // of a search that has ended
 }
 
-export const hasNoScore = 1; // flag: it failed, and has no score of its own
+export const hasNoScore = 1; // flag: it failed, and has no score of its own for the first objective
 export const wasGivenUp = 2; // flag: before its time was over
 export const wasKnown = 4; // flag: the same candidate was evaluated before
+export const otherHasNoScore = 8; // flag: it has no score of its own for an objective behind the first
 
 // The value of `search.rows`: evaluations one after the other.
 export interface SearchRows {

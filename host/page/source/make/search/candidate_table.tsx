@@ -7,6 +7,7 @@ import { sortedBy, type Ranking, type SortColumn } from './ranking.js';
 import { shortNumber } from './search_text.js';
 
 const fewColumns = 10; // of values, until all are wanted
+const fewOfFront = 100; // candidates, until all are wanted
 
 interface Sort {
   column: SortColumn;
@@ -32,9 +33,10 @@ function ColumnHead({ title, column, sort, isFirstDescending, change }: {
   );
 }
 
-function remarkOf({ store }: ShownRows, { has_baseline: hasBaseline }: OpenedSearch, row: number, objective: number): string {
+function remarkOf({ store, front }: ShownRows, { has_baseline: hasBaseline }: OpenedSearch, row: number, objective: number): string {
   const remarks = [
     ...(hasBaseline && row === 0 ? ['own values'] : []),
+    ...(front?.rows.includes(row) ? ['front'] : []),
     ...(store.hasScore(row, objective) ? [] : ['failed']),
     ...(store.has(row, wasGivenUp) ? ['given up'] : []),
   ];
@@ -46,17 +48,31 @@ export function CandidateTable({ chosen, opened, rows, ranking }: { chosen: Chos
   const isWide = useSignal(false);
   const count = chosen.shownCount.value;
   const number = chosen.number.value;
-  const { store } = rows;
+  const { store, front } = rows;
+  const isFront = front !== null && chosen.isFrontListed.value;
+  const isLong = useSignal(false);
+  const first = !isFront ? ranking.best : isLong.value ? front.rows : front.rows.slice(0, fewOfFront);
   const more = [...(opened.has_baseline && count > 0 ? [0] : []), ...(number !== null && number < count ? [number] : [])];
-  const listed = [...new Set([...ranking.best, ...more])];
+  const listed = [...new Set([...first, ...more])];
   const shown = sort.value === null ? listed : sortedBy(store, listed, sort.value.column, sort.value.isDescending);
   const dimensions = isWide.value ? opened.dimensions : opened.dimensions.slice(0, fewColumns);
   const change = (next: Sort) => (sort.value = next);
   return (
     <>
+      {front !== null && (
+        <div class="fields" role="group" aria-label="Candidates in the table">
+          {[false, true].map((isWanted) => (
+            <button key={String(isWanted)} type="button" aria-pressed={isFront === isWanted} onClick={() => (chosen.isFrontListed.value = isWanted)}>
+              {isWanted ? 'Pareto front' : 'The best'}
+            </button>
+          ))}
+        </div>
+      )}
       <div class="table-frame candidates" tabIndex={0} role="group" aria-label="Table of candidates">
         <table data-testid="candidates">
-          <caption class="hint">The {ranking.best.length} best candidates. Choose one to see how it moves.</caption>
+          <caption class="hint">
+            {isFront ? `The Pareto front: ${first.length} of ${front.rows.length} candidates` : `The ${ranking.best.length} best candidates`}. Choose one to see how it moves.
+          </caption>
           <thead>
             <tr>
               <ColumnHead title="candidate" column={{ kind: 'number' }} sort={sort.value} isFirstDescending={false} change={change} />
@@ -91,6 +107,11 @@ export function CandidateTable({ chosen, opened, rows, ranking }: { chosen: Chos
           </tbody>
         </table>
       </div>
+      {isFront && front.rows.length > fewOfFront && (
+        <button type="button" aria-pressed={isLong.value} onClick={() => (isLong.value = !isLong.value)}>
+          All {front.rows.length} candidates
+        </button>
+      )}
       {opened.dimensions.length > fewColumns && (
         <button type="button" aria-pressed={isWide.value} onClick={() => (isWide.value = !isWide.value)}>
           All {opened.dimensions.length} values

@@ -1,11 +1,13 @@
 // Draws a chart of scores on a canvas, and says where its points are.
 import type { ChartTheme } from '../../panels/chart_theme.js';
 import type { ChartContent } from './chart_content.js';
+import type { CanvasSize } from './keep_drawn.js';
 import { shortNumber } from './search_text.js';
 import { axisTicks } from './score_points.js';
 
 const edge = { left: 58, right: 10, top: 8, bottom: 34 }; // CSS pixels
 const pixelsPerTick = { x: 90, y: 32 };
+const frontRadius = 3.5; // CSS pixels
 
 // Where the points are drawn, in CSS pixels.
 export interface DrawnPoints {
@@ -19,17 +21,11 @@ export interface ChartLabels {
   y: string;
 }
 
-interface Size {
-  width: number; // CSS pixels
-  height: number;
-  ratio: number; // device pixels for each
-}
-
-export function drawChart(context: CanvasRenderingContext2D, chart: ChartContent, labels: ChartLabels, { width, height, ratio }: Size, theme: ChartTheme, maximise: boolean): DrawnPoints {
+export function drawChart(context: CanvasRenderingContext2D, chart: ChartContent, labels: ChartLabels, { width, height, ratio }: CanvasSize, theme: ChartTheme, maximise: boolean): DrawnPoints {
   const [right, bottom] = [width - edge.right, height - edge.bottom];
   const [[xLow, xHigh], [yLow, yHigh]] = [chart.xRange, chart.yRange];
-  const pixelX = (value: number) => edge.left + ((value - xLow) / (xHigh - xLow)) * (right - edge.left);
   // What is worse than the range, or has no score, is at the edge.
+  const pixelX = (value: number) => edge.left + ((Math.max(xLow, Math.min(xHigh, value)) - xLow) / (xHigh - xLow)) * (right - edge.left);
   const pixelY = (value: number) => bottom - ((Math.max(yLow, Math.min(yHigh, Number.isNaN(value) ? (maximise ? yLow : yHigh) : value)) - yLow) / (yHigh - yLow)) * (bottom - edge.top);
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
@@ -37,6 +33,7 @@ export function drawChart(context: CanvasRenderingContext2D, chart: ChartContent
   const points: DrawnPoints = { rows: chart.rows, x: Float32Array.from(chart.x, pixelX), y: Float32Array.from(chart.y, pixelY) };
   drawPoints();
   drawLines();
+  drawFront();
   mark(chart.best, theme.lines[2] ?? theme.text, 4);
   mark(chart.chosen, theme.highlight, 5);
   return points;
@@ -55,7 +52,7 @@ export function drawChart(context: CanvasRenderingContext2D, chart: ChartContent
       context.lineTo(x, bottom);
       context.fillText(shortNumber(value), x, bottom + 4);
     }
-    context.fillText(labels.x, (edge.left + right) / 2, bottom + 18);
+    context.fillText(labels.x, (edge.left + right) / 2, bottom + 18, right - edge.left);
     context.textAlign = 'right';
     context.textBaseline = 'middle';
     for (const value of axisTicks(yLow, yHigh, (bottom - edge.top) / pixelsPerTick.y)) {
@@ -69,7 +66,7 @@ export function drawChart(context: CanvasRenderingContext2D, chart: ChartContent
     context.translate(9, (edge.top + bottom) / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = 'center';
-    context.fillText(labels.y, 0, 0);
+    context.fillText(labels.y, 0, 0, height - 4);
     context.restore();
   }
 
@@ -101,6 +98,18 @@ export function drawChart(context: CanvasRenderingContext2D, chart: ChartContent
     context.beginPath();
     for (const { x, y } of chart.line) context.lineTo(pixelX(x), pixelY(y));
     context.stroke();
+  }
+
+  function drawFront(): void {
+    const marked = new Set(chart.marked);
+    context.fillStyle = theme.lines[1] ?? theme.text;
+    context.beginPath();
+    for (const [place, row] of chart.rows.entries()) {
+      if (!marked.has(row)) continue;
+      context.moveTo(points.x[place]! + frontRadius, points.y[place]!);
+      context.arc(points.x[place]!, points.y[place]!, frontRadius, 0, 2 * Math.PI);
+    }
+    context.fill();
   }
 
   function mark(row: number | null, colour: string, radius: number): void {

@@ -1,6 +1,7 @@
 // The search that is shown: what it is, its evaluations, and the candidate that is chosen in it.
 import { computed, signal } from '@preact/signals-core';
 import type { OpenedSearch, SearchCandidate, SearchConfirmation, SearchEntry, SearchRows } from '../../wire/messages.js';
+import { Front } from './front.js';
 import { Ranking } from './ranking.js';
 import { RowReader } from './row_reader.js';
 import { RowStore } from './row_store.js';
@@ -16,6 +17,7 @@ export interface ShownRows {
   reader: RowReader;
   store: RowStore;
   rankings: readonly Ranking[]; // by objective
+  front: Front | null; // of two objectives
 }
 
 export class ChosenSearch {
@@ -24,6 +26,7 @@ export class ChosenSearch {
   readonly run = signal(0);
   readonly objective = signal(0); // by which the charts and the table are
   readonly dimension = signal(0); // of the chart of points
+  readonly isFrontListed = signal(false); // the table has the front in place of the best
   readonly rows = signal<ShownRows | null>(null);
   readonly shownCount = signal(0); // evaluations that tables show
   readonly number = signal<number | null>(null); // of the candidate that is chosen
@@ -66,6 +69,7 @@ export class ChosenSearch {
     if (rows.store.count !== this.shownCount.peek() && now - this.shownAt >= tablePeriod) {
       this.shownAt = now;
       rows.rankings.forEach((ranking) => ranking.update());
+      rows.front?.update();
       this.shownCount.value = rows.store.count;
     }
   }
@@ -131,7 +135,9 @@ export class ChosenSearch {
     const run = this.run.peek();
     const reader = new RowReader(store, async (from) => (await this.host.page.operations.ask('search.rows', { name: this.name, run, from })) as SearchRows);
     const rankings = opened.objectives.map(({ maximise }, objective) => new Ranking(store, objective, maximise));
-    this.rows.value = { id: ++this.rowsBegun, reader, store, rankings };
+    const [first, second] = opened.objectives;
+    const front = opened.objectives.length === 2 ? new Front(store, [first!.maximise, second!.maximise]) : null;
+    this.rows.value = { id: ++this.rowsBegun, reader, store, rankings, front };
   }
 
   private async readCandidate(number: number): Promise<void> {

@@ -2,12 +2,10 @@
 import { useSignal } from '@preact/signals';
 import type { OpenedSearch, SearchEntry } from '../../wire/messages.js';
 import { CandidateTable } from './candidate_table.js';
-import { learningCurve, valueChart } from './chart_content.js';
-import type { ChosenSearch, ShownRows } from './chosen_search.js';
+import type { ChosenSearch } from './chosen_search.js';
 import { MotionControls } from './motion_controls.js';
-import type { Ranking } from './ranking.js';
-import { ScoreChart, type Chart } from './score_chart.js';
 import { searchApp, type SearchApp } from './search_app.js';
+import { SearchCharts } from './search_charts.js';
 import type { SearchHost } from './search_host.js';
 import { countText, progressText, resultLines, resumeKind, withUnit } from './search_text.js';
 
@@ -118,54 +116,6 @@ function Choices({ chosen, opened }: { chosen: ChosenSearch; opened: OpenedSearc
   );
 }
 
-function Charts({ chosen, opened, rows, ranking }: { chosen: ChosenSearch; opened: OpenedSearch; rows: ShownRows; ranking: Ranking }) {
-  const objective = opened.objectives[ranking.objective]!;
-  const score = objective.unit === '' ? objective.name : `${objective.name} (${objective.unit})`;
-  const dimension = Math.min(chosen.dimension.value, opened.dimensions.length - 1);
-  const shown = opened.dimensions[dimension];
-  const state = () => ({ store: rows.store, ranking, chosen: chosen.number.peek(), hasBaseline: opened.has_baseline });
-  const common = {
-    maximise: objective.maximise,
-    follow: () => void [chosen.shownCount.value, chosen.number.value],
-    choose: (row: number) => chosen.chooseCandidate(row),
-  };
-  const id = `${opened.name}/${rows.id}/${ranking.objective}`;
-  const title = `Learning curve: the ${score} of each evaluation, and the best so far`;
-  const curve: Chart = { ...common, id, title, labels: { x: 'evaluation', y: score }, content: () => learningCurve(state()) };
-  const points: Chart | null = shown === undefined ? null : {
-    ...common,
-    id: `${id}/${dimension}`,
-    title: `The ${score} of each evaluation over ${shown.name}`,
-    labels: { x: shown.unit === '' ? shown.name : `${shown.name} (${shown.unit})`, y: score },
-    content: () => valueChart(state(), dimension, shown),
-  };
-  return (
-    <div class="search-charts">
-      <div>
-        <p class="hint legend-line" aria-hidden="true">
-          <i class="dot point" /> evaluation <i class="dot best" /> best so far <i class="dot failed" /> failed{opened.has_baseline && ' – – own values'}
-        </p>
-        <ScoreChart chart={curve} testId="learning-curve" />
-      </div>
-      {points !== null && (
-        <div>
-          <label class="number-field">
-            <span>score over</span>
-            <select value={String(dimension)} onChange={(event) => (chosen.dimension.value = Number(event.currentTarget.value))}>
-              {opened.dimensions.map(({ name }, number) => (
-                <option key={name} value={String(number)}>
-                  {name}
-                </option>
-              ))}
-            </select>
-          </label>
-          <ScoreChart chart={points} testId="value-chart" />
-        </div>
-      )}
-    </div>
-  );
-}
-
 export function ChosenSearchView({ app: host }: { app: SearchHost }) {
   const app = searchApp(host);
   const chosen = app.chosen.value;
@@ -220,7 +170,7 @@ export function ChosenSearchView({ app: host }: { app: SearchHost }) {
       {opened !== null && <Result chosen={chosen} opened={opened} />}
       {opened !== null && rows !== null && ranking !== null && (
         <>
-          <Charts chosen={chosen} opened={opened} rows={rows} ranking={ranking} />
+          <SearchCharts chosen={chosen} opened={opened} rows={rows} ranking={ranking} />
           <Choices chosen={chosen} opened={opened} />
           {chosen.shownCount.value >= rows.store.capacity && <p class="hint">The page shows the first {countText(rows.store.capacity)} evaluations.</p>}
           <CandidateTable chosen={chosen} opened={opened} rows={rows} ranking={ranking} />

@@ -13,12 +13,13 @@ export function thinningStep(rows: number, most = mostPoints): number {
   return step;
 }
 
-// The rows to draw, ascending: each `thinningStep`th, and those that must not be missing: the best, the records, the chosen one.
-export function drawnRows(ranking: Ranking, store: RowStore, chosen: number | null): number[] {
+// The rows to draw, ascending: each `thinningStep`th, and those that must not be missing: the best, the records, the chosen one,
+// and more.
+export function drawnRows(ranking: Ranking, store: RowStore, chosen: number | null, more: readonly number[] = []): number[] {
   const step = thinningStep(store.count);
   const rows = Array.from({ length: Math.ceil(store.count / step) }, (_, i) => i * step);
   if (step === 1) return rows;
-  const must = [...ranking.best, ...ranking.records, ...(chosen === null || chosen >= store.count ? [] : [chosen])];
+  const must = [...ranking.best, ...ranking.records, ...more, ...(chosen === null || chosen >= store.count ? [] : [chosen])];
   return [...new Set([...rows, ...must])].sort((a, b) => a - b);
 }
 

@@ -1,6 +1,9 @@
 #include "tools/proleg/ui/command_sequence.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
@@ -16,6 +19,16 @@ std::string last_line_of(std::string_view output) {
     }
   }
   return last;
+}
+
+std::string last_line_of_file(const std::filesystem::path& log) {
+  constexpr std::streamoff most = 64 * 1024;
+  std::ifstream file(log, std::ios::binary);
+  if (std::error_code error; !std::filesystem::is_regular_file(log, error) || !file.seekg(0, std::ios::end)) {
+    return {};
+  }
+  file.seekg(std::max<std::streamoff>(0, file.tellg() - most));
+  return last_line_of(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
 std::string without_program_name(const std::string& line) {

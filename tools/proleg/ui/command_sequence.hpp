@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@ namespace proleg::tools {
 
 /// The last line that a program has printed, without blanks; empty if there is none.
 [[nodiscard]] std::string last_line_of(std::string_view output);
+
+/// The same of what a program has added to a file; empty if there is no such file.
+[[nodiscard]] std::string last_line_of_file(const std::filesystem::path& log);
 
 /// A message of one of our programs without the name of the program: "TEXT" of "proleg optimise: TEXT".
 [[nodiscard]] std::string without_program_name(const std::string& line);

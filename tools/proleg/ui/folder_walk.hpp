@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace proleg::tools {
 
@@ -34,6 +36,13 @@ bool for_each_path(const std::filesystem::path& folder, const Use& use, const En
 
 /// Whether a path is below a folder. Both without symbolic links.
 [[nodiscard]] bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& path);
+
+/// The folders below this one, down to max_folder_depth, that have a regular file with one of these names: their paths
+/// below it, in order. Hidden folders are left out. before: of an earlier call; those stay that were not visited and
+/// still have such a file. folder: without symbolic links.
+[[nodiscard]] std::vector<std::string> folders_with(const std::filesystem::path& folder,
+                                                    std::span<const char* const> files,
+                                                    std::span<const std::string> before);
 
 /// What a name means that a viewer has sent: a path below the folder, which has no symbolic links in it. Nothing
 /// outside can be reached, also not by symbolic links. Throws InputError for `argument` if there is no such thing.

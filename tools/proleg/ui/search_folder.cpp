@@ -3,9 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
@@ -73,14 +71,7 @@ fs::path SearchFolder::store_of(const fs::path& search) { return search / store_
 fs::path SearchFolder::log_of(const fs::path& search) { return search / "search.log"; }
 
 std::string SearchFolder::failure_of(const fs::path& search) {
-  constexpr std::streamoff most = 64 * 1024;
-  std::ifstream log(log_of(search), std::ios::binary);
-  if (std::error_code error; !fs::is_regular_file(log_of(search), error) || !log.seekg(0, std::ios::end)) {
-    return {};
-  }
-  log.seekg(std::max<std::streamoff>(0, log.tellg() - most));
-  const std::string end(std::istreambuf_iterator<char>(log), {});
-  const std::string last = last_line_of(end);
+  const std::string last = last_line_of_file(log_of(search));
   constexpr std::string_view program = "proleg optimise: ";
   const bool is_failure = last.starts_with(program) && last.find(": interrupted ") == std::string::npos &&
                           last.find(optimize::another_writer) == std::string::npos;
@@ -102,26 +93,14 @@ SearchFolder::Version SearchFolder::version_of(const fs::path& store) {
 }
 
 void SearchFolder::walk() {
+  std::vector<std::string> before;
+  for (const auto& [name, entry] : entries_) {
+    before.push_back(name);
+  }
+  constexpr const char* marks[] = {store_name};
   std::map<std::string, Entry> found;
-  const auto enters = [](const fs::path& path) { return !path.filename().string().starts_with('.'); };
-  const auto note = [&](const fs::path& path) {
-    std::error_code error;
-    if (path.filename() != store_name || !fs::is_regular_file(path, error) ||
-        !is_inside(folder_, fs::canonical(path, error)) || error || path.parent_path() == folder_ ||
-        find_invalid_utf8(path.string())) {
-      return;
-    }
-    const std::string name = path.parent_path().lexically_relative(folder_).string();
-    const auto before = entries_.find(name);
-    found[name] = before == entries_.end() ? Entry{} : std::move(before->second);
-  };
-  if (!for_each_path(folder_, note, enters)) {
-    for (auto& [name, entry] : entries_) {  // what was not visited may still be there
-      std::error_code error;
-      if (fs::is_regular_file(store_of(folder_ / name), error)) {
-        found.emplace(name, std::move(entry));
-      }
-    }
+  for (const std::string& name : folders_with(folder_, marks, before)) {
+    found[name] = std::move(entries_[name]);
   }
   entries_ = std::move(found);
 }

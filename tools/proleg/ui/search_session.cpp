@@ -92,36 +92,12 @@ json names_of(const optimize::SearchSpace& space) {
 }
 
 /// Whether a search has left anything that is worth keeping.
-bool has_evaluations(const fs::path& store) {
+bool has_evaluations(const fs::path& search) {
   try {
-    return optimize::read_store_summary(store).made > 0;
+    return optimize::read_store_summary(SearchFolder::store_of(search)).made > 0;
   } catch (const optimize::StoreError&) {
     return false;
   }
-}
-
-/// Asks a search to stop that may have ended just now.
-void stop_if_running(const fs::path& store) {
-  try {
-    optimize::request_stop(store);
-  } catch (const optimize::StoreError&) {
-    if (optimize::is_being_written(store)) {
-      throw;
-    }
-  }
-}
-
-/// Why a search has not begun whose program has ended with this status.
-std::string refusal_of(const fs::path& search, int status) {
-  if (optimize::is_being_written(SearchFolder::store_of(search))) {
-    return "another program has begun to continue this search";
-  }
-  std::string line = SearchFolder::failure_of(search);
-  constexpr std::uintmax_t little = 64 * 1024;
-  if (std::error_code error; line.empty() && fs::space(search, error).available < little) {
-    line = "no space left on the disk";  // not even for the reason
-  }
-  return line.empty() ? "the search has ended with status " + std::to_string(status) : line;
 }
 
 /// Why the reduced engine cannot make the search; null: it can.
@@ -143,7 +119,10 @@ SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& f
       options_(std::move(options)),
       files_(files),
       draft_(draft),
-      folder_(options_.folder) {
+      folder_(options_.folder),
+      begun_({"search", SearchFolder::store_of({}).string(), SearchFolder::log_of({}).string(),
+              SearchFolder::failure_of, has_evaluations, options_.longest_start},
+             output) {
   if (options_.programs.empty()) {
     std::error_code error;
     options_.programs = fs::read_symlink("/proc/self/exe", error).parent_path();
@@ -158,15 +137,16 @@ void SearchSession::serve() {
   if (!take_operations() && folder_.has_unread()) {
     publish_searches();
   }
-  beginnings_.remove_if([this](Beginning& beginning) { return look_at(beginning); });
-  running_.remove_if([](DetachedProgram& program) { return program.status().has_value(); });
+  if (begun_.look()) {
+    folder_.look_again();
+  }
   look_at_job();
   if (folder_.has_unread()) {
     return;
   }
-  if (job_ || !std::ranges::all_of(beginnings_, &Beginning::is_answered)) {
+  if (job_ || begun_.has_waiting()) {
     requests_.wait_until(Clock::now() + look_period);
-  } else if (!beginnings_.empty() || !running_.empty()) {
+  } else if (!begun_.is_empty()) {
     requests_.wait_until(Clock::now() + reap_period);
   } else {
     requests_.wait();
@@ -174,23 +154,13 @@ void SearchSession::serve() {
 }
 
 void SearchSession::fail(const std::string& why) {
-  for (Beginning& beginning : beginnings_) {
-    if (!beginning.is_answered) {
-      output_.refuse(beginning.request, why);
-    }
-    running_.push_back(std::move(beginning.program));
-  }
-  beginnings_.clear();
+  begun_.refuse_all(why);
   end_job(why);
 }
 
 void SearchSession::close() {
   end_job("the program ends");
-  for (Beginning& beginning : beginnings_) {
-    if (beginning.stops && !beginning.program.status()) {
-      beginning.program.interrupt();  // nobody is left who would stop it when it has begun
-    }
-  }
+  begun_.close();
 }
 
 json SearchSession::carry_out(const host::OperationRequest& operation) {
@@ -376,18 +346,11 @@ void SearchSession::end_job(const std::string& refusal) {
   }
 }
 
-void SearchSession::begin(const host::OperationRequest& request, const std::string& name, const fs::path& folder,
-                          const std::vector<std::string>& words, bool is_new) {
-  beginnings_.push_back({request.request, name, folder,
-                         DetachedProgram(command("optimise", words), folder.string(), SearchFolder::log_of(folder)),
-                         Clock::now() + options_.longest_start, is_new});
-}
-
 json SearchSession::start(const host::OperationRequest& request) {
   const json& arguments = request.arguments;
   const std::string name = name_in(arguments);
   const fs::path parent = folder_.folder() / searches_folder;
-  const fs::path folder = new_folder_in(parent, name, "name");
+  static_cast<void>(new_folder_in(parent, name, "name"));
   const auto file = argument<std::string>(arguments, "file", "a file of `searches`, or null");
   std::vector<std::string> words;
   std::shared_ptr<const sim::Scenario> scenario;
@@ -403,25 +366,17 @@ json SearchSession::start(const host::OperationRequest& request) {
     static_cast<void>(required_experiment(form, *scenario));
   }
   const std::vector<std::string> options = options_in(arguments);
-  std::error_code error;
-  fs::create_directory(parent, error);
-  if (const fs::path real = fs::canonical(parent, error); error || real != parent) {
-    throw InputError(parent.string(), 0, error ? error.message() : "a link to " + real.string(), "a folder");
-  }
-  if (!fs::create_directory(folder, error)) {
-    if (error) {
-      throw FileError(folder, "cannot be created: " + error.message());
-    }
-    throw InputError("name", 0, in_quotes(name) + ", which exists", "a new name");
-  }
+  const fs::path folder = make_new_folder(parent, name);
   try {
     if (!file) {
       words.push_back(write_search_files(form, *scenario, folder, name).string());
     }
     words.insert(words.end(), {"--out", folder.string()});
     words.insert(words.end(), options.begin(), options.end());
-    begin(request, std::string(searches_folder) + "/" + name, folder, words, true);
+    begun_.begin(request.request, std::string(searches_folder) + "/" + name, folder, true, command("optimise", words),
+                 folder);
   } catch (...) {
+    std::error_code error;
     fs::remove_all(folder, error);
     throw;
   }
@@ -432,8 +387,7 @@ json SearchSession::resume(const host::OperationRequest& request) {
   const json& arguments = request.arguments;
   const std::string name = name_in(arguments);
   const fs::path folder = folder_.find(name);
-  const bool begins = std::ranges::any_of(beginnings_, [&](const auto& its) { return its.folder == folder; });
-  if (begins || optimize::is_being_written(SearchFolder::store_of(folder))) {
+  if (begun_.begins(folder) || optimize::is_being_written(SearchFolder::store_of(folder))) {
     throw std::runtime_error("this search is running");
   }
   std::vector<std::string> words{"--resume", folder.string()};
@@ -443,51 +397,16 @@ json SearchSession::resume(const host::OperationRequest& request) {
   }
   const std::vector<std::string> options = options_in(arguments);
   words.insert(words.end(), options.begin(), options.end());
-  begin(request, name, folder, words, false);
+  begun_.begin(request.request, name, folder, false, command("optimise", words), folder);
   return answered_later();
-}
-
-bool SearchSession::look_at(Beginning& beginning) {
-  const fs::path store = SearchFolder::store_of(beginning.folder);
-  const std::optional<int> status = beginning.program.status();
-  std::error_code error;
-  // Another program may have been faster, and writes to it.
-  const bool is_open = optimize::writer_of(store) == beginning.program.process();
-  const bool has_begun = fs::exists(store, error) && (is_open || status == exit_success);
-  if (has_begun) {
-    folder_.look_again();
-    if (beginning.stops && is_open) {
-      stop_if_running(store);
-    }
-    if (!beginning.is_answered) {
-      output_.answer(beginning.request, {{"name", beginning.name}});
-    }
-    running_.push_back(std::move(beginning.program));
-    return true;
-  }
-  if (!status) {
-    if (!beginning.is_answered && Clock::now() >= beginning.until) {
-      output_.refuse(beginning.request, "the search has not begun in time; it may begin later");
-      beginning.is_answered = true;
-    }
-    return false;
-  }
-  if (!beginning.is_answered) {
-    output_.refuse(beginning.request, refusal_of(beginning.folder, *status));
-  }
-  if (beginning.is_new && !has_evaluations(store)) {
-    fs::remove_all(beginning.folder, error);
-  }
-  return true;
 }
 
 json SearchSession::stop(const host::OperationRequest& request) {
   const std::string name = name_in(request.arguments);
-  if (const auto begins = std::ranges::find(beginnings_, name, &Beginning::name); begins != beginnings_.end()) {
-    begins->stops = true;
+  if (begun_.stop(name)) {
     return json::object();
   }
-  const fs::path folder = folder_.find(name_in(request.arguments));
+  const fs::path folder = folder_.find(name);
   optimize::request_stop(SearchFolder::store_of(folder));
   return json::object();
 }

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/proleg/common/detached_program.hpp"
+#include "tools/proleg/ui/begun_programs.hpp"
 #include "tools/proleg/ui/json_program.hpp"
 #include "tools/proleg/ui/present_draft.hpp"
 #include "tools/proleg/ui/project_files.hpp"
@@ -46,17 +45,6 @@ class SearchSession final : private SessionThread {
   }
 
  private:
-  /// A search that was started and has not begun.
-  struct Beginning {
-    host::RequestId request;
-    std::string name;
-    std::filesystem::path folder;
-    DetachedProgram program;
-    Clock::time_point until;
-    bool is_new;               ///< its folder is removed if it does not begin
-    bool stops = false;        ///< a viewer has asked it to stop meanwhile
-    bool is_answered = false;  ///< it is late: the request was refused
-  };
   /// An estimate or a confirmation that goes on.
   struct Job {
     host::RequestId request = 0;
@@ -90,10 +78,6 @@ class SearchSession final : private SessionThread {
   /// One of our programs with these words, and with the algorithms of users that this program has.
   [[nodiscard]] std::vector<std::string> command(const std::string& program,
                                                  const std::vector<std::string>& words) const;
-  void begin(const host::OperationRequest& request, const std::string& name, const std::filesystem::path& folder,
-             const std::vector<std::string>& words, bool is_new);
-  /// Whether a search has begun, or has failed to.
-  bool look_at(Beginning& beginning);
   nlohmann::json begin_job(const host::OperationRequest& request, std::unique_ptr<JsonProgram> program,
                            const std::vector<std::string>& words, std::vector<const char*> members);
   void look_at_job();
@@ -104,8 +88,7 @@ class SearchSession final : private SessionThread {
   const PresentDraft& draft_;
   SearchFolder folder_;
   SearchResults results_;
-  std::list<Beginning> beginnings_;
-  std::list<DetachedProgram> running_;  ///< whose end must be taken note of
+  BegunPrograms begun_;
   std::optional<Job> job_;
   std::map<std::string, nlohmann::json> published_;
 };

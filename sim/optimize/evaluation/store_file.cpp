@@ -25,14 +25,6 @@
 namespace proleg::optimize {
 namespace {
 
-std::string universal_time() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
-
 /// So that Database::require_own_file() notices another store in the place of this one.
 std::uint32_t random_schema_version() {
   std::random_device device;
@@ -120,6 +112,14 @@ std::vector<std::string> differences(Database& database, const Experiment& exper
 }
 
 }  // namespace
+
+std::string universal_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
 
 StoreLock::StoreLock(const std::filesystem::path& store, const std::string& failure)
     : descriptor_(open((store.string() + ".lock").c_str(), O_RDWR | O_CLOEXEC | O_CREAT, 0666)) {

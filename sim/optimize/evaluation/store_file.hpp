@@ -44,9 +44,9 @@ struct StoredExperiment {
 inline constexpr std::string_view another_writer = "another program is writing to it";
 
 /// The lock of the one program that writes to a store. The system releases it when the process ends, in any way.
-/// Readers do not need it. (SQLite's own locks exist only while it writes.) The lock is on a file beside the store,
-/// which remains: on a network file system a lock on the store itself would lock SQLite out. The file has the number of
-/// the process that was ready to write last.
+/// Readers do not need it. A sweep has such a lock, too, for its table. (SQLite's own locks exist only while it
+/// writes.) The lock is on a file beside the store, which remains: on a network file system a lock on the store itself
+/// would lock SQLite out. The file has the number of the process that was ready to write last.
 class StoreLock {
  public:
   /// Throws StoreError if another program has the lock, or if its file cannot be made. The message then says `failure`.
@@ -61,6 +61,9 @@ class StoreLock {
  private:
   int descriptor_;
 };
+
+/// The time now, as the files of results have it: ISO 8601, in universal time.
+[[nodiscard]] std::string universal_time();
 
 /// Whether a program writes to the store now. False for a store on a file system without such locks.
 [[nodiscard]] bool is_being_written(const std::filesystem::path& store);

@@ -79,8 +79,10 @@ struct SweepGroup {
 [[nodiscard]] std::vector<SweepGroup> group_runs(const Sweep& sweep, std::span<const SweepRun> runs,
                                                  sim::Measure measure);
 
-/// The head of the table of all runs: comments with the command, and with a hash of the scenario's files and of the
-/// program (result_key: tools/proleg/common/build_id.hpp); the names of the columns.
+/// SHA-256 over the files of the scenario, in their order, its algorithms and the program (result_key:
+/// tools/proleg/common/build_id.hpp).
+[[nodiscard]] std::string sweep_inputs(const Sweep& sweep, const std::string& result_key);
+/// The head of the table of all runs: comments with the command, and with sweep_inputs(); the names of the columns.
 [[nodiscard]] std::string sweep_head(const Sweep& sweep, const std::string& result_key);
 /// A line of that table: the swept values, all measures, the number of joints whose servos cannot follow, and why the
 /// run failed.
@@ -90,6 +92,16 @@ struct SweepGroup {
 /// damaged.
 [[nodiscard]] std::vector<SweepRun> read_sweep_table(const Sweep& sweep, const std::string& result_key,
                                                      const std::string& name, std::string_view text);
+/// Lines of a table before the first run.
+inline constexpr int sweep_head_lines = 3;
+
+struct SweepTable {
+  std::string inputs;  ///< sweep_inputs() of the sweep that has written it; empty: the table has no head yet
+  std::vector<SweepRun> runs;
+};
+/// The table of a sweep that may still write it, also with other files or by another program. sweep: its quantities;
+/// the scenario does not matter. Throws InputError if it is that of another sweep, or is damaged.
+[[nodiscard]] SweepTable look_at_sweep_table(const Sweep& sweep, const std::string& name, std::string_view text);
 /// A comment with the command; then a line for each group: the swept values without the seed, number of values, mean,
 /// standard deviation, minimum, maximum.
 [[nodiscard]] std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);

@@ -8,6 +8,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/sweep/sweep.hpp"
+#include "sim/optimize/sweep/sweep_request.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
@@ -243,6 +244,34 @@ void apply(const SweptQuantity& quantity, const std::string& value, sim::Scenari
   }
 }
 
+/// Throws InputError for a value that the scenario rejects. What needs the files read again is checked for some values,
+/// with the first and the last.
+void check_values(const sim::Scenario& scenario, const SweptQuantity& quantity) {
+  constexpr std::size_t most_with_files = 200;
+  const bool reads_files = quantity.kind == SweptQuantity::Kind::x || quantity.kind == SweptQuantity::Kind::y ||
+                           quantity.kind == SweptQuantity::Kind::heading;
+  const std::size_t step = reads_files ? std::max<std::size_t>(1, quantity.values.size() / most_with_files) : 1;
+  sim::Scenario trial = scenario;
+  for (std::size_t i = 0; i < quantity.values.size(); i += step) {
+    apply(quantity, quantity.values[i], trial);
+  }
+  apply(quantity, quantity.values.back(), trial);
+}
+
+void refuse_twice(const Sweep& sweep, const SweptQuantity& quantity) {
+  if (std::ranges::find(sweep.quantities, quantity.name, &SweptQuantity::name) != sweep.quantities.end()) {
+    refuse(quantity.argument, in_quotes(quantity.name) + " twice", "each quantity once");
+  }
+}
+
+void add_quantity(Sweep& sweep, SweptQuantity quantity) {
+  if (sweep.size() * quantity.values.size() > max_sweep_runs) {
+    refuse(quantity.argument, std::to_string(sweep.size() * quantity.values.size()) + " combinations or more",
+           "at most " + std::to_string(max_sweep_runs) + " runs");
+  }
+  sweep.quantities.push_back(std::move(quantity));
+}
+
 }  // namespace
 
 std::uint64_t Sweep::size() const {
@@ -278,22 +307,24 @@ Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> arguments,
   }
   for (const std::string& argument : arguments) {
     SweptQuantity quantity = read_quantity(argument);
-    if (std::ranges::find(sweep.quantities, quantity.name, &SweptQuantity::name) != sweep.quantities.end()) {
-      refuse(argument, in_quotes(quantity.name) + " twice", "each quantity once");
-    }
-    sim::Scenario trial = sweep.scenario;
-    for (const std::string& value : quantity.values) {
-      apply(quantity, value, trial);
-    }
+    refuse_twice(sweep, quantity);
+    check_values(sweep.scenario, quantity);
     refuse_second_value(sweep, quantity);
     if (quantity.kind == SweptQuantity::Kind::parameter) {
       quantity.unit = unit_text(target_of(sweep.scenario, quantity.name).unit);
     }
-    if (sweep.size() * quantity.values.size() > max_sweep_runs) {
-      refuse(argument, std::to_string(sweep.size() * quantity.values.size()) + " combinations or more",
-             "at most " + std::to_string(max_sweep_runs) + " runs");
-    }
-    sweep.quantities.push_back(std::move(quantity));
+    add_quantity(sweep, std::move(quantity));
+  }
+  return sweep;
+}
+
+Sweep sweep_without_scenario(const SweepRequest& request) {
+  Sweep sweep{{}, {}, request.settings};
+  for (std::size_t i = 0; i < request.over.size(); ++i) {
+    SweptQuantity quantity = read_quantity(request.over[i]);
+    quantity.unit = request.units[i];
+    refuse_twice(sweep, quantity);
+    add_quantity(sweep, std::move(quantity));
   }
   return sweep;
 }

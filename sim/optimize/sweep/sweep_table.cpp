@@ -1,6 +1,7 @@
 // The tables of a sweep, and how one that was interrupted is read again.
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,20 +17,32 @@
 namespace proleg::optimize {
 namespace {
 
+constexpr std::string_view inputs_comment = "# files and program ";
+
 std::string comment_on(const Sweep& sweep) { return "# " + one_line(command_of(sweep)) + "\n"; }
 
-/// SHA-256 over the files of the scenario, in their order, its algorithms and the program.
-std::string hash_of_inputs(const Sweep& sweep, const std::string& result_key) {
-  std::string text = result_key;
-  for (const sim::SourceFile& source : sweep.scenario.sources) {
-    text += sha256_hex(source.text);
+std::string column_titles(const Sweep& sweep) {
+  TableLine line;
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    line.add(with_unit(one_line(quantity.name), quantity.unit));
   }
-  for (const Slot& slot : sweep.scenario.kernel.slots) {
-    if (slot.algorithm != nullptr) {  // of a user: its library may have changed
-      text += " " + std::to_string(slot.algorithm->declaration().sources);
-    }
+  for (const sim::MeasureDeclaration& measure : sim::measures()) {
+    line.add(with_unit(measure.name, measure.unit));
   }
-  return sha256_hex(text);
+  line.add("limited_joints");
+  line.add("failure");
+  return line.finish();
+}
+
+/// Takes the next line from the text, without its end; nothing if it has none.
+std::optional<std::string_view> take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end + 1);
+  return line;
 }
 
 std::vector<std::string_view> cells_of(std::string_view line) {
@@ -44,29 +57,42 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
 }
 
+/// The positions of the values of each quantity.
+using ValuePlaces = std::vector<std::map<std::string_view, std::uint64_t>>;
+
+ValuePlaces places_of_values(const Sweep& sweep) {
+  ValuePlaces places;
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    auto& its = places.emplace_back();
+    for (std::size_t i = 0; i < quantity.values.size(); ++i) {
+      its.emplace(quantity.values[i], i);
+    }
+  }
+  return places;
+}
+
 /// The number of the combination with these values.
-std::optional<std::uint64_t> find_number(const Sweep& sweep, std::span<const std::string_view> values) {
+std::optional<std::uint64_t> find_number(const ValuePlaces& places, std::span<const std::string_view> values) {
   std::uint64_t number = 0;
-  for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
-    const std::vector<std::string>& known = sweep.quantities[i].values;
-    const auto found = std::ranges::find(known, values[i]);
-    if (found == known.end()) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto found = places[i].find(values[i]);
+    if (found == places[i].end()) {
       return std::nullopt;
     }
-    number = number * known.size() + static_cast<std::uint64_t>(found - known.begin());
+    number = number * places[i].size() + found->second;
   }
   return number;
 }
 
-std::optional<SweepRun> read_line(const Sweep& sweep, std::string_view line) {
+std::optional<SweepRun> read_line(const ValuePlaces& places, std::string_view line) {
   const std::vector<std::string_view> cells = cells_of(line);
-  const std::size_t swept = sweep.quantities.size();
+  const std::size_t swept = places.size();
   SweepRun run;
   const std::span<double> measures = run.result.measures.all();
   if (cells.size() != swept + measures.size() + 2) {
     return std::nullopt;
   }
-  const std::optional<std::uint64_t> number = find_number(sweep, cells);
+  const std::optional<std::uint64_t> number = find_number(places, cells);
   if (!number) {
     return std::nullopt;
   }
@@ -90,19 +116,41 @@ std::optional<SweepRun> read_line(const Sweep& sweep, std::string_view line) {
   return run;
 }
 
+/// The runs of the lines behind a head of so many.
+std::vector<SweepRun> read_lines(const Sweep& sweep, const std::string& name, int head, std::string_view text) {
+  const ValuePlaces places = places_of_values(sweep);
+  std::vector<SweepRun> runs;
+  std::set<std::uint64_t> numbers;
+  int number = head;
+  while (const std::optional<std::string_view> line = take_line(text)) {
+    ++number;
+    std::optional<SweepRun> run = read_line(places, *line);
+    if (!run || !numbers.insert(run->number).second) {
+      throw InputError(name, number, "a line that this command has not written", "one line for each run");
+    }
+    runs.push_back(std::move(*run));
+  }
+  return runs;  // without a line that was being written
+}
+
 }  // namespace
 
+std::string sweep_inputs(const Sweep& sweep, const std::string& result_key) {
+  std::string text = result_key;
+  for (const sim::SourceFile& source : sweep.scenario.sources) {
+    text += sha256_hex(source.text);
+  }
+  for (const Slot& slot : sweep.scenario.kernel.slots) {
+    if (slot.algorithm != nullptr) {  // of a user: its library may have changed
+      text += " " + std::to_string(slot.algorithm->declaration().sources);
+    }
+  }
+  return sha256_hex(text);
+}
+
 std::string sweep_head(const Sweep& sweep, const std::string& result_key) {
-  TableLine line;
-  for (const SweptQuantity& quantity : sweep.quantities) {
-    line.add(with_unit(one_line(quantity.name), quantity.unit));
-  }
-  for (const sim::MeasureDeclaration& measure : sim::measures()) {
-    line.add(with_unit(measure.name, measure.unit));
-  }
-  line.add("limited_joints");
-  line.add("failure");
-  return comment_on(sweep) + "# files and program " + hash_of_inputs(sweep, result_key) + "\n" + line.finish();
+  return comment_on(sweep) + std::string(inputs_comment) + sweep_inputs(sweep, result_key) + "\n" +
+         column_titles(sweep);
 }
 
 std::string sweep_line(const Sweep& sweep, const SweepRun& run) {
@@ -123,34 +171,43 @@ std::vector<SweepRun> read_sweep_table(const Sweep& sweep, const std::string& re
                                        std::string_view text) {
   const std::string head = sweep_head(sweep, result_key);
   std::string_view expected = head;
-  std::vector<SweepRun> runs;
-  std::set<std::uint64_t> numbers;
-  for (int number = 1;; ++number) {
-    const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos) {
-      if (!expected.empty()) {
-        throw InputError(name, number, "the end of the table", "the head of a table that this command has written");
-      }
-      return runs;  // the rest of a line that was being written
+  int number = 0;
+  while (const std::optional<std::string_view> wanted = take_line(expected)) {
+    ++number;
+    const std::optional<std::string_view> line = take_line(text);
+    if (!line) {
+      throw InputError(name, number, "the end of the table", "the head of a table that this command has written");
     }
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end + 1);
-    if (!expected.empty()) {
-      const std::string_view wanted = expected.substr(0, expected.find('\n'));
-      expected.remove_prefix(wanted.size() + 1);
-      if (line != wanted) {
-        throw InputError(name, number, number == 2 ? "results of other files or of another program" : in_quotes(line),
-                         number == 2 ? "those of the scenario and the program of the interrupted sweep"
-                                     : in_quotes(wanted) + ": the command of the interrupted sweep");
-      }
-      continue;
+    if (*line != *wanted) {
+      throw InputError(name, number, number == 2 ? "results of other files or of another program" : in_quotes(*line),
+                       number == 2 ? "those of the scenario and the program of the interrupted sweep"
+                                   : in_quotes(*wanted) + ": the command of the interrupted sweep");
     }
-    std::optional<SweepRun> run = read_line(sweep, line);
-    if (!run || !numbers.insert(run->number).second) {
-      throw InputError(name, number, "a line that this command has not written", "one line for each run");
-    }
-    runs.push_back(std::move(*run));
   }
+  return read_lines(sweep, name, number, text);
+}
+
+SweepTable look_at_sweep_table(const Sweep& sweep, const std::string& name, std::string_view text) {
+  SweepTable table;
+  const std::string titles = column_titles(sweep);
+  for (int number = 1; number <= sweep_head_lines; ++number) {
+    const std::optional<std::string_view> line = take_line(text);
+    if (!line) {
+      return table;  // it is being written
+    }
+    const bool is_expected = number == 1   ? line->starts_with("# ")
+                             : number == 2 ? line->starts_with(inputs_comment)
+                                           : *line == std::string_view(titles).substr(0, titles.size() - 1);
+    if (!is_expected) {
+      throw InputError(name, number, in_quotes(one_line(shortened(*line))),
+                       "the head of a table of this sweep and version");
+    }
+    if (number == 2) {
+      table.inputs = line->substr(inputs_comment.size());
+    }
+  }
+  table.runs = read_lines(sweep, name, sweep_head_lines, text);
+  return table;
 }
 
 std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure) {

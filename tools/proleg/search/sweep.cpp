@@ -31,6 +31,7 @@
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/search/sweep_claim.hpp"
 
 namespace {
 
@@ -62,6 +63,7 @@ struct SweepResult {
   std::uint64_t resumed = 0;                ///< runs of the interrupted sweep
   std::uint32_t workers = 0;
   double wall_s = 0.0;
+  bool is_stopped = false;  ///< by Control-C or by another program
 };
 
 sim::Measure read_measure(const std::string& name) {
@@ -71,7 +73,7 @@ sim::Measure read_measure(const std::string& name) {
   throw InputError("--measure", 0, in_quotes(name), "one of " + listed(sim::measure_names()));
 }
 
-constexpr std::array<std::string_view, 3> result_files{"sweep.tsv", "summary.tsv", "sweep.svg"};
+constexpr std::array<std::string_view, 3> result_files{optimize::sweep_table_name, "summary.tsv", "sweep.svg"};
 
 /// The table of all runs. It gets a line when a run ends, so a process that is killed loses no other run.
 class GrowingTable {
@@ -176,7 +178,29 @@ void count_runs(SweepResult& result) {
   }
 }
 
-SweepResult run(const Sweep& sweep, std::uint32_t worker_count, std::vector<SweepRun> earlier, GrowingTable& table) {
+/// The request in the folder of the results, from which `--resume` and the page go on.
+optimize::SweepRequest request_of(const SweepOptions& options, const Sweep& sweep,
+                                  const std::filesystem::path& folder) {
+  const std::filesystem::path here = std::filesystem::current_path();
+  const std::filesystem::path place = here.lexically_relative(std::filesystem::weakly_canonical(folder));
+  const bool is_inside = !place.empty() && *place.begin() != "..";
+  optimize::SweepRequest request{optimize::universal_time(),
+                                 is_inside ? place.string() : here.string(),
+                                 options.scenario.file,
+                                 options.measure,
+                                 options.over,
+                                 {},
+                                 options.scenario.settings,
+                                 options.scenario.seconds,
+                                 options.scenario.overrides};
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    request.units.push_back(quantity.unit);
+  }
+  return request;
+}
+
+SweepResult run(const Sweep& sweep, std::uint32_t worker_count, std::vector<SweepRun> earlier, GrowingTable& table,
+                const SweepClaim& claim) {
   optimize::Experiment experiment;  // the workers take their time limit from it
   experiment.scenario.duration_s = sweep.scenario.duration_s;
   optimize::LocalWorkers workers(
@@ -194,9 +218,13 @@ SweepResult run(const Sweep& sweep, std::uint32_t worker_count, std::vector<Swee
     progress.show(runs.size());
   };
   SweepResult result;
+  const auto stops = [&] {
+    result.is_stopped = result.is_stopped || interrupted() || claim.is_stop_requested();
+    return result.is_stopped;
+  };
   result.resumed = earlier.size();
   const auto start = std::chrono::steady_clock::now();
-  result.runs = optimize::run_sweep(sweep, workers, std::move(earlier), interrupted, show);
+  result.runs = optimize::run_sweep(sweep, workers, std::move(earlier), stops, show);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.workers = workers.count();
   count_runs(result);
@@ -341,17 +369,18 @@ int sweep(const SweepOptions& options) {
   const std::filesystem::path folder = result_folder(options);
   static_cast<void>(sim::Simulation(sweep.scenario));  // an engine without the features of the world refuses it now
   catch_interrupts();
-  const ResultFolder claim(folder, {});
+  const ResultFolder result_claim(folder, {});
   std::vector<SweepRun> earlier;
   if (options.resume) {
     earlier = interrupted_runs(sweep, folder / result_files[0]);
   } else {
     require_no_results(folder);
   }
+  const SweepClaim claim(folder, request_of(options, sweep, folder), options.resume.has_value());
   GrowingTable table(sweep, folder / result_files[0], options.resume.has_value(), earlier.size());
   print_warnings("proleg sweep", sweep.scenario);
   warn_of_equal_runs(sweep);
-  SweepResult result = run(sweep, worker_count, std::move(earlier), table);
+  SweepResult result = run(sweep, worker_count, std::move(earlier), table, claim);
   if (result.runs.empty()) {
     std::cerr << "proleg sweep: interrupted before the first run of " << sweep.size()
               << " ended; nothing was written\n";
@@ -368,7 +397,7 @@ int sweep(const SweepOptions& options) {
     print_table(sweep, measure, result);
   }
   warn_of_limited_servos(sweep, result);
-  if (interrupted()) {
+  if (result.is_stopped) {
     std::cerr << "proleg sweep: interrupted after " << result.runs.size() << " of " << sweep.size()
               << " runs; they are in " << (folder / "sweep.tsv").string() << "; the same command with --resume "
               << folder.string() << " continues it\n";

@@ -11,6 +11,7 @@
 
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/optimize/sweep/sweep_request.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tests/support/files.hpp"
@@ -353,6 +354,69 @@ TEST(SweepTable, OfAnotherSweepOrADamagedOneIsRefused) {
     other[i] = 'x';
     const std::string message = table_refusal(head + line + other);
     EXPECT_TRUE(message == damaged || i + 1 == line.size()) << i;
+  }
+}
+
+TEST(SweepTable, CanBeLookedAtWithoutItsScenario) {
+  const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=3:4"});
+  const std::string head = sweep_head(sweep, "key");
+  const std::string line = sweep_line(sweep, run_with(2, 1.5));
+  SweepRequest request;
+  request.over = {"amplitude=10:20:10", "seed=3:4"};
+  request.units = {sweep.quantities[0].unit, ""};
+  const Sweep outline = sweep_without_scenario(request);
+  EXPECT_EQ(outline.size(), 4U);
+  const SweepTable table = look_at_sweep_table(outline, "t.tsv", head + line + "10\t3");
+  EXPECT_EQ(table.inputs, sweep_inputs(sweep, "key"));
+  ASSERT_EQ(table.runs.size(), 1U);
+  EXPECT_EQ(sweep_line(outline, table.runs[0]), line);
+  EXPECT_TRUE(look_at_sweep_table(outline, "t.tsv", "").runs.empty());
+  EXPECT_TRUE(look_at_sweep_table(outline, "t.tsv", head.substr(0, head.size() - 1)).runs.empty())
+      << "the head is being written";
+  const auto look_refusal = [&](const std::string& text) {
+    return message_of<InputError>([&] { static_cast<void>(look_at_sweep_table(outline, "t.tsv", text)); });
+  };
+  EXPECT_EQ(look_refusal("x" + head).substr(0, 16), "t.tsv:1: found '");
+  EXPECT_EQ(look_refusal(sweep_head(sweep_over({"frequency=1", "seed=3:4"}), "key")).substr(0, 16), "t.tsv:3: found '");
+  EXPECT_EQ(look_refusal(head + line + line),
+            "t.tsv:5: found a line that this command has not written, expected one line for each run");
+}
+
+TEST(SweepRequest, IsReadAsItWasWritten) {
+  SweepRequest request;
+  request.started = "2026-11-28T10:40:00Z";
+  request.folder = "/home/me/a b";
+  request.scenario = "x.simulation.xml";
+  request.measure = "speed";
+  request.over = {"amplitude=10:20:10", "seed=1:2"};
+  request.units = {"deg", ""};
+  request.settings = {"frequency=1"};
+  request.seconds = "2";
+  request.overrides.engine = "reduced";
+  const std::string text = sweep_request_text(request);
+  const SweepRequest read = read_sweep_request("options.tsv", text);
+  EXPECT_EQ(sweep_request_text(read), text);
+  EXPECT_EQ(words_of(read), (std::vector<std::string>{"x.simulation.xml", "--measure", "speed", "--over",
+                                                      "amplitude=10:20:10", "--over", "seed=1:2", "--set",
+                                                      "frequency=1", "--seconds", "2", "--engine", "reduced"}));
+}
+
+TEST(SweepRequest, OfAnotherVersionOrADamagedOneIsRefused) {
+  SweepRequest request;
+  request.scenario = "x.simulation.xml";
+  request.measure = "speed";
+  request.over = {"amplitude=10:20:10"};
+  request.units = {"deg"};
+  const std::string text = sweep_request_text(request);
+  const auto request_refusal = [](const std::string& changed) {
+    return message_of<InputError>([&] { static_cast<void>(read_sweep_request("options.tsv", changed)); });
+  };
+  EXPECT_EQ(request_refusal(text), "");
+  EXPECT_NE(request_refusal(""), "");
+  EXPECT_EQ(request_refusal("format\tproleg sweep 2\n").substr(0, 22), "options.tsv:1: found '");
+  EXPECT_NE(request_refusal(text + "other\t1\n"), "");
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    EXPECT_NE(request_refusal(text.substr(0, size)), "") << size;
   }
 }
 

@@ -29,6 +29,8 @@ void SessionRouter::operate(const host::OperationRequest& request) {
     algorithms_.operate(request);
   } else if (request.name.starts_with(search_operations)) {
     searches_.operate(request);
+  } else if (request.name.starts_with(sweep_operations)) {
+    sweeps_.operate(request);
   } else if (request.name.starts_with(module_operations)) {
     modules_.operate(request);
   } else if (request.name.starts_with(remote_operations)) {

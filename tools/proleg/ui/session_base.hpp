@@ -120,23 +120,26 @@ inline constexpr std::string_view behaviour_operations = "behaviour.";
 inline constexpr std::string_view gallery_operations = "gallery.";
 inline constexpr std::string_view mesh_operations = "mesh.";
 inline constexpr std::string_view search_operations = "search.";
+inline constexpr std::string_view sweep_operations = "sweep.";
 inline constexpr std::string_view module_operations = "modules.";
 
 /// The sessions behind one page: a robot, its remote control, recordings, a draft, meshes for it, the list of what can
-/// be opened, algorithms, searches, and modules on a table. The name of an operation says which of them it is for; STOP
-/// and the holder of control go to the robot, then to the modules and the remote control.
+/// be opened, algorithms, searches, sweeps, and modules on a table. The name of an operation says which of them it is
+/// for; STOP and the holder of control go to the robot, then to the modules and the remote control.
 class SessionRouter final : public host::RobotSession {
  public:
   /// All must outlive the router.
   SessionRouter(host::RobotSession& recordings, host::RobotSession& draft, host::RobotSession& meshes,
                 host::RobotSession& gallery, host::RobotSession& algorithms, host::RobotSession& searches,
-                host::RobotSession& modules, host::RobotSession& remote, host::RobotSession& robot)
+                host::RobotSession& sweeps, host::RobotSession& modules, host::RobotSession& remote,
+                host::RobotSession& robot)
       : recordings_(recordings),
         draft_(draft),
         meshes_(meshes),
         gallery_(gallery),
         algorithms_(algorithms),
         searches_(searches),
+        sweeps_(sweeps),
         modules_(modules),
         remote_(remote),
         robot_(robot) {}
@@ -152,6 +155,7 @@ class SessionRouter final : public host::RobotSession {
   host::RobotSession& gallery_;
   host::RobotSession& algorithms_;
   host::RobotSession& searches_;
+  host::RobotSession& sweeps_;
   host::RobotSession& modules_;
   host::RobotSession& remote_;
   host::RobotSession& robot_;

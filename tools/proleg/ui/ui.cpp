@@ -50,6 +50,7 @@
 #include "tools/proleg/ui/seat_input.hpp"
 #include "tools/proleg/ui/shipped_scenarios.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
+#include "tools/proleg/ui/sweep_session.hpp"
 
 namespace {
 
@@ -378,8 +379,8 @@ int serve(UiOptions& options) {
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
-        AlgorithmSession::free_operations(), SearchSession::free_operations(), ModulesSession::free_operations(),
-        RemoteSession::free_operations()}) {
+        AlgorithmSession::free_operations(), SearchSession::free_operations(), SweepSession::free_operations(),
+        ModulesSession::free_operations(), RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -395,13 +396,14 @@ int serve(UiOptions& options) {
   SessionRequests gallery_requests;
   SessionRequests algorithm_requests;
   SessionRequests search_requests;
+  SessionRequests sweep_requests;
   SessionRequests module_requests;
   SessionRequests requests;
   RemoteSession remote(
       requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
       options.seat && !options.seat->is_teacher ? RemoteSession::no_devices : RemoteSession::kernel_devices);
   SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests,
-                       search_requests, module_requests, remote, requests);
+                       search_requests, sweep_requests, module_requests, remote, requests);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RecentFiles recent(options.seat ? std::nullopt : recent_list_path());
@@ -418,6 +420,7 @@ int serve(UiOptions& options) {
       draft_requests, present_draft, page);
   const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
   const SearchSession searches({recordings.folder}, project_files, present_draft, search_requests, page);
+  const SweepSession sweeps({recordings.folder}, present_draft, sweep_requests, page);
   const RemoteThread remote_thread(remote, page);
   BusSharing sharing;
   std::optional<RobotBus> robot_bus;

@@ -14,10 +14,11 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   SessionRequests gallery;
   SessionRequests algorithms;
   SessionRequests searches;
+  SessionRequests sweeps;
   SessionRequests modules;
   SessionRequests remote;
   SessionRequests robot;
-  SessionRouter router(recordings, draft, meshes, gallery, algorithms, searches, modules, remote, robot);
+  SessionRouter router(recordings, draft, meshes, gallery, algorithms, searches, sweeps, modules, remote, robot);
   router.operate({1, "recording.list", nlohmann::json::object(), 1, "a test"});
   router.operate({2, "set", nlohmann::json::object(), 1, "a test"});
   router.operate({3, "remote.watch", nlohmann::json::object(), 1, "a test"});
@@ -29,6 +30,8 @@ TEST(SessionRouter, EachSessionGetsItsOwn) {
   router.operate({9, "search.open", nlohmann::json::object(), 1, "a test"});
   router.operate({10, "modules.scan", nlohmann::json::object(), 1, "a test"});
   router.holder_changed(true, false);
+  router.operate({11, "sweep.open", nlohmann::json::object(), 1, "a test"});
+  EXPECT_EQ(sweeps.take_operation()->request, 11U);
   EXPECT_EQ(modules.take_operation()->request, 10U);
   EXPECT_EQ(searches.take_operation()->request, 9U);
   EXPECT_EQ(meshes.take_operation()->request, 8U);

@@ -19,6 +19,7 @@ const tests = join(room, '../../tests/host/page');
 const largestFirstChunk = 40 * 1024;
 const largestMake = 60 * 1024; // the page Make
 const largestSearch = 30 * 1024; // the part Search of Make
+const largestSweep = 12 * 1024; // the sweeps in it
 const largestModules = 30 * 1024; // the page Modules
 const largestEditor = 150 * 1024; // of sources, with CodeMirror
 const largestClass = 40 * 1024; // the page of a class with all that it loads
@@ -89,6 +90,7 @@ function checkSizes(folder, first, ofClass) {
   let compressedClass = 0;
   let compressedMake = 0;
   let compressedSearch = 0;
+  let compressedSweep = 0;
   let compressedModules = 0;
   let compressedEditor = 0;
   for (const name of readdirSync(folder).sort()) {
@@ -100,6 +102,7 @@ function checkSizes(folder, first, ofClass) {
     compressedClass += ofClass.has(name) ? size : 0;
     compressedMake += name.startsWith('chunk-make_page-') ? size : 0;
     compressedSearch += name.startsWith('chunk-search_part-') ? size : 0;
+    compressedSweep += name.startsWith('chunk-sweep_part-') ? size : 0;
     compressedModules += name.startsWith('chunk-modules_page-') ? size : 0;
     compressedEditor += name.startsWith('chunk-code_mirror-') ? size : 0;
     print(name + (first.has(name) ? ' (first)' : ''), bytes.length, size);
@@ -114,6 +117,7 @@ function checkSizes(folder, first, ofClass) {
     ['the page of a class', compressedClass, largestClass],
     ['the page Make', compressedMake, largestMake],
     ['the part Search', compressedSearch, largestSearch],
+    ['the sweeps', compressedSweep, largestSweep],
     ['the page Modules', compressedModules, largestModules],
     ['the editor of sources', compressedEditor, largestEditor],
     ['the page', compressed, largestPage],

@@ -93,6 +93,7 @@ export class MakeApp {
       draftRobot: this.view.state.robot,
       isSearchShown: computed(() => page.shownPage.value === 'make' && this.part.value === 'search' && page.state.isConnected.value),
       chosenSearch: signal<string | null>(null),
+      chosenSweep: signal<string | null>(null),
       motion: this.view.wantedMotion,
       obstacle: () => this.obstacle(),
       setValues: (words, label) => this.changes.change('behaviour.values', { words, label }),

@@ -23,6 +23,8 @@ import { WorldPart } from './world_part.js';
 // The part Search is loaded when it is first shown.
 const searchPart = loadLater<SearchHost>(() => import('./search/search_part.js').then((module) => module.SearchPart));
 const chosenSearch = loadLater<SearchHost>(() => import('./search/search_part.js').then((module) => module.ChosenSearchView));
+const sweepPart = loadLater<SearchHost>(() => import('./sweep/sweep_part.js').then((module) => module.SweepPart));
+const chosenSweep = loadLater<SearchHost>(() => import('./sweep/sweep_part.js').then((module) => module.ChosenSweepView));
 
 let make: MakeApp | null = null; // the only one of the page; it stays when another page is shown
 
@@ -190,7 +192,12 @@ function Part({ app }: { app: MakeApp }) {
     case 'world':
       return <WorldPart app={app} />;
     case 'search':
-      return <LaterView app={app.search} part={searchPart()} wait="Loading …" />;
+      return (
+        <>
+          <LaterView app={app.search} part={searchPart()} wait="Loading …" />
+          <LaterView app={app.search} part={sweepPart()} wait="" />
+        </>
+      );
     case 'run':
       return (
         <section class="panel make-panel" aria-label="Run">
@@ -252,8 +259,8 @@ export function MakePage({ app: page }: { app: MakeStores }) {
         </div>
       ))}
       <div class="make-main">
-        {app.part.value === 'search' && app.search.chosenSearch.value !== null ? (
-          <LaterView app={app.search} part={chosenSearch()} wait="Loading …" />
+        {app.part.value === 'search' && (app.search.chosenSearch.value !== null || app.search.chosenSweep.value !== null) ? (
+          <LaterView app={app.search} part={app.search.chosenSweep.value === null ? chosenSearch() : chosenSweep()} wait="Loading …" />
         ) : (
           <section class="panel make-maps" aria-label="Maps">
             <WorldMap app={app} plane="top" />

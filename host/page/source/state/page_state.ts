@@ -29,6 +29,7 @@ import type {
   RobotDocument,
   SearchesDocument,
   SearchMethodsDocument,
+  SweepsDocument,
   SeatDocument,
   ServerMessage,
   SessionDocument,
@@ -87,6 +88,7 @@ export class PageState {
   // Searches for a gait; null until somebody has looked.
   readonly searches = signal<SearchesDocument | null>(null);
   readonly searchMethods = signal<SearchMethodsDocument | null>(null);
+  readonly sweeps = signal<SweepsDocument | null>(null);
   // Modules on a bus, and the last job with them.
   readonly modules = signal<ModulesDocument | null>(null);
   readonly moduleJob = signal<ModuleJob | null>(null);
@@ -223,6 +225,9 @@ export class PageState {
           break;
         case 'search_methods':
           this.searchMethods.value = message.value;
+          break;
+        case 'sweeps':
+          this.sweeps.value = message.value;
           break;
         case 'modules':
           this.modules.value = message.value;

@@ -23,12 +23,14 @@ import type { ClassDocument, ClassOperations } from './class_messages.js';
 import type { ModuleJob, ModuleOperations, ModulesDocument } from './module_messages.js';
 import type { InternalValue, Parameter, PoseArray } from './robot_messages.js';
 import type { Experiment, SearchEngine, SearchesDocument, SearchMethodsDocument } from './search_messages.js';
+import type { SweepForm, SweepsDocument } from './sweep_messages.js';
 
 export type * from './class_messages.js';
 export type * from './make_messages.js';
 export type * from './module_messages.js';
 export type * from './robot_messages.js';
 export type * from './search_messages.js';
+export type * from './sweep_messages.js';
 
 export const protocol = 1;
 
@@ -302,6 +304,7 @@ export interface Documents {
   missing_algorithms: MissingAlgorithms | null;
   searches: SearchesDocument;
   search_methods: SearchMethodsDocument;
+  sweeps: SweepsDocument;
   draft: DraftDocument | null; // null: there is no scenario
   draft_robot: RobotDocument;
   draft_meshes: Mesh[];
@@ -465,6 +468,16 @@ export interface Operations extends ClassOperations, ModuleOperations {
   'search.start': { name: string; engine: SearchEngine; workers: number } & ({ experiment: Experiment } | { file: string });
   'search.stop': { name: string };
   'search.resume': { name: string; evaluations: string; workers: number };
+  'sweep.refresh': Record<string, never>;
+  'sweep.open': { name: string };
+  'sweep.cells': { name: string; measure: string | null; from: number };
+  'sweep.cell': { name: string; cell: number };
+  'sweep.motion': { name: string; cell: number };
+  'sweep.check': SweepForm;
+  'sweep.estimate': SweepForm;
+  'sweep.start': SweepForm & { name: string };
+  'sweep.stop': { name: string };
+  'sweep.resume': { name: string; workers: number };
   'control.take': Record<string, never>;
   'control.answer': { grant: boolean };
   'control.release': Record<string, never>;

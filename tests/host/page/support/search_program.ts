@@ -121,6 +121,7 @@ export class SearchProgram {
   readonly draftRobot = pageSignal<RobotDocument | null>({ joints: [{}, {}, {}, {}, {}] } as unknown as RobotDocument);
   readonly isShown = pageSignal(true); // the part is in front, and there is a connection
   readonly chosen = pageSignal<string | null>(null);
+  readonly chosenSweep = pageSignal<string | null>(null);
   readonly motion = pageSignal<MotionPair | null>(null);
   readonly applied: { words: readonly string[]; label: string }[] = [];
   refusal: string | null = null; // of a change of the draft
@@ -143,6 +144,7 @@ export class SearchProgram {
       draftRobot: this.draftRobot,
       isSearchShown: this.isShown,
       chosenSearch: this.chosen,
+      chosenSweep: this.chosenSweep,
       motion: this.motion,
       obstacle: () => (this.drives ? null : 'Take control first (C).'),
       setValues: (words: readonly string[], label: string) => {

@@ -1,58 +1,9 @@
 // The chosen candidate: its values beside those of the draft, its measures, and the way into the draft.
 import type { Measure, SearchCandidate } from '../../wire/messages.js';
+import { CandidateValues } from './candidate_values.js';
 import type { ChosenSearch } from './chosen_search.js';
 import type { SearchApp } from './search_app.js';
 import { candidateRemarks, withUnit } from './search_text.js';
-import { wordValues } from './word_values.js';
-
-function Values({ app, candidate }: { app: SearchApp; candidate: SearchCandidate }) {
-  const draft = app.host.draft.value;
-  const { algorithms } = app.host.page.state;
-  if (draft === null) return null;
-  const values = wordValues(candidate.words, draft, algorithms.value);
-  const isApplied = values.length > 0 && values.every(({ isSame }) => isSame);
-  const obstacle = app.host.obstacle();
-  return (
-    <>
-      <div class="table-frame">
-        <table data-testid="candidate-values">
-          <thead>
-            <tr>
-              <th scope="col">value</th>
-              <th scope="col">candidate</th>
-              <th scope="col">draft</th>
-              <th scope="col">unit</th>
-            </tr>
-          </thead>
-          <tbody>
-            {values.map(({ name, unit, candidate: value, draft: present, isSame }) => (
-              <tr key={name} class={isSame ? '' : 'differs'}>
-                <th scope="row">{name}</th>
-                <td>{value}</td>
-                <td>{present === '' ? '–' : present}</td>
-                <td>{unit}</td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      </div>
-      <div class="fields">
-        <button
-          type="button"
-          class="primary"
-          disabled={obstacle !== null || isApplied}
-          title={obstacle ?? (isApplied ? 'The draft has these values.' : 'Puts these values into the draft, as one change that can be undone')}
-          onClick={() => void app.apply()}
-        >
-          Apply
-        </button>
-        <span class="hint" role="status">
-          {isApplied ? 'The draft has these values. Save … shows the lines that change.' : ''}
-        </span>
-      </div>
-    </>
-  );
-}
 
 function Measures({ candidate, measures }: { candidate: SearchCandidate; measures: readonly Measure[] }) {
   const known = Object.entries(candidate.measures).filter(([, value]) => value !== null);
@@ -137,7 +88,7 @@ export function CandidateView({ app, chosen }: { app: SearchApp; chosen: ChosenS
               {remark}
             </p>
           ))}
-          <Values app={app} candidate={candidate} />
+          <CandidateValues host={app.host} what="candidate" words={candidate.words} apply={() => void app.apply()} />
           {candidate.failure === null && <Confirmation app={app} chosen={chosen} />}
           <Measures candidate={candidate} measures={app.host.page.state.searchMethods.value?.measures ?? []} />
         </>

@@ -176,7 +176,11 @@ export function ChosenSearchView({ app: host }: { app: SearchHost }) {
           <CandidateTable chosen={chosen} opened={opened} rows={rows} ranking={ranking} />
         </>
       )}
-      <MotionControls app={app} />
+      <MotionControls
+        app={app}
+        what={chosen.number.value === null ? null : `candidate ${chosen.number.value}`}
+        hint="Choose a candidate: the 3D view shows how it moves beside the present gait."
+      />
     </section>
   );
 }

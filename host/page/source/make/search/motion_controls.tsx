@@ -46,11 +46,11 @@ function Controls({ motion }: { motion: MotionPair }) {
   );
 }
 
-export function MotionControls({ app }: { app: SearchApp }) {
+// what: that moves beside the present gait; null: nothing is chosen.
+export function MotionControls({ app, what, hint }: { app: SearchApp; what: string | null; hint: string }) {
   const motion = app.host.motion.value;
-  const number = app.chosen.value?.number.value ?? null;
   const problem = app.motions.problem.value;
-  if (number === null) return <p class="hint">Choose a candidate: the 3D view shows how it moves beside the present gait.</p>;
+  if (what === null) return <p class="hint">{hint}</p>;
   return (
     <div class="fields" role="group" aria-label="Motion" data-testid="motion">
       {problem !== null ? (
@@ -63,7 +63,7 @@ export function MotionControls({ app }: { app: SearchApp }) {
         <>
           <Controls motion={motion} />
           <span class="hint">
-            The present gait, and <i class="mark ghost" /> candidate {number} translucent{app.motions.isWaiting.value ? ' (computing …)' : ''}
+            The present gait, and <i class="mark ghost" /> {what} translucent{app.motions.isWaiting.value ? ' (computing …)' : ''}
           </span>
         </>
       )}

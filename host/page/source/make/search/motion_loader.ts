@@ -8,13 +8,8 @@ import type { SearchHost } from './search_host.js';
 
 const delay = 200; // milliseconds
 
-// A candidate whose motion is wanted, and the number of joints of its robot.
-export interface WantedMotion {
-  name: string;
-  run: number;
-  number: number;
-  joints: number;
-}
+// A candidate of a search or a cell of a sweep whose motion is wanted, and the number of joints of its robot.
+export type WantedMotion = { name: string; joints: number } & ({ run: number; number: number } | { cell: number });
 
 export class MotionLoader {
   // Why nothing is played; null: it is, or comes.
@@ -26,9 +21,10 @@ export class MotionLoader {
   readonly isWaiting = computed(() => this.wanted.value !== null && (this.candidates.isWaiting.value || this.drafts.isWaiting.value));
   private readonly wanted = signal<WantedMotion | null>(null);
   private readonly otherRobot = computed(() => {
-    const [joints, own] = [this.wanted.value?.joints, this.host.draftRobot.value?.joints.length];
-    if (joints === undefined || own === undefined || joints === own) return null;
-    return `The robot of this search has ${joints} joints, that of the draft ${own}: they are not shown together.`;
+    const wanted = this.wanted.value;
+    const [joints, own] = [wanted?.joints, this.host.draftRobot.value?.joints.length];
+    if (wanted === null || joints === undefined || own === undefined || joints === own) return null;
+    return `The robot of this ${'cell' in wanted ? 'sweep' : 'search'} has ${joints} joints, that of the draft ${own}: they are not shown together.`;
   });
   private readonly candidates: NewestAnswer<WantedMotion, Motion>;
   private readonly drafts: NewestAnswer<DraftDocument, Motion>;
@@ -38,9 +34,11 @@ export class MotionLoader {
     private readonly host: SearchHost,
     after: (ms: number, action: () => void) => void,
   ) {
-    const ask = async (words: Operations['search.motion']) => decodeMotion((await host.page.operations.ask('search.motion', words)) as ArrayBuffer);
-    this.candidates = new NewestAnswer(({ name, run, number }) => ask({ name, run, number }), after, 0);
-    this.drafts = new NewestAnswer(() => ask({}), after, delay);
+    const { operations } = host.page;
+    const askSearch = async (words: Operations['search.motion']) => decodeMotion((await operations.ask('search.motion', words)) as ArrayBuffer);
+    const askSweep = async (words: Operations['sweep.motion']) => decodeMotion((await operations.ask('sweep.motion', words)) as ArrayBuffer);
+    this.candidates = new NewestAnswer((wanted) => ('cell' in wanted ? askSweep({ name: wanted.name, cell: wanted.cell }) : askSearch({ name: wanted.name, run: wanted.run, number: wanted.number })), after, 0);
+    this.drafts = new NewestAnswer(() => askSearch({}), after, delay);
     // The draft moves otherwise after each change. What was refused is asked again when the part is shown again.
     effect(() => {
       const draft = this.host.draft.value;

@@ -2,7 +2,7 @@
 import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { onFrame } from '../../view/frame_clock.js';
 import { ChosenSearch } from './chosen_search.js';
-import { MotionLoader } from './motion_loader.js';
+import { MotionLoader, type WantedMotion } from './motion_loader.js';
 import { NewSearch } from './new_search.js';
 import type { SearchHost } from './search_host.js';
 
@@ -27,6 +27,7 @@ export class SearchApp {
   readonly form: NewSearch;
   readonly motions: MotionLoader;
   readonly chosen = signal<ChosenSearch | null>(null);
+  readonly otherMotion = signal<WantedMotion | null>(null); // of a sweep, while no candidate is chosen
   readonly problem = signal<string | null>(null); // of what was asked of the chosen search
   readonly entries = computed(() => this.host.page.state.searches.value?.searches ?? []);
   readonly entry = computed(() => this.entries.value.find(({ name }) => name === this.host.chosenSearch.value));
@@ -54,7 +55,7 @@ export class SearchApp {
       const opened = chosen?.opened.value ?? null;
       const number = chosen?.number.value ?? null;
       const run = chosen?.run.value ?? 0;
-      const wanted = chosen === null || opened === null || number === null ? null : { name: chosen.name, run, number, joints: opened.joints };
+      const wanted = chosen === null || opened === null || number === null ? this.otherMotion.value : { name: chosen.name, run, number, joints: opened.joints };
       untracked(() => this.motions.want(wanted));
     });
     // What can be in the form is known only now.

@@ -10,6 +10,7 @@ export interface SearchHost {
   readonly draftRobot: ReadonlySignal<RobotDocument | null>;
   readonly isSearchShown: ReadonlySignal<boolean>; // the part is in front, and the program is connected
   readonly chosenSearch: Signal<string | null>; // its name
+  readonly chosenSweep: Signal<string | null>; // its name; then no search is chosen
   readonly motion: Signal<MotionPair | null>; // what the 3D view plays
   // The reason why nothing can be changed; null: it can.
   obstacle(): string | null;

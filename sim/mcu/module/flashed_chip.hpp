@@ -16,7 +16,8 @@
 namespace proleg::sim {
 
 struct FlashedChip {
-  /// The bootloader in its place, and slot A with its status words. It has no settings, so it is the same for each chip.
+  /// The bootloader in its place, and slot A with its status words. It has no settings, so it is the same for each
+  /// chip.
   FlashContents flash;
   std::size_t image_size = 0;  ///< bytes, with the header
   BusTime flash_time = 0;      ///< from power on of a chip without a program until the program has confirmed itself

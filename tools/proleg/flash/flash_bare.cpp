@@ -227,9 +227,10 @@ void print_end(const BarePlan& plan) {
     std::cout << "options  brown-out level 3, sectors 0 and 1 write-protected\n";
     return;
   }
-  std::cout << "options  not set: brown-out level and write protection of sectors 0 and 1 are as they were. The same command "
-               "with a probe at SWD (--probe stlink, jlink or cmsis-dap) sets them, once for each board\n"
-               "to do    set BOOT0 to low and reset the board\n";
+  std::cout
+      << "options  not set: brown-out level and write protection of sectors 0 and 1 are as they were. The same command "
+         "with a probe at SWD (--probe stlink, jlink or cmsis-dap) sets them, once for each board\n"
+         "to do    set BOOT0 to low and reset the board\n";
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ function flashInPage({ browser }: Bench, folder: string): Promise<number> {
       await page.getByRole('button', { name: 'Open', exact: true }).click();
       await page.getByTestId('bus-state').getByText('open').waitFor();
       await page.getByTestId('modules').locator('tbody tr').nth(4).waitFor();
+      await page.getByTestId('job-state').getByText('done').waitFor(); // of the scan
       await page.getByRole('tab', { name: 'Flash', exact: true }).click();
       const flash = page.getByRole('button', { name: 'Flash all modules' });
       await flash.and(page.locator(':enabled')).waitFor();

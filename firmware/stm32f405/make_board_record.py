@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the contents of sectors 1 and 2 of a new module's flash: one board record, as docs/board.md and
+"""Writes the contents of sectors 2 and 3 of a new module's flash: one board record, as docs/board.md and
 firmware/module/board_record.hpp describe it. 32 KiB, to be flashed at 0x08008000."""
 
 import argparse

@@ -1,8 +1,9 @@
 // The frame of the page: top bar, bands, notices, dialogs; the page below it comes later.
+import { useEffect } from 'preact/hooks';
 import type { PageStores } from './view/robot_view.js';
 import { openDialog } from './view/dialogs.js';
 import { Bands } from './panels/bands.js';
-import { LaterView, loadLater, type Later } from './panels/later_view.js';
+import { LaterView, loadLater, loadWhenIdle, type Later } from './panels/later_view.js';
 import { NoticeList } from './panels/notice_list.js';
 import { TopBar } from './panels/top_bar.js';
 import type { PageAddress } from './wire/page_address.js';
@@ -13,7 +14,7 @@ const robotPage = loadLater<PageStores>(() => import('./panels/bus/robot_page.js
 const dialogs = loadLater<PageStores>(() => import('./panels/dialog_views.js').then((module) => module.DialogView));
 livePage();
 dialogs();
-// These pages are loaded when they are first shown.
+// These pages are loaded when they are first shown, or when the robot is there and the browser has nothing else to do.
 let wereRecordingsShown = false;
 let wasMakeShown = false;
 let wereModulesShown = false;
@@ -28,6 +29,10 @@ export function Frame({ app, address, recordingsPage }: { app: PageStores; addre
   if (page === 'make') wasMakeShown = true;
   if (page === 'modules') wereModulesShown = true;
   const robot = app.state.robot.value;
+  const hasRobot = robot !== null;
+  useEffect(() => {
+    if (hasRobot) loadWhenIdle([recordingsPage, makePage, modulesPage]);
+  }, [hasRobot]);
   return (
     <>
       <TopBar app={app} />

@@ -14,9 +14,9 @@ inline constexpr int max_folder_depth = 4;
 /// Of a folder with more in it, some is not found: a home folder must not keep the program busy.
 inline constexpr std::size_t max_visited_paths = 20'000;
 
-/// Calls use(path) for what is in a folder and in the folders in it. Links to folders are not followed. enters(path):
-/// whether to look into this folder. Returns false if it has not seen all: there is too much, or a folder was removed
-/// meanwhile.
+/// Calls use(entry) for what is in a folder and in the folders in it; std::filesystem::directory_entry knows what kind
+/// of file it is, and converts to a path. Links to folders are not followed. enters(path): whether to look into this
+/// folder. Returns false if it has not seen all: there is too much, or a folder was removed meanwhile.
 template <typename Use, typename Enters>
 bool for_each_path(const std::filesystem::path& folder, const Use& use, const Enters& enters) {
   std::error_code error;
@@ -29,7 +29,7 @@ bool for_each_path(const std::filesystem::path& folder, const Use& use, const En
     if (entry.depth() >= max_folder_depth || !enters(entry->path())) {
       entry.disable_recursion_pending();
     }
-    use(entry->path());
+    use(*entry);
   }
   return !error && entry == std::filesystem::recursive_directory_iterator();
 }

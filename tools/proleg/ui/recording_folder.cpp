@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -50,43 +51,59 @@ RecordingFolder::RecordingFolder(const fs::path& folder) {
   }
 }
 
-/// Of a growing recording the newest part is in a file beside it.
-RecordingFolder::Version RecordingFolder::version_of(const fs::path& path) {
+/// companions: names that were seen of the files beside recordings. Most recordings have none, and to look for each
+/// would take most of the time of a list.
+RecordingFolder::Version RecordingFolder::version_of(const fs::path& path, const std::set<std::string>& companions) {
   Version version;
-  std::vector<std::string> suffixes = sim::recording_companions();
-  suffixes.emplace_back();
-  for (const std::string& suffix : suffixes) {
+  const auto add = [&version](const std::string& file) {
     struct stat status {};
-    if (::stat((path.string() + suffix).c_str(), &status) == 0) {
+    if (::stat(file.c_str(), &status) == 0) {
       version.size += static_cast<std::uint64_t>(status.st_size);
       constexpr std::int64_t second = 1'000'000'000;
       version.time_ns = std::max(version.time_ns, status.st_mtim.tv_sec * second + status.st_mtim.tv_nsec);
+    }
+  };
+  add(path.string());
+  // Of a growing recording the newest part is in a file beside it.
+  for (const std::string& suffix : sim::recording_companions()) {
+    if (const std::string companion = path.string() + suffix; companions.contains(companion)) {
+      add(companion);
     }
   }
   return version;
 }
 
 json RecordingFolder::list() {
-  std::map<std::string, Entry> found;
+  std::vector<fs::path> recordings;
+  std::set<std::string> companions;
   const auto enters_all = [](const fs::path& /*folder*/) { return true; };
-  const auto note = [&](const fs::path& path) {
+  const auto note = [&](const fs::directory_entry& entry) {
+    const fs::path& path = entry.path();
     std::error_code error;
-    if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, error))) {
+    if (path.extension() != ".proleg") {
+      if (path.native().find(".proleg-") != std::string::npos) {
+        companions.insert(path.native());
+      }
       return;
     }
     // What is no link is inside, as links to folders are not followed.
-    if (fs::is_symlink(path, error) && (!is_inside(folder_, fs::canonical(path, error)) || error)) {
-      return;
-    }
-    const std::string name = path.lexically_relative(folder_).string();
-    Entry& known = found[name];
-    known.version = version_of(path);
-    if (const auto before = entries_.find(name); before != entries_.end()) {
-      known.description = before->second.description;
-      known.is_described = before->second.is_described && before->second.version == known.version;
+    const bool is_elsewhere =
+        entry.is_symlink(error) && (!is_inside(folder_, fs::canonical(path, error)) || static_cast<bool>(error));
+    if (!is_elsewhere && entry.is_regular_file(error)) {
+      recordings.push_back(path);
     }
   };
   for_each_path(folder_, note, enters_all);
+  std::map<std::string, Entry> found;
+  for (const fs::path& path : recordings) {
+    const std::string name = path.lexically_relative(folder_).string();
+    Entry& known = found[name];
+    known.version = version_of(path, companions);
+    if (const auto before = entries_.find(name); before != entries_.end()) {
+      known.description = std::move(before->second.description);
+      known.is_described = before->second.is_described && before->second.version == known.version;
+    }
+  }
   std::vector<std::pair<std::int64_t, std::string>> newest;
   newest.reserve(found.size());
   for (const auto& [name, known] : found) {

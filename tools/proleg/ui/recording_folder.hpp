@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ class RecordingFolder {
     nlohmann::json description;
   };
 
-  [[nodiscard]] static Version version_of(const std::filesystem::path& path);
+  [[nodiscard]] static Version version_of(const std::filesystem::path& path, const std::set<std::string>& companions);
 
   std::filesystem::path folder_;  ///< without symbolic links
   std::map<std::string, Entry> entries_;

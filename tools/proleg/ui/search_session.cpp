@@ -134,14 +134,14 @@ SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& f
 SearchSession::~SearchSession() { end_thread(); }
 
 void SearchSession::serve() {
-  if (!take_operations() && folder_.has_unread()) {
-    publish_searches();
+  if (!take_operations()) {
+    read_searches();
   }
   if (begun_.look()) {
     folder_.look_again();
   }
   look_at_job();
-  if (folder_.has_unread()) {
+  if (folder_.has_unread() || !are_read_) {
     return;
   }
   if (job_ || begun_.has_waiting()) {
@@ -151,6 +151,16 @@ void SearchSession::serve() {
   } else {
     requests_.wait();
   }
+}
+
+/// Reads some more searches. They are read before a page asks for them, so that their list comes at once.
+void SearchSession::read_searches() {
+  if (folder_.has_unread() && is_list_shown_) {
+    publish_searches();
+  } else if (!are_read_) {
+    static_cast<void>(folder_.list());
+  }
+  are_read_ = are_read_ || !folder_.has_unread();
 }
 
 void SearchSession::fail(const std::string& why) {
@@ -175,6 +185,7 @@ json SearchSession::carry_out(const host::OperationRequest& operation) {
 }
 
 json SearchSession::refresh(const host::OperationRequest& /*request*/) {
+  is_list_shown_ = true;
   publish_searches();
   return json::object();
 }

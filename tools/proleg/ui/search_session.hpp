@@ -73,6 +73,7 @@ class SearchSession final : private SessionThread {
   nlohmann::json resume(const host::OperationRequest& request);
 
   void publish(const std::string& name, nlohmann::json document);
+  void read_searches();
   void publish_searches();
   [[nodiscard]] std::shared_ptr<const sim::Scenario> draft() const;
   /// One of our programs with these words, and with the algorithms of users that this program has.
@@ -91,6 +92,8 @@ class SearchSession final : private SessionThread {
   BegunPrograms begun_;
   std::optional<Job> job_;
   std::map<std::string, nlohmann::json> published_;
+  bool are_read_ = false;       ///< all searches that there were at the start
+  bool is_list_shown_ = false;  ///< a page has asked for the list
 };
 
 }  // namespace proleg::tools

@@ -1,7 +1,7 @@
 // The page Make: the scenario from above, from the side and in 3D, where the robot will go in it, and its parts: robot,
 // behaviour, world, run, search.
 import { useEffect } from 'preact/hooks';
-import { LaterView, loadLater } from '../panels/later_view.js';
+import { LaterView, loadLater, loadWhenIdle } from '../panels/later_view.js';
 import { ScenePanel } from '../panels/scene_panel.js';
 import { openDialog } from '../view/dialogs.js';
 import { isTextField } from '../view/keyboard.js';
@@ -20,11 +20,12 @@ import type { SearchHost } from './search/search_host.js';
 import { WorldMap } from './world_map.js';
 import { WorldPart } from './world_part.js';
 
-// The part Search is loaded when it is first shown.
+// The part Search is loaded when it is first shown, or when the browser has nothing else to do.
 const searchPart = loadLater<SearchHost>(() => import('./search/search_part.js').then((module) => module.SearchPart));
 const chosenSearch = loadLater<SearchHost>(() => import('./search/search_part.js').then((module) => module.ChosenSearchView));
 const sweepPart = loadLater<SearchHost>(() => import('./sweep/sweep_part.js').then((module) => module.SweepPart));
 const chosenSweep = loadLater<SearchHost>(() => import('./sweep/sweep_part.js').then((module) => module.ChosenSweepView));
+loadWhenIdle([searchPart, chosenSearch, sweepPart, chosenSweep]);
 
 let make: MakeApp | null = null; // the only one of the page; it stays when another page is shown
 

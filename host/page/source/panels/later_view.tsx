@@ -21,6 +21,18 @@ export function loadLater<App>(load: () => Promise<Part<App>>): () => Later<App>
   return () => (part ??= begin());
 }
 
+// Loads parts that were not needed yet while the browser has nothing else to do, so that they open without a wait.
+export function loadWhenIdle(parts: (() => unknown)[]): void {
+  const [next, ...others] = parts;
+  if (next === undefined) return;
+  const load = () => {
+    next();
+    loadWhenIdle(others);
+  };
+  if (typeof requestIdleCallback === 'function') requestIdleCallback(load);
+  else setTimeout(load, 1000);
+}
+
 export function LaterView<App>({ app, part, wait }: { app: App; part: Later<App>; wait: string }) {
   const Content = part.value;
   return Content === null || typeof Content === 'string' ? <p class="wait">{Content ?? wait}</p> : <Content app={app} />;

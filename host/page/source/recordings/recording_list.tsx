@@ -4,6 +4,9 @@ import { TableHead } from '../panels/table_head.js';
 import type { RecordedFile } from '../wire/messages.js';
 import type { RecordingsApp } from './recordings_app.js';
 
+// One format for all rows: to make it takes longer than to use it.
+const timeFormat = new Intl.DateTimeFormat(undefined, { dateStyle: 'short', timeStyle: 'medium' });
+
 function sizeText(bytes: number): string {
   const units = ['B', 'kB', 'MB', 'GB'];
   let size = bytes;
@@ -52,7 +55,7 @@ function FileRow({ app, file }: { app: RecordingsApp; file: RecordedFile }) {
       )}
       <td class="number">{sizeText(file.bytes)}</td>
       <td class="number" title={time.toISOString()}>
-        {time.toLocaleString()}
+        {timeFormat.format(time)}
       </td>
       <td>
         {first === null && !file.problem && (

@@ -64,21 +64,44 @@ void Sensors::start_sampling() {
   rcc::ahb1enr.set(rcc::ahb1enr_dma2);
   rcc::apb1enr.set(rcc::apb1enr_tim3);
   static_cast<void>(rcc::apb1enr.read());
-  samples.par.write(adc1::dr);
-  samples.m0ar.write(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(ring_.data())));
-  samples.ndtr.write(ring_size);
-  samples.cr.write(dma::cr_en | dma::cr_circ | dma::cr_minc | dma::cr_psize_16 | dma::cr_msize_16);
+  start_stream();
   adc1::cr2.write(on);
   tim3.psc().write(board::apb1_timers / 1'000'000 - 1);
   tim3.arr().write(sample_period_us - 1);
   tim3.egr().write(Timer::egr_ug);  // loads the prescaler
   tim3.cr2().write(Timer::cr2_mms_update);
   tim3.cr1().write(Timer::cr1_cen);
+}
+
+void Sensors::start_stream() {
+  samples.par.write(adc1::dr);
+  samples.m0ar.write(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(ring_.data())));
+  samples.ndtr.write(ring_size);
+  samples.cr.write(dma::cr_en | dma::cr_circ | dma::cr_minc | dma::cr_psize_16 | dma::cr_msize_16);
+  taken_ = 0;
   taken_at_ = MicrosecondClock::stamp();
+}
+
+/// Starts sampling again after an overrun, in the manual's order: the stream before OVR is cleared (13.8.1). A stream
+/// that failed ends in an overrun, too, two samples later. If the stream does not stop, the next reading tries again.
+[[gnu::noinline]] void Sensors::restart_sampling() {
+  constexpr std::uint32_t reads_until_stopped = 100;  // the stream ends the transfer of one sample (10.3.17)
+  adc1::cr2.write(adc1::cr2_adon);
+  samples.cr.write(0);
+  if (!wait_until_clear(samples.cr, dma::cr_en, reads_until_stopped)) {
+    return;
+  }
+  samples.clear_flags(dma::all_flags);
+  start_stream();
+  adc1::sr.write(~(adc1::sr_ovr | adc1::sr_eoc));
+  adc1::cr2.write(on);
 }
 
 ServoReadings Sensors::take_readings() {
   const bool is_current_new = take_current();
+  if (adc1::sr.has(adc1::sr_ovr)) {
+    restart_sampling();
+  }
   readings_.are_new = take_others() && is_current_new;
   return readings_;
 }

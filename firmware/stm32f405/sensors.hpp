@@ -38,6 +38,8 @@ class Sensors final : public firmware::SensorPort {
   static constexpr std::uint32_t ring_us = ring_size * sample_period_us;
 
   void start_sampling();
+  void start_stream();
+  void restart_sampling();
   [[nodiscard]] bool take_current();
   [[nodiscard]] bool take_others();
 

@@ -25,8 +25,10 @@ constexpr std::array declarations{
                      "The module's crystal stops. Together with 'supply JOINT 0V' it does not start."},
     FaultDeclaration{FaultKind::pll, "pll", true, Argument::none, Duration::needed, true, false,
                      "The clock multiplier of the module's chip loses its lock."},
-    FaultDeclaration{FaultKind::adc, "adc", true, Argument::none, Duration::needed, false, true,
-                     "The module's converter hangs: no new measurements."},
+    FaultDeclaration{
+        FaultKind::adc, "adc", true, Argument::none, Duration::needed, false, true,
+        "The results of the module's converter are not read: no new measurements, and an overrun that the program must "
+        "end."},
     FaultDeclaration{FaultKind::touch, "touch", true, Argument::touch, Duration::needed, false, true,
                      "All touch sensors of the module read pressed or open, or change from tick to tick."},
     FaultDeclaration{FaultKind::jam, "jam", true, Argument::current, Duration::needed, false, true,

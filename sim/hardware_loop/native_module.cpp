@@ -158,6 +158,7 @@ void NativeModule::start(BusTime now) {
     return;
   } else {
     controller_.switch_on();
+    meters_.has_converted = meters_.converts;
     module_.power_on(crystal_.at(now));
     if (is_supply_low()) {
       module_.supply_low(crystal_.at(now));

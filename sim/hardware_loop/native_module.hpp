@@ -43,10 +43,7 @@ class NativeModule final : public JointModule,
   void advance_to(BusTime now, BusTime quiet_until) override;
   void run_out(BusTime now, BusTime until) override { advance_to(until, now); }
   void set_supply(BusTime now, std::uint32_t mv) override;
-  void set_adc(BusTime /*now*/, bool converts) override {
-    meters_.has_converted = meters_.converts;
-    meters_.converts = converts;
-  }
+  void set_adc(BusTime /*now*/, bool converts) override { meters_.converts = converts; }
   void begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) override {
     if (runs_program()) {  // else nobody reads the line
       line_.begin_input(now, character, bit);
@@ -81,19 +78,20 @@ class NativeModule final : public JointModule,
   struct Meters final : firmware::SensorPort {
     explicit Meters(Readings readings) : source(std::move(readings)) {}
     [[nodiscard]] ServoReadings take_readings() override {
-      const bool are_new = converts || has_converted;
+      // After a failure the program restarts the converter at a reading, and has new values at the next one.
+      const bool are_new = has_converted;
       if (are_new) {
         last = source ? source() : ServoReadings{};
         last.feedback_reading = last.angle ? std::optional(Potentiometer::reading_of(*last.angle)) : std::nullopt;
       }
       last.are_new = are_new;
-      has_converted = false;
+      has_converted = converts;
       return last;
     }
     Readings source;
     ServoReadings last{};
     bool converts = true;
-    bool has_converted = false;  ///< it hangs now, but did not at the last call
+    bool has_converted = true;  ///< it converted at the last call
   };
 
   /// The mailboxes as the driver of the chip uses them (firmware/stm32f405/can.hpp).

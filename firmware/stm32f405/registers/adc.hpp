@@ -9,7 +9,9 @@ namespace proleg::stm32f405::adc1 {
 inline constexpr std::uintptr_t base = 0x4001'2000;
 
 inline constexpr Register sr{base + 0x00};  ///< a 0 clears, a 1 does nothing
+inline constexpr std::uint32_t sr_eoc = 1U << 1U;
 inline constexpr std::uint32_t sr_jeoc = 1U << 2U;
+inline constexpr std::uint32_t sr_ovr = 1U << 5U;  ///< a result was lost: there are no triggers and no DMA (13.8.1)
 
 inline constexpr Register cr1{base + 0x04};
 inline constexpr std::uint32_t cr1_scan = 1U << 8U;

@@ -622,8 +622,11 @@ void Stm32f405::set_crystal(bool runs) {
 void Stm32f405::set_pll(bool locks) {
   implementation_->change_outside([this, locks] { implementation_->rcc_.set_pll(locks); });
 }
-void Stm32f405::set_adc(bool converts) {
-  implementation_->change_outside([this, converts] { implementation_->adc_.set_hanging(!converts); });
+void Stm32f405::set_adc(bool is_read) {
+  implementation_->change_outside([this, is_read] { implementation_->adc_.set_dma_reach(is_read); });
+}
+void Stm32f405::fail_dma_of_adc() {
+  implementation_->change_outside([this] { implementation_->dma_2_.fail(Adc::dma_stream); });
 }
 void Stm32f405::set_weak_word(std::uint32_t address, std::uint32_t bits) {
   implementation_->change_outside([=, this] { implementation_->flash_.set_weak_word(address, bits); });

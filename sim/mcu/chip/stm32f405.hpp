@@ -71,8 +71,10 @@ class Stm32f405 {
   void set_crystal(bool runs);
   /// Sets whether the PLL can lock.
   void set_pll(bool locks);
-  /// Sets whether ADC1 converts, or hangs.
-  void set_adc(bool converts);
+  /// Sets whether DMA reaches the data register of ADC1 (Adc::set_dma_reach()).
+  void set_adc(bool is_read);
+  /// Ends the DMA stream of ADC1 with a transfer error (Dma::fail()).
+  void fail_dma_of_adc();
   /// Makes a word of the flash weak (FlashInterface::set_weak_word()).
   void set_weak_word(std::uint32_t address, std::uint32_t bits);
   /// Sets VDD, 3,300 mV at the start. Below the threshold of the brown-out reset (ChipSettings) or of the power-down

@@ -71,9 +71,7 @@ constexpr std::uint32_t ccr_vbate = 1U << 22U;
 constexpr std::uint32_t ccr_tsvrefe = 1U << 23U;
 constexpr std::uint32_t ccr_kept = 0x0083'0F00;
 
-// The stream and the channel of ADC1 (RM0090, table 43).
-constexpr unsigned dma_stream = 0;
-constexpr unsigned dma_channel = 0;
+constexpr unsigned dma_channel = 0;  // RM0090, table 43
 constexpr std::uint32_t adc1_dr = 0x4001'204C;
 
 constexpr unsigned temperature_channel = 16;
@@ -98,7 +96,11 @@ Adc::Adc(ChipServices& chip, BoardSignals& board, Dma* dma)
   Adc::reset();
 }
 
-bool Adc::requests_dma() const { return (cr2_ & cr2_dma) != 0 && (sr_ & sr_eoc) != 0; }
+bool Adc::requests_dma() const {
+  return dma_reaches_ && !has_refused_dma_ && (sr_ & sr_ovr) == 0 && (cr2_ & cr2_dma) != 0 && (sr_ & sr_eoc) != 0;
+}
+
+void Adc::dma_starts() { has_refused_dma_ = false; }
 
 std::uint16_t Adc::dma_read() {
   sr_ &= ~sr_eoc;
@@ -137,6 +139,7 @@ void Adc::reset() {
   conversion_end_ = never_on_chip;
   regular_waits_ = false;
   accepts_triggers_ = false;
+  has_refused_dma_ = false;
   interrupt_.set(false);
 }
 
@@ -187,13 +190,12 @@ void Adc::trigger(LocalTime time) {
   update_interrupt();
 }
 
-void Adc::set_hanging(bool hangs) {
+void Adc::set_dma_reach(bool reaches) {
   settle();
-  hangs_ = hangs;
-  if (converting_ != Group::none) {
-    begin_conversion(chip().now());
+  dma_reaches_ = reaches;
+  if (reaches && dma_ != nullptr) {
+    dma_->serve(dma_stream);
   }
-  chip().reschedule();
 }
 
 void Adc::clocks_fail(const Clocks& /*next*/) {
@@ -261,10 +263,6 @@ std::uint16_t Adc::convert(unsigned channel) {
 
 void Adc::begin_conversion(LocalTime begin) {
   const unsigned rank = converting_ == Group::regular ? regular_rank_ : injected_rank_;
-  if (hangs_) {
-    conversion_end_ = never_on_chip;
-    return;
-  }
   conversion_end_ = begin + sampling_time(channel(converting_, rank)) + conversion_cycles * clock_period();
 }
 
@@ -281,6 +279,7 @@ void Adc::finish_conversion() {
     }
   } else if ((cr2_ & (cr2_eocs | cr2_dma)) != 0 && (sr_ & sr_eoc) != 0) {
     sr_ |= sr_ovr;  // the data are lost, and the sequence ends (RM0090, 13.8.1 and 13.8.2)
+    has_refused_dma_ = has_refused_dma_ || (cr2_ & cr2_dma) != 0;
     has_more = false;
   } else {
     finish_regular(code, has_more);

@@ -36,6 +36,7 @@ inline constexpr std::uint32_t vrefint_uv = 1'210'000;  ///< DS8626, embedded re
 class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripheral {
  public:
   static constexpr unsigned interrupt_position = 18;
+  static constexpr unsigned dma_stream = 0;  ///< of DMA2 (RM0090, table 43)
   // Durations (DS8626, ADC characteristics).
   static constexpr LocalTime stabilisation = 3 * local_time_per_us;     ///< after ADON
   static constexpr LocalTime sensor_start = 10 * local_time_per_us;     ///< after TSVREFE
@@ -59,14 +60,17 @@ class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripher
   void trigger(LocalTime time) override;
   [[nodiscard]] bool works_unseen() const override;
 
-  /// A converter that hangs ends no conversion; when it works again, it repeats the one under way.
-  void set_hanging(bool hangs);
+  /// Sets whether DMA reaches the data register. While it does not, the second result of the regular group is an
+  /// overrun. This outlasts the failure: there are no triggers and no requests of DMA until the program has started the
+  /// stream again and has cleared OVR (13.8.1).
+  void set_dma_reach(bool reaches);
 
  private:
   enum class Group : std::uint8_t { none, regular, injected };
 
   [[nodiscard]] bool requests_dma() const override;
   [[nodiscard]] std::uint16_t dma_read() override;
+  void dma_starts() override;
   void settle();
   void finish_conversions(LocalTime until);
   void finish_conversion();
@@ -103,7 +107,8 @@ class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripher
   LocalTime sensors_since_ = 0;
 
   Group converting_ = Group::none;
-  bool hangs_ = false;
+  bool dma_reaches_ = true;
+  bool has_refused_dma_ = false;  ///< OVR was set while DMA was on, and the stream has not started since
   LocalTime conversion_end_ = never_on_chip;
   unsigned regular_rank_ = 0;  ///< the rank that is converted, or continues after the injected group
   unsigned injected_rank_ = 0;

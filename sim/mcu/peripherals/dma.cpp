@@ -34,7 +34,8 @@ constexpr RegisterName registers[] = {
     {0xC0, "S7PAR"}, {0xC4, "S7M0AR"}, {0xC8, "S7M1AR"}, {0xCC, "S7FCR"}};
 
 constexpr std::uint32_t cr_en = 1U << 0U;
-constexpr std::uint32_t cr_errors = 3U << 1U;  ///< DMEIE, TEIE: these errors do not occur here
+constexpr std::uint32_t cr_teie = 1U << 2U;
+constexpr std::uint32_t cr_errors = 3U << 1U;  ///< DMEIE, TEIE; the error of the direct mode does not occur here
 constexpr std::uint32_t cr_htie = 1U << 3U;
 constexpr std::uint32_t cr_tcie = 1U << 4U;
 constexpr std::uint32_t cr_to_peripheral = 1U << 6U;
@@ -46,6 +47,7 @@ constexpr unsigned channel_shift = 25;
 constexpr std::uint32_t cr_channel = 7U << channel_shift;
 constexpr std::uint32_t cr_free = cr_en | cr_errors | cr_htie | cr_tcie | cr_circ | cr_priority;
 
+constexpr std::uint32_t flag_error = 1U << 3U;
 constexpr std::uint32_t flag_half = 1U << 4U;
 constexpr std::uint32_t flag_complete = 1U << 5U;
 constexpr std::uint32_t all_flags = 0x3D;
@@ -118,6 +120,14 @@ void Dma::serve(unsigned number) {
   }
 }
 
+void Dma::fail(unsigned number) {
+  Stream& stream = streams_.at(number);
+  if (stream.enabled()) {
+    stream.control &= ~cr_en;
+    raise(number, flag_error);
+  }
+}
+
 void Dma::transfer(Stream& stream) {
   const unsigned bytes = stream.connection->bytes;
   const std::uint32_t address = stream.memory_address + bytes * (stream.length - stream.count);
@@ -142,7 +152,8 @@ void Dma::raise(unsigned number, std::uint32_t flag) {
 void Dma::update_interrupt(unsigned number) {
   const std::uint32_t flags = flags_.at(number / 4) >> flag_shift(number);
   const std::uint32_t control = streams_.at(number).control;
-  interrupts_.at(number).set(((flags & flag_half) != 0 && (control & cr_htie) != 0) ||
+  interrupts_.at(number).set(((flags & flag_error) != 0 && (control & cr_teie) != 0) ||
+                             ((flags & flag_half) != 0 && (control & cr_htie) != 0) ||
                              ((flags & flag_complete) != 0 && (control & cr_tcie) != 0));
 }
 
@@ -231,6 +242,7 @@ void Dma::write_control(unsigned number, std::uint32_t offset, std::uint32_t val
   stream.control = value;
   update_interrupt(number);
   if (stream.enabled() && !was_enabled) {
+    stream.peripheral->dma_starts();
     serve(number);
   }
 }

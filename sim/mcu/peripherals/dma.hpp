@@ -23,6 +23,8 @@ class DmaPeripheral {
   /// Transfers read the data register, or write it.
   [[nodiscard]] virtual std::uint16_t dma_read() { return 0; }
   virtual void dma_write(std::uint16_t /*data*/) {}
+  /// Its stream was enabled.
+  virtual void dma_starts() {}
 
  protected:
   ~DmaPeripheral() = default;
@@ -59,6 +61,9 @@ class Dma final : public RegisterBlock {
   /// To be called when a peripheral requests a transfer. Makes transfers while the peripheral requests them and its
   /// stream is enabled.
   void serve(unsigned stream);
+
+  /// The stream's next transfer meets a bus error: it sets TEIF, and the stream is off (10.3.18).
+  void fail(unsigned stream);
 
  private:
   struct Stream {

@@ -124,6 +124,35 @@ TEST(Readings, OfAnAdcThatHangsAreAFaultAfterFiveTicksAndTheServoGetsNoPulse) {
   EXPECT_LT(rig.bus.now(), last_edge + 25 * ms);
 }
 
+/// The servo works; then `fail` stops the conversions once, for no longer than a moment.
+void expect_that_readings_come_back(const std::function<void(ChipRig&)>& fail) {
+  ChipRig rig;
+  BusTime last_edge = 0;
+  rig.chip.set_pin_watch('A', 5, [&](BusTime time, bool /*high*/) { last_edge = time; });
+  rig.start_robot(20'000);
+  rig.enable_servo(0);
+  rig.board.uv[current_channel] = 200'000;
+  rig.run_for(100 * ms);
+  fail(rig);
+  rig.run_for(300 * ms);
+  EXPECT_TRUE(rig.frames(0x083).empty()) << "two readings without new values are no fault";
+  EXPECT_GT(last_edge + 25 * ms, rig.bus.now()) << "it gives pulses";
+  rig.board.uv[current_channel] = 700'000;
+  EXPECT_NEAR(monitored(rig).current_ma, 700, 7);
+}
+
+TEST(Readings, ComeBackAfterAnOverrunOfTheAdc) {
+  expect_that_readings_come_back([](ChipRig& rig) {
+    rig.chip.set_adc(false);
+    rig.run_for(ms);
+    rig.chip.set_adc(true);
+  });
+}
+
+TEST(Readings, ComeBackAfterATransferErrorOfTheDma) {
+  expect_that_readings_come_back([](ChipRig& rig) { rig.chip.fail_dma_of_adc(); });
+}
+
 class OverCurrent : public testing::Test {
  protected:
   OverCurrent() {

@@ -74,20 +74,6 @@ TEST_F(AdcTest, ResetValuesAreThoseOfTheManual) {
   EXPECT_EQ(adc.next_event(), never_on_chip);
 }
 
-TEST_F(AdcTest, ThatHangsEndsNoConversionUntilItWorksAgain) {
-  start();
-  adc.write(jsqr, 5U << 15U);
-  adc.write(cr2, adon | jswstart);
-  adc.set_hanging(true);
-  EXPECT_EQ(adc.next_event(), never_on_chip);
-  chip.time += 1'000 * fastest;
-  EXPECT_EQ(adc.read(sr), jstrt);
-  adc.set_hanging(false);
-  chip.run_until(chip.time + fastest, adc);
-  EXPECT_EQ(adc.read(sr), jstrt | jeoc);
-  EXPECT_EQ(adc.read(jdr1), code_of_channel(5));
-}
-
 TEST_F(AdcTest, AConversionTakesItsSamplingTimeAndTwelveClocks) {
   const std::vector<LocalTime> cycles = {3, 15, 28, 56, 84, 112, 144, 480};
   start();

@@ -299,6 +299,58 @@ class Sampling {
   LocalTime first_trigger = 0;
 };
 
+// RM0090, 13.8.1: the steps that end an overrun, each of which is needed.
+TEST(OverrunOfTheAdc, LastsUntilTheStreamWasStartedAgainAndOvrWasCleared) {
+  constexpr std::uint32_t adc_sr = 0x00;
+  constexpr std::uint32_t eoc_and_ovr = 0x22;
+  const auto overrun = [](Sampling& sampling) {
+    sampling.skip_to(10 * Sampling::period);
+    sampling.adc.set_dma_reach(false);
+    sampling.skip_to(20 * Sampling::period);
+    sampling.adc.set_dma_reach(true);
+    sampling.written.clear();
+  };
+  const auto restart_stream = [](Sampling& sampling) {
+    sampling.dma.write(s0cr, 0);
+    sampling.dma.write(lifcr, 0x3D);
+    sampling.dma.write(s0ndtr, Sampling::ring_size);
+    sampling.dma.write(s0cr, enabled_circular);
+  };
+  const auto is_sampling = [](Sampling& sampling) {
+    sampling.skip_to(sampling.chip.time + 5 * Sampling::period);
+    return sampling.written.size() == 5;
+  };
+  Sampling untouched;
+  overrun(untouched);
+  EXPECT_FALSE(is_sampling(untouched));
+  EXPECT_TRUE(untouched.written.empty());
+  EXPECT_EQ(untouched.adc.read(adc_sr) & eoc_and_ovr, eoc_and_ovr);
+
+  Sampling cleared;
+  overrun(cleared);
+  cleared.adc.write(adc_sr, ~eoc_and_ovr);
+  EXPECT_FALSE(is_sampling(cleared));
+  EXPECT_TRUE(cleared.written.empty()) << "the stream was not started again";
+  EXPECT_EQ(cleared.adc.read(adc_sr) & eoc_and_ovr, eoc_and_ovr) << "an overrun again";
+
+  Sampling restarted;
+  overrun(restarted);
+  restart_stream(restarted);
+  EXPECT_FALSE(is_sampling(restarted)) << "OVR was not cleared";
+  restarted.adc.write(adc_sr, ~eoc_and_ovr);
+  EXPECT_TRUE(is_sampling(restarted));
+}
+
+TEST(OverrunOfTheAdc, FollowsATransferErrorOfTheStream) {
+  Sampling sampling;
+  sampling.skip_to(10 * Sampling::period);
+  sampling.dma.fail(0);
+  EXPECT_EQ(sampling.dma.read(lisr) & 0x3DU, 0x8U) << "TEIF";
+  EXPECT_EQ(sampling.dma.read(s0cr) & 1U, 0U) << "EN";
+  sampling.skip_to(13 * Sampling::period);
+  EXPECT_EQ(sampling.adc.read(0x00) & 0x20U, 0x20U);
+}
+
 TEST(SamplesOfASleepingCpu, AreNoVisibleEventsOnceATriggerHasStartedAConversion) {
   Sampling sampling;
   EXPECT_EQ(sampling.next_visible_event(), sampling.first_trigger) << "it could leave the model";
@@ -359,10 +411,10 @@ TEST(SamplesOfASleepingCpu, LeaveTheSameAsThoseOfOneThatIsAwake) {
   const auto change = [](Sampling& sampling, unsigned kind, std::uint32_t value) {
     switch (kind) {
       case 0:
-        sampling.adc.set_hanging(true);
+        sampling.adc.set_dma_reach(false);
         break;
       case 1:
-        sampling.adc.set_hanging(false);
+        sampling.adc.set_dma_reach(true);
         break;
       case 2:
         sampling.dma.write(s0cr, 0);  // an overrun follows

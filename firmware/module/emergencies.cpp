@@ -23,6 +23,8 @@ EmergencyCode code_of(Fault fault) {
       return EmergencyCode::sensors_failed;
     case Fault::over_temperature:
       return EmergencyCode::over_temperature;
+    case Fault::newer_settings:
+      return EmergencyCode::newer_settings;
     case Fault::bus_off:
       break;
   }
@@ -88,12 +90,13 @@ std::uint8_t Emergencies::error_register() const {
   const unsigned foreign = bit(Fault::foreign_configuration);
   const unsigned sensors = bit(Fault::sensors_failed);
   const unsigned over_temperature = bit(Fault::over_temperature);
-  const unsigned others = over_current | supply_low | over_temperature | sensors | foreign;
+  const unsigned of_the_project = foreign | bit(Fault::newer_settings);
+  const unsigned others = over_current | supply_low | over_temperature | sensors | of_the_project;
   return static_cast<std::uint8_t>(
       (faults_ != 0 ? generic : 0U) | ((faults_ & over_current) != 0 ? current : 0U) |
       ((faults_ & supply_low) != 0 ? voltage : 0U) | ((faults_ & over_temperature) != 0 ? temperature : 0U) |
       ((faults_ & ~others) != 0 ? communication : 0U) | ((faults_ & sensors) != 0 ? device_profile : 0U) |
-      ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
+      ((faults_ & of_the_project) != 0 ? manufacturer_specific : 0U));
 }
 
 }  // namespace proleg::firmware

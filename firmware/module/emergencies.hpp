@@ -18,6 +18,7 @@ enum class Fault : std::uint8_t {
   supply_low,
   over_temperature,
   sensors_failed,
+  newer_settings,
 };
 
 /// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A module that is stopped or has no node id sends

@@ -166,6 +166,7 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
       finish_event(now);
     }
     require_good_hardware(parts_);
+    require_known_settings(parts_);
   }
   // A controller does not receive its own frames. SYNC and TICK count for the module that sends them as for all others.
   if (frame.identifier == identifier::sync || frame.identifier == identifier::tick) {
@@ -245,6 +246,7 @@ void Module::finish_event(Microseconds now) {
   }
   clear_over_current(parts_);
   require_good_hardware(parts_);
+  require_known_settings(parts_);
   update_drive(parts_, now);
   update_watches(parts_, now);
   find_deadlines();

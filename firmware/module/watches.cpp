@@ -79,6 +79,17 @@ void require_good_hardware(Parts& parts) {
   }
 }
 
+void require_known_settings(Parts& parts) {
+  if (!parts.board.has_newer()) {
+    parts.emergencies.clear(Fault::newer_settings);
+    return;
+  }
+  parts.drive.disable();
+  if (parts.network.has_sent_boot_up() && !parts.emergencies.is_raised(Fault::newer_settings)) {
+    parts.emergencies.raise(Fault::newer_settings, 0);
+  }
+}
+
 void poll_bus(Parts& parts, Microseconds now) {
   if (parts.recovery.poll(now)) {
     parts.emergencies.clear(Fault::bus_off);

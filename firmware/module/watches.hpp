@@ -25,11 +25,12 @@ void poll_bus(Parts& parts, Microseconds now);
 void poll_host(Parts& parts, Microseconds now);
 void poll_sync(Parts& parts, Microseconds now);
 
-/// These functions must be called after each event. They decide whether over-current is over, whether supply and
-/// sensors allow power, what the servo does, and whether SYNC is expected. Before SYNC 0 a joint ramps in, if the host
-/// has set a speed for that (0x200E) and the module measures its angle.
+/// These functions must be called after each event. They decide whether over-current is over, whether supply, sensors
+/// and stored settings allow power, what the servo does, and whether SYNC is expected. Before SYNC 0 a joint ramps in,
+/// if the host has set a speed for that (0x200E) and the module measures its angle.
 void clear_over_current(Parts& parts);
 void require_good_hardware(Parts& parts);
+void require_known_settings(Parts& parts);
 void update_drive(Parts& parts, Microseconds now);
 void update_watches(Parts& parts, Microseconds now);
 

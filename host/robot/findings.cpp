@@ -37,6 +37,7 @@ class Diagnosis {
     }
     find_foreign_modules();
     find_modules_without_node_id();
+    find_newer_settings();
     find_stopped_modules();
     find_mute_nodes();
     if (auto finding = find_damaged_lines(seen_, address_)) {
@@ -262,6 +263,24 @@ class Diagnosis {
           "There are modules without a node id" +
               (serials.empty() ? std::string(".") : " (serial numbers " + serials + ")."),
           "A module from the factory has none. 'proleg assign FILE' gives each its place in a robot.");
+    }
+  }
+
+  void find_newer_settings() {
+    const Nodes nodes = nodes_with([](const ObservedNode& node) {
+      constexpr unsigned of_the_project = 1U << 7U;  // in the error register (0x1001)
+      const bool lasts = node.answers && (node.answers->error_register & of_the_project) != 0;
+      return lasts && (has_sent(node, EmergencyCode::newer_settings) ||
+                       std::ranges::find(node.past_errors, EmergencyCode::newer_settings) != node.past_errors.end());
+    });
+    if (!nodes.empty()) {
+      add("newer_settings",
+          nodes_text(nodes) +
+              ": the stored settings are those of a later program. This one does not know the limits of the joint, and "
+              "gives the servo no power.",
+          "Flash the later program again. Or store default settings with 'proleg recover --reset-settings', and set "
+          "the limits of the joint again (0x2005:4, 0x2005:5).",
+          nodes);
     }
   }
 

@@ -84,6 +84,8 @@ std::string_view fault_advice(canopen::EmergencyCode code) {
     case sync_lost:
     case early_sync:
       return "Look at the cable to the first joint, and for another program that drives the robot.";
+    case newer_settings:
+      return "Flash the later program again, or store default settings: proleg recover --reset-settings.";
     case commit_too_late:
     case commit_not_staged:
     case unknown_label:

@@ -172,6 +172,8 @@ std::string_view describe(EmergencyCode code) {
       return "a SYNC came too early";
     case EmergencyCode::unknown_label:
       return "labels of state frames fit no tick";
+    case EmergencyCode::newer_settings:
+      return "settings of a later program";
   }
   return "unknown emergency code";
 }

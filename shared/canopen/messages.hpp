@@ -148,6 +148,9 @@ enum class EmergencyCode : std::uint16_t {
   unknown_label = 0xFF05,          ///< state frames of a joint carry labels that fit no tick
   /// A SYNC within half a period of the one before is no tick; detail: time by which it was early, in us.
   early_sync = 0xFF06,
+  /// The stored settings are those of a later program, of which this one knows only the node id: the drive gets no
+  /// power, because the limits of the joint are not known.
+  newer_settings = 0xFF07,
 };
 /// An emergency message. The decoder also accepts codes that are not listed above.
 struct Emergency {

@@ -208,5 +208,45 @@ TEST_F(ProgramUpdateTest, SavingTheSettingsEndsTheSchemaThatTheProgramDoesNotKno
   EXPECT_EQ(status().condition.node, node);
 }
 
+class NewerSettings : public ProgramUpdateTest {
+ protected:
+  void try_to_enable() {
+    for (const std::uint16_t controlword : test::power_up) {
+      ASSERT_EQ(robot.bus.write(node, canopen::object::controlword, controlword), canopen::AbortCode::none);
+    }
+  }
+  [[nodiscard]] std::vector<canopen::EmergencyCode> codes() const {
+    std::vector<canopen::EmergencyCode> found;
+    for (const canopen::Emergency& emergency : robot.emergencies()) {
+      found.push_back(emergency.code);
+    }
+    return found;
+  }
+};
+
+TEST_F(NewerSettings, GiveTheServoNoPowerUntilSettingsAreSaved) {
+  using canopen::EmergencyCode;
+  boot_with_newer_settings();
+  EXPECT_EQ(codes(), std::vector{EmergencyCode::newer_settings});
+  EXPECT_EQ(robot.bus.value(node, canopen::object::error_register), 0x81U);
+  try_to_enable();
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::switch_on_disabled);
+  robot.configure(0);
+  robot.start();
+  try_to_enable();
+  robot.tick(0);
+  robot.sync(0);
+  robot.bus.run_for(100'000);
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::switch_on_disabled);
+  EXPECT_EQ(robot.it().pulse_count(), 0U);
+  EXPECT_EQ(codes(), std::vector{EmergencyCode::newer_settings}) << "once";
+
+  robot.command(NmtCommand::enter_pre_operational);
+  ASSERT_EQ(robot.bus.write(node, {0x1010, 1}, 4, canopen::signature_save), canopen::AbortCode::none);
+  EXPECT_EQ(codes(), (std::vector{EmergencyCode::newer_settings, EmergencyCode::none}));
+  try_to_enable();
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::operation_enabled);
+}
+
 }  // namespace
 }  // namespace proleg

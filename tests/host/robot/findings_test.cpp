@@ -218,6 +218,18 @@ TEST(BusFindings, AFaultHasTheCauseThatIsPresentElseTheLastOne) {
   EXPECT_EQ(found[1].code, "sensors_failed");
 }
 
+TEST(BusFindings, SettingsOfALaterProgramAreNamedWhileTheyLast) {
+  BusObservations seen = healthy();
+  seen.nodes[1].past_errors = {EmergencyCode::newer_settings};
+  EXPECT_EQ(first_code(seen), "none") << "an error that is over";
+  seen.nodes[1].answers->error_register = 0x81;
+  const auto found = findings(seen);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().code, "newer_settings");
+  EXPECT_EQ(found.front().nodes, std::vector<std::uint8_t>{2});
+  EXPECT_NE(found.front().to_do.find("proleg recover --reset-settings"), std::string::npos);
+}
+
 TEST(BusFindings, AModuleThatWasNotReadHasNoForeignCore) {
   BusObservations seen = healthy();
   seen.nodes[0].answers->core_fingerprint = 0;

@@ -185,6 +185,11 @@ void Bootloader::install_broadcast() {
     receiver_.set_state(ReceiverState::refused, static_cast<std::uint8_t>(error));
     return;
   }
+  if (!ports_.flash.is_supplied()) {
+    status_ = object::status_other_error;
+    receiver_.set_state(ReceiverState::refused, broadcast::refused_supply);
+    return;
+  }
   const InstallResult result = write_image(receiver_.image());
   receiver_.set_state(status_ == 0 ? ReceiverState::installed : ReceiverState::failed,
                       static_cast<std::uint8_t>(result));

@@ -39,6 +39,8 @@ class SlotFlash {
   [[nodiscard]] virtual bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
   /// The bytes of a slot. Both slots have the same size: a multiple of 4, more than an image and 16 bytes.
   [[nodiscard]] virtual std::span<const std::uint8_t> contents(FlashSlot slot) const = 0;
+  /// Whether the supply is good enough for erase() and program().
+  [[nodiscard]] virtual bool is_supplied() const { return true; }
 
  protected:
   ~SlotFlash() = default;

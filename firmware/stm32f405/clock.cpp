@@ -4,6 +4,7 @@
 #include "firmware/stm32f405/registers/flash.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
+#include "firmware/stm32f405/supply.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -17,8 +18,11 @@ constexpr std::uint32_t pll_q = 7;
 static_assert(board::crystal / pll_m * pll_n / pll_p == board::core);
 static_assert(board::crystal / pll_m * pll_n / pll_q == 48'000'000);
 
-/// Wait states of the flash: one for each 30 MHz at 2.7 to 3.6 V (RM0090, table 10).
-constexpr std::uint32_t wait_states = (board::core - 1) / 30'000'000;
+/// Wait states of the flash: one for each 22 MHz, which is enough down to 2.1 V (RM0090, table 10). So nothing must
+/// happen within microseconds when the supply falls. At 2.7 V five would do; two more cost two cycles for each line of
+/// 16 bytes that neither the prefetch nor the cache has.
+constexpr std::uint32_t wait_states = (board::core - 1) / 22'000'000;
+static_assert(wait_states == 7);
 
 /// Numbers of reads in two times; a read in a loop takes 5 cycles or more. The crystal starts in 2 ms (data sheet,
 /// table 33) and gets 50; the PLL locks in 0.3 ms and gets 5.
@@ -39,6 +43,9 @@ bool switch_to_pll() {
 }  // namespace
 
 ClockResult start_clocks() {
+  if (!start_detector()) {
+    return ClockResult::no_supply;
+  }
   rcc::cr.set(rcc::cr_hseon);
   if (!wait_until_set(rcc::cr, rcc::cr_hserdy, reads_in_50_ms)) {
     return ClockResult::no_crystal;

@@ -13,11 +13,13 @@ enum class ClockResult : std::uint8_t {
   ok,
   no_crystal,  ///< the crystal (HSE) did not start
   no_pll,      ///< the PLL did not lock, or the clock did not switch to it
+  no_supply,   ///< the supply is too low for the frequency (start_detector())
 };
 
-/// Switches from the internal oscillator to the frequencies of pins.hpp, by crystal and PLL. Always ends within 100 ms.
-/// If it fails, the chip stays on the internal oscillator, which is too inaccurate for CAN at 1 Mbit/s. From now on a
-/// crystal that stops is a fault (FaultRecord::Reason::crystal_stopped).
+/// Switches the detector of the supply on (supply.hpp), and switches from the internal oscillator to the frequencies of
+/// pins.hpp, by crystal and PLL. Always ends within 100 ms. If it fails, the chip stays on the internal oscillator,
+/// which is too inaccurate for CAN at 1 Mbit/s. From now on a crystal that stops is a fault
+/// (FaultRecord::Reason::crystal_stopped).
 [[nodiscard]] ClockResult start_clocks();
 
 /// The module's own clock (TIM5): microseconds since start(), on the crystal. Interrupts record the 32 bits of the

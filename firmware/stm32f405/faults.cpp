@@ -88,6 +88,8 @@ std::string_view text_of(FaultRecord::Reason reason) {
       return "the CAN controller does not answer";
     case FaultRecord::Reason::crystal_stopped:
       return "the crystal has stopped";
+    case FaultRecord::Reason::supply_failed:
+      return "the supply voltage is too low";
   }
   return "unknown";
 }

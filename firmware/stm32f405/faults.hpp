@@ -20,6 +20,7 @@ struct FaultRecord {
     no_pll,
     no_can,           ///< the controller does not enter its initialization mode
     crystal_stopped,  ///< the crystal (HSE) stopped while it was in use: all clocks had the wrong frequency
+    supply_failed,    ///< the supply is too low for the clocks (Supply::Level::none)
   };
 
   Reason reason = Reason::processor_fault;

@@ -3,9 +3,12 @@
 #include <cstring>
 
 #include "firmware/stm32f405/flash_layout.hpp"
+#include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/registers/flash.hpp"
+#include "firmware/stm32f405/registers/supply.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
 #include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/supply.hpp"
 #include "shared/canopen/declared_objects.hpp"
 
 namespace proleg::stm32f405 {
@@ -15,8 +18,9 @@ using namespace flash_interface;
 
 /// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
 /// Returns the status register. It may call no function and read only registers and the stack, because everything else
-/// is in flash. After the timeout this write to CR, and the next instruction in flash, stall the CPU until the
-/// operation ends (RM0090, section 3.6.1): it is reported late, or the watchdog resets the chip.
+/// is in flash. If the supply falls below the threshold of its detector, it resets the chip. After the timeout this
+/// write to CR, and the next instruction in flash, stall the CPU until the operation ends (RM0090, section 3.6.1): it
+/// is reported late, or the watchdog resets the chip.
 [[gnu::section(".ram_code"), gnu::noinline, gnu::noclone]] std::uint32_t operate(std::uint32_t control,
                                                                                  std::uintptr_t address,
                                                                                  std::uint32_t word,
@@ -34,6 +38,9 @@ using namespace flash_interface;
   std::uint32_t status = sr.read();
   while ((status & sr_bsy) != 0 && tim5.cnt().read() - start < timeout_us) {
     feed_watchdog();
+    if ((pwr::csr.read() & pwr::csr_pvdo) != 0) {
+      scb::aircr.write(scb::aircr_sysresetreq);  // before code in flash runs without supply
+    }
     status = sr.read();
   }
   cr.write(cr_lock);
@@ -75,12 +82,18 @@ constexpr std::uint32_t address_of(unsigned sector) {
 }  // namespace
 
 bool erase_sector(unsigned sector, std::uint32_t timeout_us) {
+  if (!is_flash_supplied()) {
+    return false;
+  }
   const bool done = run(cr_ser | sector << cr_snb_position | cr_psize_32, 0, 0, timeout_us);
   clear_data_cache();
   return done;
 }
 
 bool program_words(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  if (!is_flash_supplied()) {
+    return false;
+  }
   for (std::size_t i = 0; i < bytes.size(); i += 4) {
     std::uint32_t word = 0;
     std::memcpy(&word, &bytes[i], sizeof(word));

@@ -14,11 +14,12 @@
 
 namespace proleg::stm32f405 {
 
-/// Sets all bytes of the sector (0 to 11) to 0xFF. Returns whether it succeeded within the time.
+/// Sets all bytes of the sector (0 to 11) to 0xFF. Returns whether it succeeded within the time; false, too, if the
+/// supply is too low (is_flash_supplied()).
 [[nodiscard]] bool erase_sector(unsigned sector, std::uint32_t timeout_us);
 
 /// Programs bytes that are 0xFF, word by word in ascending order. address, size: multiples of 4. Returns whether it
-/// succeeded.
+/// succeeded; false, too, if the supply is too low.
 [[nodiscard]] bool program_words(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
 /// Time after which programming a word has failed: at least twice the maximum of the data sheet.

@@ -8,6 +8,7 @@
 #include "firmware/stm32f405/program_place.hpp"
 #include "firmware/stm32f405/sensors.hpp"
 #include "firmware/stm32f405/servo.hpp"
+#include "firmware/stm32f405/supply.hpp"
 
 namespace proleg::stm32f405 {
 

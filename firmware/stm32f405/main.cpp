@@ -6,8 +6,10 @@
 #include "firmware/stm32f405/module_task.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/registers/flash.hpp"
 #include "firmware/stm32f405/reset.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
+#include "shared/canopen/declared_objects.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::stm32f405 {
@@ -26,15 +28,35 @@ struct Start {
   std::optional<FaultRecord> fault;
 };
 
+ResetCause cause_of(FaultRecord::Reason reason) {
+  if (reason == FaultRecord::Reason::supply_failed) {
+    return ResetCause::power_on;
+  }
+  return is_clock_failure(reason) ? ResetCause::clock : ResetCause::fault;
+}
+
 Start find_start() {
   Start start;
   start.cause = reset_cause_of(rcc::csr.read());
   rcc::csr.set(rcc::csr_rmvf);
   start.fault = take_fault_record();
   if (start.fault) {
-    start.cause = is_clock_failure(start.fault->reason) ? ResetCause::clock : ResetCause::fault;
+    start.cause = cause_of(start.fault->reason);
   }
   return start;
+}
+
+FaultRecord::Reason reason_of(ClockResult result) {
+  switch (result) {
+    case ClockResult::no_supply:
+      return FaultRecord::Reason::supply_failed;
+    case ClockResult::no_crystal:
+      return FaultRecord::Reason::no_crystal;
+    case ClockResult::no_pll:
+    case ClockResult::ok:
+      break;
+  }
+  return FaultRecord::Reason::no_pll;
 }
 
 std::string_view text_of(ResetCause cause) {
@@ -100,7 +122,7 @@ void print(const Start& start, const std::optional<firmware::BoardRecord>& recor
   }
 }
 
-/// Waits until the watchdog restarts the chip; the crystal may start then.
+/// Waits until the watchdog restarts the chip; the clocks may start then.
 [[noreturn]] void wait_for_watchdog() {
   for (;;) {
     asm volatile("wfi");
@@ -124,8 +146,8 @@ void start_clocks_or_give_up(const Start& start) {
       print(*start.fault);
     }
     hardware.program
-        .note_good_start();  // the crystal has failed, not the program: the bootloader must not count a bad start
-    give_up(result == ClockResult::no_crystal ? FaultRecord::Reason::no_crystal : FaultRecord::Reason::no_pll);
+        .note_good_start();  // the board has failed, not the program: the bootloader must not count a bad start
+    give_up(reason_of(result));
   }
 }
 
@@ -136,6 +158,8 @@ void start_module(const Start& start) {
   }
   firmware::ModuleIdentity identity;
   identity.board_id = board::id;
+  const bool has_brown_out_reset = (flash_interface::optcr.read() & flash_interface::optcr_bor_lev_mask) == 0;
+  identity.capabilities = has_brown_out_reset ? proleg::canopen::has_brown_out_reset : 0U;
   identity.unique_id = factory::unique_id();
   identity.core_fingerprint = core_fingerprint;
   identity.reset_cause = start.cause;

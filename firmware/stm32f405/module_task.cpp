@@ -3,6 +3,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "firmware/stm32f405/faults.hpp"
 #include "firmware/stm32f405/reset.hpp"
 
 namespace proleg::stm32f405 {
@@ -46,6 +47,9 @@ void ModuleTask::run() {
   }
   if (hardware.can.recovering()) {
     next = now + recovery_poll_us < next ? now + recovery_poll_us : next;
+  }
+  if (module_ && module_->is_supply_low()) {
+    next = now + Supply::look_every_us < next ? now + Supply::look_every_us : next;
   }
   // If the deadline is unchanged, and still to come, TIM5 is set already.
   if (next != due_ || next <= now) {
@@ -97,8 +101,19 @@ void ModuleTask::follow_supply(Microseconds now) {
   if (hardware.supply.take_drop()) {
     module_->supply_low(in_order(now));
   }
-  if (module_->is_supply_low() && !Supply::is_low()) {
-    module_->supply_good(in_order(now));
+  if (!module_->is_supply_low()) {
+    return;
+  }
+  switch (hardware.supply.look(MicrosecondClock::stamp())) {
+    case Supply::Level::good:
+      module_->supply_good(in_order(now));
+      break;
+    case Supply::Level::low:
+      break;
+    case Supply::Level::none:
+      hardware.servo.finish_last_pulse();
+      record_fault(FaultRecord::Reason::supply_failed);
+      reset_chip();
   }
 }
 

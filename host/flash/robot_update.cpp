@@ -45,9 +45,10 @@ std::string describe(UpdateOutcome outcome, std::uint8_t detail) {
       return "another host flashes it";
     case UpdateOutcome::refused:
       return "has refused the image: " +
-             (detail == broadcast::refused_busy   ? "its servo has power, or it is Operational"
-              : detail == broadcast::refused_size ? "it has no room for so many bytes"
-                                                  : std::string(image::describe(static_cast<image::Error>(detail))));
+             (detail == broadcast::refused_busy     ? "its servo has power, it is Operational, or its supply is too low"
+              : detail == broadcast::refused_supply ? "its supply voltage is too low to write the flash"
+              : detail == broadcast::refused_size   ? "it has no room for so many bytes"
+                                                    : std::string(image::describe(static_cast<image::Error>(detail))));
     case UpdateOutcome::flash_failed:
       return "its flash has failed; at its next start it restores the program before";
     case UpdateOutcome::not_transferred:

@@ -22,7 +22,7 @@ enum class UpdateOutcome : std::uint8_t {
   runs,              ///< the module runs the image, confirmed
   vanished,          ///< the module does not answer any more
   belongs_to_other,  ///< another host flashes the module
-  refused,           ///< the module refuses the image: detail is an image::Error, or broadcast::refused_busy
+  refused,  ///< the module refuses the image: detail is an image::Error, or broadcast::refused_busy or refused_supply
   flash_failed,      ///< the flash of the module does not work correctly
   not_transferred,   ///< the module runs the old program, and has not received the whole image
   old_program_runs,  ///< the new program was not installed, or has failed its trial

@@ -202,6 +202,9 @@ void BusExamination::read_details(Microseconds now) {
     readings_.read(scanned.node, object::sync_identifier.address, [&node](const SdoResult& result) {
       node.produces_sync = result.is_good() && (result.number() & canopen::produces_sync) != 0;
     });
+    readings_.read(scanned.node, object::capabilities.address, [&node](const SdoResult& result) {
+      node.has_brown_out_reset = !result.is_good() || (result.number() & canopen::has_brown_out_reset) != 0;
+    });
     readings_.read(scanned.node, object::error_count.address, [this, &node](const SdoResult& result) {
       const std::uint32_t count = result.is_good() ? result.number() : 0;
       for (std::uint8_t i = 1; i <= std::min<std::uint32_t>(count, read_errors); ++i) {

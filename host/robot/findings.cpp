@@ -45,6 +45,7 @@ class Diagnosis {
     }
     find_reports();
     find_absence();
+    find_unprotected_modules();
     for (Finding& finding : findings_) {
       capitalise(finding.what);
     }
@@ -337,6 +338,18 @@ class Diagnosis {
               hexadecimal(static_cast<unsigned>(code), 4) + ").",
           "docs/protocol.md explains the code. Start the robot again; if the report comes back, look at its cause.",
           nodes);
+    }
+  }
+
+  void find_unprotected_modules() {
+    const Nodes nodes = nodes_with([](const ObservedNode& node) { return !node.has_brown_out_reset; });
+    if (!nodes.empty()) {
+      add("no_brown_out_reset",
+          nodes_text(nodes) +
+              ": the brown-out reset of the chip is not set to its highest level. If the supply fails, only the "
+              "program "
+              "itself stops the servo.",
+          "Set it with a probe: proleg flash --bare --probe stlink (docs/board.md).", nodes);
     }
   }
 

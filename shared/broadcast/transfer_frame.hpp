@@ -83,8 +83,9 @@ struct ModuleCondition {
 };
 
 // Errors of the state `refused`; smaller numbers are those of image::Error.
-inline constexpr std::uint8_t refused_busy = 0x80;  ///< the module is_busy (module_flag)
-inline constexpr std::uint8_t refused_size = 0x81;  ///< the module has no room for an image of this size
+inline constexpr std::uint8_t refused_busy = 0x80;    ///< the module is_busy (module_flag)
+inline constexpr std::uint8_t refused_size = 0x81;    ///< the module has no room for an image of this size
+inline constexpr std::uint8_t refused_supply = 0x82;  ///< the supply of the module is too low to write its flash
 
 struct StatusAnswer {
   ReceiverState state = ReceiverState::idle;

@@ -15,10 +15,12 @@ using Duration = FaultDeclaration::Duration;
 constexpr std::array declarations{
     FaultDeclaration{FaultKind::unplug, "unplug", true, Argument::none, Duration::needed, false, false,
                      "The module's bus wires are off; it keeps its supply."},
-    FaultDeclaration{FaultKind::supply, "supply", true, Argument::voltage, Duration::needed, false, true,
-                     "The supply of the module's chip is this voltage instead of 3.3V. 0V: it has no power. Below "
-                     "2.93V its voltage detector reports it. The board sets no brown-out level, so the chip is reset "
-                     "below 1.68V."},
+    FaultDeclaration{
+        FaultKind::supply, "supply", true, Argument::voltage, Duration::needed, false, true,
+        "The supply of the module's chip falls to this voltage, from 2.95V on by 0.1V a millisecond, and "
+        "rises again in the same way. 0V: it has no power, at once. Below 2.93V the servo gets no pulses, "
+        "below 2.5V the program ends. The board sets no brown-out level, so the chip itself is reset below "
+        "1.68V."},
     FaultDeclaration{FaultKind::reset, "reset", true, Argument::none, Duration::none, false, false,
                      "The module restarts, as by its reset pin."},
     FaultDeclaration{FaultKind::crystal, "crystal", true, Argument::none, Duration::needed, true, false,
@@ -148,7 +150,7 @@ bool acts_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us) {
 }
 
 bool act_at_ticks(const FaultSchedule& schedule, std::uint32_t tick_period_us) {
-  constexpr std::uint32_t max_reset_threshold_mv = 1'720;  // below it the chip restarts, and ends this at no tick
+  constexpr std::uint32_t max_reset_threshold_mv = 2'600;  // below it the program restarts, and ends this at no tick
   return std::ranges::all_of(schedule, [tick_period_us](const Fault& fault) {
     return declaration_of(fault.kind).acts_at_ticks &&
            (fault.kind != FaultKind::supply || fault.amount > max_reset_threshold_mv) &&

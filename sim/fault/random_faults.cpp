@@ -109,8 +109,8 @@ class Dice {
     };
     switch (fault.kind) {
       case FaultKind::supply:
-        fault.amount =
-            std::array<std::uint32_t, 4>{2'500, 2'800, 0, 1'500}.at(noise_.below(settings_.only_at_ticks ? 2 : 4));
+        fault.amount = std::array<std::uint32_t, 6>{2'700, 2'800, 0, 1'500, 2'000, 2'400}.at(
+            noise_.below(settings_.only_at_ticks ? 2 : 6));
         break;
       case FaultKind::jam:
         fault.amount = std::array<std::uint32_t, 3>{1'500, 2'200, 3'000}.at(noise_.below(3));

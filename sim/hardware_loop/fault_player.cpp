@@ -13,7 +13,11 @@ namespace {
 constexpr std::uint32_t for_bus = 0x100;
 constexpr std::uint32_t for_touch = 0x200;
 
-constexpr std::uint32_t nominal_supply_mv = 3'300;
+// Ramps of a supply: three times as steep as the capacitors of the board allow (docs/board.md). What is above the
+// threshold of the detector has no effect, and takes no time.
+constexpr std::uint32_t top_of_ramps_mv = 2'950;
+constexpr std::uint32_t ramp_step_mv = 20;
+constexpr std::uint64_t ramp_step_us = 200;
 
 }  // namespace
 
@@ -87,7 +91,8 @@ class FaultPlayer::Babbler final : private BusListener {
   bool is_on_ = false;
 };
 
-FaultPlayer::FaultPlayer(const FaultSchedule& schedule, const Stage& stage) : stage_(stage) {
+FaultPlayer::FaultPlayer(const FaultSchedule& schedule, const Stage& stage)
+    : stage_(stage), supplies_(stage.scenario.modules.size()) {
   for (const Fault& fault : schedule) {
     actions_.insert({fault.start_us, {&fault, Phase::begin}});
   }
@@ -154,9 +159,15 @@ void FaultPlayer::act(const Action& action, std::uint64_t time_us, BusTime now) 
     case Phase::repeat:
       foreign_node_->send_now(fault.frame);
       break;
+    case Phase::ramp:
+      ramp_supply(fault, time_us, now);
+      break;
     case Phase::end:
       end(fault, now);
       break;
+  }
+  if (fault.kind == FaultKind::supply && action.phase != Phase::ramp) {
+    change_supply(fault, action.phase == Phase::begin ? fault.amount : nominal_supply_mv, time_us, now);
   }
   const std::uint64_t again_us = time_us + fault.repeat_us;
   const bool lasts = !fault.duration_us || again_us < fault.start_us + *fault.duration_us;
@@ -169,9 +180,6 @@ void FaultPlayer::begin(const Fault& fault, BusTime now) {
   switch (fault.kind) {
     case FaultKind::unplug:
       stage_.bus.controller(stage_.rack.controller(*fault.joint)).unplug();
-      break;
-    case FaultKind::supply:
-      module_of(fault).set_supply(now, fault.amount);
       break;
     case FaultKind::reset:
       module_of(fault).power_on(now);
@@ -225,6 +233,8 @@ void FaultPlayer::begin(const Fault& fault, BusTime now) {
     case FaultKind::host_dies:
       stage_.host.die();
       break;
+    case FaultKind::supply:
+      break;  // change_supply()
   }
 }
 
@@ -232,9 +242,6 @@ void FaultPlayer::end(const Fault& fault, BusTime now) {
   switch (fault.kind) {
     case FaultKind::unplug:
       stage_.bus.controller(stage_.rack.controller(*fault.joint)).plug_in();
-      break;
-    case FaultKind::supply:
-      module_of(fault).set_supply(now, nominal_supply_mv);
       break;
     case FaultKind::crystal:
       module_of(fault).set_crystal(now, true);
@@ -272,11 +279,39 @@ void FaultPlayer::end(const Fault& fault, BusTime now) {
     case FaultKind::host_stall:
       stage_.host.resume(now);
       break;
+    case FaultKind::supply:
     case FaultKind::reset:
     case FaultKind::send:
     case FaultKind::host_dies:
       break;
   }
+}
+
+/// A supply that is cut, or comes back, changes at once.
+void FaultPlayer::change_supply(const Fault& fault, std::uint32_t mv, std::uint64_t time_us, BusTime now) {
+  Supply& supply = supplies_[*fault.joint];
+  supply.wanted_mv = mv;
+  if (mv == 0 || supply.mv == 0) {
+    supply.mv = mv;
+    module_of(fault).set_supply(now, mv);
+  } else if (supply.mv > top_of_ramps_mv && mv < top_of_ramps_mv) {
+    supply.mv = top_of_ramps_mv;
+  }
+  if (!supply.is_ramping) {
+    ramp_supply(fault, time_us, now);
+  }
+}
+
+void FaultPlayer::ramp_supply(const Fault& fault, std::uint64_t time_us, BusTime now) {
+  Supply& supply = supplies_[*fault.joint];
+  supply.is_ramping = supply.mv != supply.wanted_mv;
+  if (!supply.is_ramping) {
+    return;
+  }
+  supply.mv = supply.wanted_mv > supply.mv ? std::min(supply.mv + ramp_step_mv, supply.wanted_mv)
+                                           : std::max(supply.mv - ramp_step_mv, supply.wanted_mv);
+  module_of(fault).set_supply(now, supply.mv);
+  actions_.insert({time_us + ramp_step_us, {&fault, Phase::ramp}});
 }
 
 }  // namespace proleg::sim

@@ -87,7 +87,7 @@ class FaultPlayer {
 
  private:
   class Babbler;
-  enum class Phase : std::uint8_t { begin, repeat, end };
+  enum class Phase : std::uint8_t { begin, repeat, ramp, end };
   struct Action {
     const Fault* fault;
     Phase phase;
@@ -95,11 +95,22 @@ class FaultPlayer {
 
   [[nodiscard]] BusTime next_action() const;
   void act(const Action& action, std::uint64_t time_us, BusTime now);
+  void change_supply(const Fault& fault, std::uint32_t mv, std::uint64_t time_us, BusTime now);
+  void ramp_supply(const Fault& fault, std::uint64_t time_us, BusTime now);
   void begin(const Fault& fault, BusTime now);
   void end(const Fault& fault, BusTime now);
   [[nodiscard]] JointModule& module_of(const Fault& fault) const { return stage_.rack.module(*fault.joint); }
 
+  /// The supply of a module's chip, which falls and rises by and by.
+  struct Supply {
+    std::uint32_t mv = nominal_supply_mv;
+    std::uint32_t wanted_mv = nominal_supply_mv;
+    bool is_ramping = false;
+  };
+  static constexpr std::uint32_t nominal_supply_mv = 3'300;
+
   Stage stage_;
+  std::vector<Supply> supplies_;                  ///< by joint
   std::multimap<std::uint64_t, Action> actions_;  ///< by time in microseconds
   std::uint32_t tick_ = 0;
   BusTime sync_ = 0;

@@ -65,7 +65,7 @@ firmware::ModuleIdentity make_identity(const Scenario& scenario, std::size_t joi
   firmware::ModuleIdentity identity;
   identity.node = scenario.modules[joint].node;
   identity.core_fingerprint = core_fingerprint;
-  identity.capabilities = canopen::measures_angle;
+  identity.capabilities = canopen::measures_angle | canopen::has_brown_out_reset;
   for (std::uint32_t& word : identity.unique_id) {
     word = noise.next();
   }

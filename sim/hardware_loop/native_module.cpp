@@ -10,9 +10,12 @@
 namespace proleg::sim {
 namespace {
 
-// Thresholds of the chip (docs/board.md): power-down reset, and the voltage detector of the supply.
-constexpr std::uint32_t reset_threshold_mv = 1'680;
-constexpr std::uint32_t detector_threshold_mv = 2'930;
+// Thresholds of the chip's voltage detector (firmware/stm32f405/supply.hpp), when the voltage falls and when it rises:
+// below the first ones the program has ended, below the others the servo has no pulses.
+constexpr std::uint32_t ends_below_mv = 2'510;
+constexpr std::uint32_t starts_from_mv = 2'600;
+constexpr std::uint32_t low_below_mv = 2'930;
+constexpr std::uint32_t good_from_mv = 3'030;
 
 }  // namespace
 
@@ -124,9 +127,6 @@ void NativeModule::write_settings(std::uint8_t schema) {
   static_cast<void>(flash_.program(0, 0, bytes));
 }
 
-bool NativeModule::has_power() const { return supply_mv_ >= reset_threshold_mv; }
-bool NativeModule::is_supply_low() const { return supply_mv_ < detector_threshold_mv; }
-
 void NativeModule::power_on(BusTime now) {
   controller_.switch_off();
   pulse_.reset();
@@ -135,7 +135,7 @@ void NativeModule::power_on(BusTime now) {
   pause_end_ = 0;
   after_pause_ = AfterPause::goes_on;
   program_.lose_ram();
-  if (has_power()) {
+  if (has_power_) {
     program_.reset();
     const Microseconds time = start_time_us_ + program_.take_flash_time();
     if (time == 0) {
@@ -160,7 +160,7 @@ void NativeModule::start(BusTime now) {
     controller_.switch_on();
     meters_.has_converted = meters_.converts;
     module_.power_on(crystal_.at(now));
-    if (is_supply_low()) {
+    if (is_supply_low_) {
       module_.supply_low(crystal_.at(now));
     }
   }
@@ -199,13 +199,14 @@ void NativeModule::end_pause(BusTime now) {
 }
 
 void NativeModule::set_supply(BusTime now, std::uint32_t mv) {
-  const bool had_power = has_power();
-  const bool was_low = is_supply_low();
-  supply_mv_ = mv;
-  if (has_power() != had_power) {
+  const bool had_power = has_power_;
+  const bool was_low = is_supply_low_;
+  has_power_ = mv >= (had_power ? ends_below_mv : starts_from_mv);
+  is_supply_low_ = mv < (was_low ? good_from_mv : low_below_mv);
+  if (has_power_ != had_power) {
     power_on(now);
-  } else if (has_power() && is_supply_low() != was_low && runs_program()) {
-    is_supply_low() ? module_.supply_low(crystal_.at(now)) : module_.supply_good(crystal_.at(now));
+  } else if (has_power_ && is_supply_low_ != was_low && runs_program()) {
+    is_supply_low_ ? module_.supply_low(crystal_.at(now)) : module_.supply_good(crystal_.at(now));
     update_deadline();
   }
 }

@@ -124,10 +124,6 @@ class NativeModule final : public JointModule,
                                                       std::vector<std::uint8_t>(sector_size, erased)};
   };
 
-  static constexpr std::uint32_t nominal_supply_mv = 3'300;
-
-  [[nodiscard]] bool has_power() const;
-  [[nodiscard]] bool is_supply_low() const;
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
   void error_seen(BusTime time, bool was_sending) override;
@@ -161,7 +157,8 @@ class NativeModule final : public JointModule,
   std::optional<std::int32_t> pulse_;
   PulseWatch pulse_watch_;
   CommandWatch command_watch_;
-  std::uint32_t supply_mv_ = nominal_supply_mv;
+  bool has_power_ = true;
+  bool is_supply_low_ = false;
   Microseconds start_time_us_ = 0;
   Microseconds deadline_ = never;  ///< the program's, by its crystal
   BusTime deadline_time_ = never_on_bus;

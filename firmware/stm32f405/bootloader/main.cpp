@@ -20,6 +20,7 @@
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/supply.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
 
 extern "C" {
@@ -174,7 +175,9 @@ void sleep_until(Microseconds deadline) {
   constexpr std::array broadcast{broadcast::host_identifier};
   the_can->listen(broadcast);
   the_bootloader->power_on(the_clock.now(), the_settings.node(), left);
-  for (const Interrupt interrupt : {Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce, Interrupt::timer_5}) {
+  enable_detector_interrupt();
+  for (const Interrupt interrupt :
+       {Interrupt::pvd, Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce, Interrupt::timer_5}) {
     nvic::enable(interrupt);
   }
   BusRecovery recovery;
@@ -219,8 +222,8 @@ void run_program() {
   static_cast<void>(start_watchdog(watchdog_ms));  // if it fails, the watchdog has 512 ms, which is enough
   start_pins();
   if (start_clocks() != ClockResult::ok) {
-    // There is no CAN without the crystal, and no program would start. The watchdog resets the chip: the crystal may
-    // start then.
+    // There is no CAN without the crystal, and no program would start. The watchdog resets the chip: crystal and supply
+    // may be good then.
     for (;;) {
       asm volatile("wfi");
     }
@@ -237,6 +240,9 @@ void can1_tx_handler() { the_can->on_transmit_interrupt(MicrosecondClock::stamp(
 void can1_rx0_handler() { the_can->on_receive_interrupt(MicrosecondClock::stamp()); }
 
 void can1_sce_handler() { the_can->on_status_interrupt(); }
+
+/// The supply is too low for the clocks: the next start waits for it.
+void pvd_handler() { reset_chip(); }
 
 void tim5_handler() { MicrosecondClock::on_interrupt(); }
 

@@ -4,6 +4,7 @@
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/flash.hpp"
+#include "firmware/stm32f405/supply.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
 
 namespace proleg::stm32f405 {
@@ -30,6 +31,8 @@ bool SlotMemory::program(FlashSlot slot, std::uint32_t offset, std::span<const s
   return offset <= sector.size && bytes.size() <= sector.size - offset && offset % 4 == 0 && bytes.size() % 4 == 0 &&
          program_words(sector.address + offset, bytes);
 }
+
+bool SlotMemory::is_supplied() const { return is_flash_supplied(); }
 
 std::span<const std::uint8_t> SlotMemory::contents(FlashSlot slot) const {
   const flash_layout::Sector& sector = sector_of(slot);

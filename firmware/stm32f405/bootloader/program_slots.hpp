@@ -13,6 +13,7 @@ class SlotMemory final : public bootloader::SlotFlash {
   [[nodiscard]] bool program(bootloader::FlashSlot slot, std::uint32_t offset,
                              std::span<const std::uint8_t> bytes) override;
   [[nodiscard]] std::span<const std::uint8_t> contents(bootloader::FlashSlot slot) const override;
+  [[nodiscard]] bool is_supplied() const override;
 };
 
 /// Board and place of images on the reference board.

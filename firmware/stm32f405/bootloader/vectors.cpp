@@ -10,6 +10,7 @@ using Table = VectorTable<static_cast<unsigned>(Interrupt::timer_5) + 1>;
 
 constexpr Table make_vectors() {
   Table table;
+  table.set(Interrupt::pvd, pvd_handler);
   table.set(Interrupt::can1_tx, can1_tx_handler);
   table.set(Interrupt::can1_rx0, can1_rx0_handler);
   table.set(Interrupt::can1_sce, can1_sce_handler);

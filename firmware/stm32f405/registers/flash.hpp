@@ -38,4 +38,8 @@ inline constexpr std::uint32_t cr_psize_32 = 2U << 8U;  ///< for 2.7 to 3.6 V
 inline constexpr std::uint32_t cr_strt = 1U << 16U;
 inline constexpr std::uint32_t cr_lock = 1U << 31U;
 
+/// The option bytes, as the chip has read them at its start.
+inline constexpr Register optcr{base + 0x14};
+inline constexpr std::uint32_t optcr_bor_lev_mask = 3U << 2U;  ///< 0: brown-out reset of level 3, the highest; 3: off
+
 }  // namespace proleg::stm32f405::flash_interface

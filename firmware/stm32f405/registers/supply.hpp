@@ -13,6 +13,7 @@ inline constexpr std::uintptr_t base = 0x4000'7000;
 inline constexpr Register cr{base + 0x00};
 inline constexpr std::uint32_t cr_pvde = 1U << 4U;
 inline constexpr std::uint32_t cr_pls_mask = 7U << 5U;
+inline constexpr std::uint32_t cr_pls_2v5 = 3U << 5U;
 inline constexpr std::uint32_t cr_pls_2v8 = 6U << 5U;
 
 inline constexpr Register csr{base + 0x04};

@@ -89,7 +89,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   void set_supply(std::uint32_t mv) {
     supply_mv_ = mv;
-    change_outside([&] { pwr_.set_supply(mv); });
+    change_outside([&] {
+      pwr_.set_supply(mv);
+      flash_.set_supply(mv);
+    });
     if (!on_) {
       return;
     }
@@ -102,6 +105,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     } else if (mv >= threshold.rising_mv && is_held_) {
       release();
     }
+    require_flash_speed();
   }
 
   void pull_reset_pin() {
@@ -300,7 +304,20 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     known_core_period_ = core_period();
     pass_to(time);
     cpu_.change_core_period();
+    require_flash_speed();
     return true;
+  }
+
+  /// Stops a chip whose flash does not follow its clock: what it would execute is not defined.
+  void require_flash_speed() {
+    if (!on_ || is_held_ || stands_still_) {
+      return;
+    }
+    guard([this] {
+      if (const std::optional<std::string> fault = flash_.speed_fault(core_period())) {
+        throw UnmodelledAccess(*fault);
+      }
+    });
   }
 
   /// Whether the CPU executes; a CPU that has locked up waits for the watchdog.
@@ -443,6 +460,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       invalidate_next_events();
       if (follow_core_clock(time)) {
         cpu_.pause();
+      }
+      if (peripheral == &flash_) {
+        require_flash_speed();
       }
       shorten_run(peripheral->next_event());
       shorten_run(pins_.next_edge());

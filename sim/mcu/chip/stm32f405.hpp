@@ -78,7 +78,8 @@ class Stm32f405 {
   /// Makes a word of the flash weak (FlashInterface::set_weak_word()).
   void set_weak_word(std::uint32_t address, std::uint32_t bits);
   /// Sets VDD, 3,300 mV at the start. Below the threshold of the brown-out reset (ChipSettings) or of the power-down
-  /// reset the chip is held in reset; below the latter it loses its memory. The analogue supply stays.
+  /// reset the chip is held in reset; below the latter it loses its memory. The analogue supply stays. A chip whose
+  /// clock is too fast for its flash at this voltage stops, with an event (FlashInterface::speed_fault()).
   void set_supply(std::uint32_t mv);
 
   /// Pulls the reset pin low for a moment.

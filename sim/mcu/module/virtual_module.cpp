@@ -148,8 +148,9 @@ firmware::TickRecord VirtualModule::last_tick() const {
 // A chip that sleeps is behind the time of the bus.
 
 void VirtualModule::set_supply(BusTime now, std::uint32_t mv) {
+  constexpr std::uint32_t reset_threshold_mv = 1'680;  // without brown-out reset
   chip_.advance_to(now, now);
-  is_pulse_whole_ = false;
+  is_pulse_whole_ = is_pulse_whole_ && mv >= reset_threshold_mv;
   chip_.set_supply(mv);
 }
 

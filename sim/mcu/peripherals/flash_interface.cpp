@@ -21,6 +21,7 @@ constexpr RegisterName registers[] = {{acr, "ACR"}, {keyr, "KEYR"}, {optkeyr, "O
                                       {sr, "SR"},   {cr, "CR"},     {optcr, "OPTCR"}};
 
 constexpr std::uint32_t acr_bits = 0x1F07;  // DCRST, ICRST, DCEN, ICEN, PRFTEN, LATENCY
+constexpr std::uint32_t acr_prften = 1U << 8U;
 constexpr std::uint32_t acr_dcen = 1U << 10U;
 constexpr std::uint32_t acr_dcrst = 1U << 12U;
 
@@ -48,7 +49,9 @@ constexpr std::uint32_t optcr_start = 1U << 1U;
 constexpr std::uint32_t optcr_brown_out = 3U << 2U;
 
 constexpr std::uint32_t flash_bytes = 1024 * 1024;
+constexpr unsigned x32 = 2;
 constexpr unsigned x64 = 3;
+constexpr std::uint32_t x32_from_mv = 2'700;  // RM0090, table 12
 constexpr std::size_t bytes_of_word = 4;
 
 constexpr LocalTime ms = 1000 * local_time_per_us;
@@ -69,6 +72,13 @@ LocalTime erase_time(std::uint32_t bytes, unsigned parallelism) {
     default:
       return all[parallelism];
   }
+}
+
+/// A voltage as text: "2.5 V", "1.72 V".
+std::string volts_text(std::uint32_t mv) {
+  std::string decimals = std::to_string(1'000 + mv % 1'000).substr(1);
+  decimals.erase(std::max<std::size_t>(decimals.find_last_not_of('0') + 1, 1));
+  return std::to_string(mv / 1'000) + "." + decimals + " V";
 }
 
 std::size_t sector_of(std::uint32_t address) {
@@ -121,6 +131,24 @@ void FlashInterface::reset() {
   option_lock_ = Lock::locked;
   operations_.clear();
   interrupt_.set(false);
+}
+
+std::optional<std::string> FlashInterface::speed_fault(LocalTime core_period) const {
+  const FlashSpeed speed = flash_speed(supply_mv_);
+  const std::string hclk =
+      "HCLK of " + std::to_string(local_time_per_us / core_period) + " MHz at " + volts_text(supply_mv_);
+  const std::string source = " (RM0090, table 10)";
+  if (core_period * speed.max_mhz < local_time_per_us) {
+    return hclk + ": at most " + std::to_string(speed.max_mhz) + " MHz" + source;
+  }
+  if (const unsigned needed = flash_wait_states(core_period, supply_mv_); wait_states() < needed) {
+    return hclk + " needs " + std::to_string(needed) + " wait states, FLASH_ACR has " + std::to_string(wait_states()) +
+           source;
+  }
+  if (!speed.may_prefetch && (acr_ & acr_prften) != 0) {
+    return hclk + ": the prefetch must be off" + source;
+  }
+  return std::nullopt;
 }
 
 LocalTime FlashInterface::busy_until() const { return operations_.empty() ? 0 : operations_.back().end; }
@@ -296,7 +324,7 @@ void FlashInterface::write(std::uint32_t offset, std::uint32_t value) {
 
 void FlashInterface::write_acr(std::uint32_t value) {
   const unsigned states = value & 0x7U;
-  const unsigned needed = flash_wait_states(chip().clocks().core);
+  const unsigned needed = flash_wait_states(chip().clocks().core, supply_mv_);
   if (states < needed) {
     reject_write(acr, value,
                  std::to_string(states) + " wait states, HCLK needs " + std::to_string(needed) + " (RM0090, table 10)");
@@ -334,6 +362,11 @@ void FlashInterface::write_cr(std::uint32_t value) {
   }
   if (field(value, 8, 2) == x64) {
     reject_write(cr, value, "PSIZE x64 needs an external supply of 8 to 9 V, which the board does not have");
+  }
+  if (field(value, 8, 2) == x32 && (value & (cr_pg | cr_strt)) != 0 && supply_mv_ < x32_from_mv) {
+    reject_write(
+        cr, value,
+        "PSIZE x32 at " + volts_text(supply_mv_) + ": at least " + volts_text(x32_from_mv) + " (RM0090, 3.6.2)");
   }
   cr_ = value & cr_kept;
   if ((value & cr_strt) != 0) {

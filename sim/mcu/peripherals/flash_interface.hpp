@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "sim/mcu/peripherals/register_block.hpp"
@@ -43,10 +44,28 @@ inline constexpr std::array<FlashSector, 12> flash_sectors = [] {
   return sectors;
 }();
 
-/// Wait states that HCLK needs at 2.7 to 3.6 V (RM0090, table 10): one more for each 30 MHz.
-[[nodiscard]] constexpr unsigned flash_wait_states(LocalTime core_period) {
-  constexpr LocalTime mhz_per_state = 30;
-  // f <= 30 MHz * (states + 1), with f = 1008 MHz / period.
+/// How fast the flash is from a supply voltage on (RM0090, table 10; below 1.8 V it is not specified).
+struct FlashSpeed {
+  std::uint32_t from_mv;
+  std::uint32_t mhz_per_state;  ///< HCLK for each wait state, and without one
+  std::uint32_t max_mhz;        ///< highest HCLK
+  bool may_prefetch;
+};
+inline constexpr std::uint32_t rated_supply_mv = 3'300;
+[[nodiscard]] constexpr FlashSpeed flash_speed(std::uint32_t supply_mv) {
+  constexpr FlashSpeed speeds[] = {{2'700, 30, 168, true}, {2'400, 24, 168, true}, {2'100, 22, 168, true}};
+  for (const FlashSpeed& speed : speeds) {
+    if (supply_mv >= speed.from_mv) {
+      return speed;
+    }
+  }
+  return {1'800, 20, 160, false};
+}
+
+/// Wait states that HCLK needs.
+[[nodiscard]] constexpr unsigned flash_wait_states(LocalTime core_period, std::uint32_t supply_mv = rated_supply_mv) {
+  const LocalTime mhz_per_state = flash_speed(supply_mv).mhz_per_state;
+  // f <= mhz_per_state * (states + 1), with f = 1008 MHz / period.
   return static_cast<unsigned>((local_time_per_us + mhz_per_state * core_period - 1) / (mhz_per_state * core_period)) -
          1;
 }
@@ -96,6 +115,12 @@ class FlashInterface final : public RegisterBlock {
   /// the cache, too (RM0090, 3.6.4): as if the word were always in it.
   void set_weak_word(std::uint32_t address, std::uint32_t bits);
 
+  void set_supply(std::uint32_t mv) { supply_mv_ = mv; }
+  /// Why the flash cannot follow this HCLK at the present voltage, with the wait states and the prefetch that the
+  /// program has set: "HCLK of 168 MHz at 2.5 V needs 6 wait states, FLASH_ACR has 5 (RM0090, table 10)". A chip would
+  /// execute wrong instructions.
+  [[nodiscard]] std::optional<std::string> speed_fault(LocalTime core_period) const;
+
   /// Wait states that the program has set (FLASH_ACR.LATENCY).
   [[nodiscard]] unsigned wait_states() const { return acr_ & 0x7U; }
 
@@ -129,6 +154,7 @@ class FlashInterface final : public RegisterBlock {
   };
 
   FlashMemory* memory_;
+  std::uint32_t supply_mv_ = rated_supply_mv;
   std::uint32_t option_bytes_;  ///< as OPTCR shows them after reset
   InterruptLine interrupt_;
   std::optional<WeakWord> weak_;

@@ -280,6 +280,21 @@ TEST_F(BootloaderTest, AnImageThatIsNotRightIsRefusedForItsReasonBeforeAnythingI
   EXPECT_EQ(node.module.start(), 1U);
 }
 
+TEST_F(BootloaderTest, AnInstallIsRefusedWhileTheSupplyIsTooLow) {
+  Node& node = add(3);
+  node.module.install_proven(first);
+  const int operations = node.module.flash.operations;
+  node.module.flash.has_supply = false;
+  flash(second.bytes());
+  EXPECT_EQ(targets[0].status.state, ReceiverState::refused);
+  EXPECT_EQ(targets[0].status.error, broadcast::refused_supply);
+  EXPECT_EQ(node.module.flash.operations, operations);
+  node.restart(now());
+  node.module.flash.has_supply = true;
+  flash(second.bytes());
+  EXPECT_EQ(targets[0].status.state, ReceiverState::installed);
+}
+
 TEST_F(BootloaderTest, AToolOfOthersDownloadsAnImageBySdo) {
   Node& node = add(tool_node);
   node.module.install_proven(first);

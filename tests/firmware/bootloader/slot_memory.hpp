@@ -26,6 +26,7 @@ class SlotMemory final : public SlotFlash {
   int operations = 0;   ///< number of words programmed and slots erased
   int cut_at = -1;      ///< the operation that does not end
   int refused_at = -1;  ///< the operation that reports an error
+  bool has_supply = true;
   /// Whether an erase that is cut off leaves all bits as they were. (They are weak now, and may read otherwise later.)
   bool erases_leave_all = false;
   std::mt19937 noise{1};
@@ -50,6 +51,8 @@ class SlotMemory final : public SlotFlash {
     }
     throw PowerCut();
   }
+
+  [[nodiscard]] bool is_supplied() const override { return has_supply; }
 
   bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) override {
     EXPECT_EQ(offset % 4, 0U);

@@ -230,6 +230,16 @@ TEST(BusFindings, SettingsOfALaterProgramAreNamedWhileTheyLast) {
   EXPECT_NE(found.front().to_do.find("proleg recover --reset-settings"), std::string::npos);
 }
 
+TEST(BusFindings, AModuleWithoutBrownOutResetIsNamed) {
+  BusObservations seen = healthy();
+  seen.nodes[0].has_brown_out_reset = false;
+  const auto found = findings(seen);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().code, "no_brown_out_reset");
+  EXPECT_EQ(found.front().nodes, std::vector<std::uint8_t>{1});
+  EXPECT_NE(found.front().to_do.find("proleg flash --bare --probe stlink"), std::string::npos);
+}
+
 TEST(BusFindings, AModuleThatWasNotReadHasNoForeignCore) {
   BusObservations seen = healthy();
   seen.nodes[0].answers->core_fingerprint = 0;

@@ -118,9 +118,17 @@ TEST(FaultyRobot, AModuleWithoutPowerIsLimpAndComesBack) {
 }
 
 TEST(FaultyRobot, AModuleWithTooLittleVoltageIsInFault) {
-  const Outcome outcome = run("at 1.5s supply J3 2.5V for 200ms");
+  const Outcome outcome = run("at 1.5s supply J3 2.7V for 200ms");
   EXPECT_GT(time_of(outcome, j3, "EMCY 0x3220"), 1.5);
   EXPECT_EQ(outcome.ends[j3], JointEnd::limp) << "its power is the host's decision";
+}
+
+TEST(FaultyRobot, AModuleWhoseProgramHasEndedForLackOfSupplyComesBackWithIt) {
+  const Outcome outcome = run("at 1.5s supply J3 2.0V for 200ms");
+  EXPECT_GT(time_of(outcome, j3, "limp"), 1.5);
+  EXPECT_LE(time_of(outcome, j3, "limp"), 1.52);
+  EXPECT_GT(time_of(outcome, j3, "starts", 1.7), 1.7);
+  EXPECT_EQ(outcome.ends, all_in_operation);
 }
 
 TEST(FaultyRobot, AModuleThatRestartsJoinsAgain) {

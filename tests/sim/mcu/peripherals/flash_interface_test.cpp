@@ -374,6 +374,42 @@ TEST_F(FlashTest, WaitStatesFollowTheCore) {
   EXPECT_EQ(flash.wait_states(), 5U);
 }
 
+// RM0090, table 10: the rows of the voltages below 2.7 V.
+TEST_F(FlashTest, WaitStatesFollowTheVoltage) {
+  struct Case {
+    std::uint32_t mv;
+    LocalTime core_period;
+    unsigned wait_states;
+    std::string fault;
+  };
+  const std::string source = " (RM0090, table 10)";
+  for (const Case& one :
+       {Case{2'700, 6, 5, ""},
+        Case{2'699, 6, 5, "HCLK of 168 MHz at 2.699 V needs 6 wait states, FLASH_ACR has 5" + source},
+        Case{2'400, 6, 6, ""},
+        Case{2'390, 6, 6, "HCLK of 168 MHz at 2.39 V needs 7 wait states, FLASH_ACR has 6" + source},
+        Case{2'100, 6, 7, ""}, Case{2'090, 6, 7, "HCLK of 168 MHz at 2.09 V: at most 160 MHz" + source},
+        Case{2'090, 7, 7, "HCLK of 144 MHz at 2.09 V: the prefetch must be off" + source},
+        Case{2'000, 12, 3, "HCLK of 84 MHz at 2.0 V needs 4 wait states, FLASH_ACR has 3" + source}}) {
+    flash.write(acr, 0x700 | one.wait_states);
+    flash.set_supply(one.mv);
+    EXPECT_EQ(flash.speed_fault(one.core_period).value_or(""), one.fault);
+  }
+  flash.write(acr, 0);
+  EXPECT_FALSE(flash.speed_fault(local_time_per_us / 16)) << "after a reset, at any voltage";
+}
+
+TEST_F(FlashTest, WordsNeedASupplyOf2700Millivolts) {
+  unlock();
+  flash.set_supply(2'690);
+  EXPECT_NE(test::rejection([&] { flash.write(cr, pg | x32); }).find("PSIZE x32 at 2.69 V: at least 2.7 V"),
+            std::string::npos);
+  EXPECT_NE(test::rejection([&] { flash.write(cr, ser | x32 | strt); }).find("PSIZE x32"), std::string::npos);
+  flash.set_supply(2'700);
+  program(flash_start, 0);
+  EXPECT_EQ(memory.word(flash_start), 0U);
+}
+
 TEST_F(FlashTest, RejectsWhatTheManualForbids) {
   unlock();
   EXPECT_NE(test::rejection([&] { flash.write(cr, pg | 3U << 8U); }).find("PSIZE x64"), std::string::npos);

@@ -55,8 +55,13 @@ void Console::write_decimal(std::uint32_t value) {
 bool Console::is_idle() const { return pending_.front() == nullptr && usart2::sr.has(usart2::sr_tc); }
 
 void Console::on_interrupt() {
+  // A write takes some cycles to reach the peripheral. An interrupt that returns before comes again: without TXE, a
+  // second write would replace the character that waits. Together with the write to DR, the read clears TC (RM0090,
+  // section 30.6.1).
+  if (!usart2::sr.has(usart2::sr_txe)) {
+    return;
+  }
   if (const char* const character = pending_.front()) {
-    static_cast<void>(usart2::sr.read());  // together with the write to DR, it clears TC (RM0090, section 30.6.1)
     usart2::dr.write(static_cast<unsigned char>(*character));
     pending_.pop();
   } else {

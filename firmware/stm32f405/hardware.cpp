@@ -54,21 +54,25 @@ extern "C" {
 void can1_tx_handler() {
   hardware.can.on_transmit_interrupt(MicrosecondClock::stamp());
   request_pend_sv();
+  end_handler();
 }
 
 void can1_rx0_handler() {
   hardware.can.on_receive_interrupt(MicrosecondClock::stamp());
   request_pend_sv();
+  end_handler();
 }
 
 void can1_sce_handler() {
   hardware.can.on_status_interrupt();
   request_pend_sv();
+  end_handler();
 }
 
 void pvd_handler() {
   hardware.supply.on_interrupt();
   request_pend_sv();
+  end_handler();
 }
 
 void tim5_handler() {
@@ -83,16 +87,19 @@ void usart2_handler() {
   } else {
     hardware.console.on_interrupt();
   }
+  end_handler();
 }
 
 void dma1_stream5_handler() {
   hardware.line.on_receive_interrupt();
   request_pend_sv();
+  end_handler();
 }
 
 void dma1_stream6_handler() {
   hardware.line.on_transmit_interrupt();
   request_pend_sv();
+  end_handler();
 }
 
 }  // extern "C"

@@ -199,6 +199,9 @@ void run_program() {
   }
 }
 
-void pend_sv_handler() { the_module_task.run(); }
+void pend_sv_handler() {
+  the_module_task.run();
+  end_handler();
+}
 
 }  // extern "C"

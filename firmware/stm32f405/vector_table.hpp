@@ -33,6 +33,10 @@ extern const std::uint32_t stack_top[];  ///< the linker script defines it
 
 namespace proleg::stm32f405 {
 
+/// Must be the last statement of each handler: a store that ends at the return may make the processor take the handler
+/// of a wrong interrupt (ARM, erratum 838869 of Cortex-M4 r0p1).
+[[gnu::always_inline]] inline void end_handler() { asm volatile("dsb" : : : "memory"); }
+
 /// The vector table (PM0214, table 17, and RM0090, table 61) up to the last interrupt that a program enables. All
 /// handlers that are not set are fault handlers.
 template <unsigned interrupt_count>

@@ -235,15 +235,27 @@ void run_program() {
   serve_bus(left);
 }
 
-void can1_tx_handler() { the_can->on_transmit_interrupt(MicrosecondClock::stamp()); }
+void can1_tx_handler() {
+  the_can->on_transmit_interrupt(MicrosecondClock::stamp());
+  end_handler();
+}
 
-void can1_rx0_handler() { the_can->on_receive_interrupt(MicrosecondClock::stamp()); }
+void can1_rx0_handler() {
+  the_can->on_receive_interrupt(MicrosecondClock::stamp());
+  end_handler();
+}
 
-void can1_sce_handler() { the_can->on_status_interrupt(); }
+void can1_sce_handler() {
+  the_can->on_status_interrupt();
+  end_handler();
+}
 
 /// The supply is too low for the clocks: the next start waits for it.
 void pvd_handler() { reset_chip(); }
 
-void tim5_handler() { MicrosecondClock::on_interrupt(); }
+void tim5_handler() {
+  MicrosecondClock::on_interrupt();
+  end_handler();
+}
 
 }  // extern "C"

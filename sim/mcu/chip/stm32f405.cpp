@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/mcu/chip/falling_lines.hpp"
 #include "sim/mcu/chip/oscillator.hpp"
 #include "sim/mcu/chip/peripheral_map.hpp"
 #include "sim/mcu/chip/pins.hpp"
@@ -253,7 +254,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   [[nodiscard]] LocalTime next_internal_event() const {
     if (!next_internal_event_) {
-      LocalTime next = pins_.next_edge();
+      LocalTime next = std::min(pins_.next_edge(), falling_lines_.next());
       for (const Peripheral* peripheral : timed_) {
         next = std::min(next, peripheral->next_event());
       }
@@ -264,7 +265,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   /// Time of the next event, without events that only a CPU that executes can see.
   [[nodiscard]] LocalTime next_visible_event() const {
     if (!next_visible_event_) {
-      LocalTime next = pins_.next_edge();
+      LocalTime next = std::min(pins_.next_edge(), falling_lines_.next());
       for (const Peripheral* peripheral : timed_) {
         next = std::min(next, peripheral->next_visible_event());
       }
@@ -285,6 +286,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     invalidate_next_events();
     if (cpu_.next_system_tick() <= time) {
       cpu_.advance_system_tick();
+    }
+    if (falling_lines_.next() <= time) {
+      falling_lines_.finish([this](unsigned position) { cpu_.set_interrupt(position, false); });
     }
     for (Peripheral* peripheral : timed_) {
       if (peripheral->next_event() <= time) {
@@ -376,7 +380,20 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       peripheral->reset();
     }
     pins_.reset();
+    falling_lines_ = {};
     invalidate_next_events();
+  }
+
+  /// Time that a write needs to reach a peripheral behind a slow bus, until which an interrupt that it ends is still
+  /// requested: three clocks of the bus. ST gives no figure. A read from such a peripheral comes after the writes.
+  [[nodiscard]] LocalTime bus_latency(const Peripheral& peripheral) const {
+    constexpr std::uint32_t apb2_start = 0x4001'0000;
+    constexpr std::uint32_t ahb_start = 0x4002'0000;
+    constexpr LocalTime bus_clocks = 3;
+    if (peripheral.base() >= ahb_start) {
+      return 0;
+    }
+    return bus_clocks * (peripheral.base() < apb2_start ? clocks().apb1 : clocks().apb2);
   }
 
   void start(ResetCause cause) {
@@ -434,6 +451,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     std::uint32_t value = 0;
     guard([&] {
       const auto [peripheral, offset] = find(address, size);
+      if (bus_latency(*peripheral) != 0) {
+        falling_lines_.finish([this](unsigned position) { cpu_.set_interrupt(position, false); });
+      }
       value = peripheral->read(offset);
       if (peripheral == &flash_ && flash_.busy_until() > now()) {
         // A program in RAM polls for the end of the operation: skips to it.
@@ -455,7 +475,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         compare_watch_(oscillator_.when(time), value);
       }
       pins_.look();
+      store_latency_ = bus_latency(*peripheral);
       peripheral->write(offset, value);
+      store_latency_ = 0;
       pins_.look();
       invalidate_next_events();
       if (follow_core_clock(time)) {
@@ -526,6 +548,12 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   // Services for peripherals and CPU.
   void set_interrupt(unsigned position, bool high) override {
+    if (!high && store_latency_ != 0) {
+      falling_lines_.add(position, now() + store_latency_);
+      reschedule();
+      return;
+    }
+    falling_lines_.remove(position);
     cpu_.set_interrupt(position, high);
     next_event_.reset();
   }
@@ -603,7 +631,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   mutable std::optional<LocalTime> next_internal_event_;  ///< nothing: not computed; without events of SysTick
   mutable std::optional<LocalTime> next_visible_event_;   ///< nothing: not computed; without events of SysTick
   mutable std::optional<BusTime> next_event_;
-  LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_
+  FallingLines falling_lines_;
+  LocalTime store_latency_ = 0;  ///< while a store is done: bus_latency()
+  LocalTime anchor_time_ = 0;    ///< local time when the CPU had executed anchor_instructions_
   std::uint64_t anchor_instructions_ = 0;
   LocalTime known_core_period_ = Clocks::hsi;
   LocalTime run_end_ = 0;  ///< end of the run, while instructions are executed

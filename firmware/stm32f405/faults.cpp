@@ -86,6 +86,8 @@ std::string_view text_of(FaultRecord::Reason reason) {
       return "the PLL does not lock";
     case FaultRecord::Reason::no_can:
       return "the CAN controller does not answer";
+    case FaultRecord::Reason::pll_unlocked:
+      return "the PLL has lost its lock";
     case FaultRecord::Reason::crystal_stopped:
       return "the crystal has stopped";
     case FaultRecord::Reason::supply_failed:

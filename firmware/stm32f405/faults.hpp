@@ -19,6 +19,7 @@ struct FaultRecord {
     no_crystal,  ///< the crystal (HSE) did not start: without it there is no CAN
     no_pll,
     no_can,           ///< the controller does not enter its initialization mode
+    pll_unlocked,     ///< the PLL lost its lock while it was in use: all clocks had an unknown frequency
     crystal_stopped,  ///< the crystal (HSE) stopped while it was in use: all clocks had the wrong frequency
     supply_failed,    ///< the supply is too low for the clocks (Supply::Level::none)
   };
@@ -39,7 +40,8 @@ struct FaultRecord {
 /// Whether a clock of the chip has failed, and not the program.
 [[nodiscard]] constexpr bool is_clock_failure(FaultRecord::Reason reason) {
   using Reason = FaultRecord::Reason;
-  return reason == Reason::no_crystal || reason == Reason::no_pll || reason == Reason::crystal_stopped;
+  return reason == Reason::no_crystal || reason == Reason::no_pll || reason == Reason::pll_unlocked ||
+         reason == Reason::crystal_stopped;
 }
 
 /// Text for the console that describes the reason.

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "firmware/stm32f405/faults.hpp"
+#include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/reset.hpp"
 
 namespace proleg::stm32f405 {
@@ -14,6 +15,13 @@ namespace {
 constexpr Microseconds max_pause_us = 50'000;
 /// Time between two looks at the controller at bus-off: its end raises no interrupt. It takes 1.4 ms at least.
 constexpr Microseconds recovery_poll_us = 1'000;
+
+/// Ends the program before its clock is wrong, or because it is.
+[[noreturn, gnu::noinline]] void stop(FaultRecord::Reason reason) {
+  hardware.servo.finish_last_pulse();
+  record_fault(reason);
+  reset_chip();
+}
 
 static_assert(std::is_trivially_destructible_v<firmware::Module>,
               "the program has no end at which it would be destroyed");
@@ -111,9 +119,7 @@ void ModuleTask::follow_supply(Microseconds now) {
     case Supply::Level::low:
       break;
     case Supply::Level::none:
-      hardware.servo.finish_last_pulse();
-      record_fault(FaultRecord::Reason::supply_failed);
-      reset_chip();
+      stop(FaultRecord::Reason::supply_failed);
   }
 }
 
@@ -143,7 +149,13 @@ void ModuleTask::publish_tick() {
   last_tick_->power = static_cast<std::uint8_t>(module_->power());
 }
 
+/// Comes before each pulse that the program requests.
 void ModuleTask::poll(Microseconds now) {
+  // A PLL that has lost its lock runs on with an unknown frequency, and raises no interrupt. Pulses and timeouts are
+  // wrong then, and the watchdog would be fed.
+  if (!rcc::cr.has(rcc::cr_pllrdy)) {
+    stop(FaultRecord::Reason::pll_unlocked);
+  }
   if (module_) {
     module_->poll(in_order(now));
   }

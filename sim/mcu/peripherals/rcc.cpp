@@ -179,16 +179,31 @@ void Rcc::settle() {
   }
 }
 
-bool Rcc::works(ClockSource source) const {
+bool Rcc::oscillates(ClockSource source) const {
   switch (source) {
     case ClockSource::hse:
       return crystal_runs_;
     case ClockSource::pll:
-      return pll_locks_ && (crystal_runs_ || !pll_from_hse(pllcfgr_));
+      return crystal_runs_ || !pll_from_hse(pllcfgr_);
     case ClockSource::hsi:
       break;
   }
   return true;
+}
+
+bool Rcc::works(ClockSource source) const { return oscillates(source) && (pll_locks_ || source != ClockSource::pll); }
+
+Clocks Rcc::present_clocks() const {
+  if (!oscillates(current_)) {
+    return lost_clocks;
+  }
+  Clocks clocks = clocks_of(current_, cfgr_, cfgr_);
+  if (!works(current_)) {
+    for (LocalTime* period : {&clocks.core, &clocks.apb1, &clocks.apb2, &clocks.apb1_timers, &clocks.apb2_timers}) {
+      *period = *period * 4 / 3;
+    }
+  }
+  return clocks;
 }
 
 void Rcc::set_crystal(bool runs) {
@@ -218,9 +233,8 @@ void Rcc::oscillator_failed_or_works() {
     pll_.ready_at = now + pll_start;
   }
   watch_crystal();
-  const bool stands_still = !works(current_);
-  if (stands_still != stands_still_) {
-    set_clocks(stands_still ? lost_clocks : clocks_of(current_, cfgr_, cfgr_), stands_still);
+  if (const Clocks next = present_clocks(); next.core != clocks_.core) {
+    set_clocks(next, !oscillates(current_));
   }
   chip().reschedule();
 }

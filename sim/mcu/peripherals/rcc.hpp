@@ -37,7 +37,8 @@ class Rcc final : public RegisterBlock {
   // no source, the core stands still, and only LSI counts. The manual does not say which frequency a PLL without its
   // input has; here it has none.
   void set_crystal(bool runs);
-  /// Sets whether the PLL can lock.
+  /// Sets whether the PLL can lock. One that is in use and loses its lock runs on: here with three quarters of its
+  /// frequency, without PLLRDY. No interrupt comes (7.2.7: the clock security system watches HSE only).
   void set_pll(bool locks);
   [[nodiscard]] bool core_stands_still() const { return stands_still_; }
 
@@ -75,6 +76,9 @@ class Rcc final : public RegisterBlock {
   void start_registers(LocalTime now);
   /// Whether an oscillator that is on can run: its crystal and its input work.
   [[nodiscard]] bool works(ClockSource source) const;
+  /// Whether it runs, if with a wrong frequency.
+  [[nodiscard]] bool oscillates(ClockSource source) const;
+  [[nodiscard]] Clocks present_clocks() const;
   void oscillator_failed_or_works();
   void watch_crystal();
   void react_to_failure();

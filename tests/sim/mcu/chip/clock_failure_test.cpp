@@ -136,13 +136,30 @@ TEST_F(ClockFailure, APllThatNeverLocksIsReportedAndTheWatchdogTriesAgain) {
   expect_report();
 }
 
-TEST_F(ClockFailure, APllThatFailsStopsTheCoreUntilTheWatchdogComes) {
+TEST_F(ClockFailure, APllThatLosesItsLockEndsThePulsesAndResetsTheModule) {
   rig_.start_robot(20'000);
+  rig_.enable_servo(0);
+  rig_.run_for(50 * ms);
   rig_.chip.set_pll(false);
   const BusTime failed = rig_.bus.now();
-  ASSERT_TRUE(rig_.run_until_true([this] { return !rig_.events.empty(); }, 300 * ms));
-  EXPECT_EQ(rig_.events[0].cause, ResetCause::independent_watchdog);
-  EXPECT_LE(rig_.events[0].time, failed + 201 * ms);
+  // 20 ms of a clock that is a third slower, and a pulse.
+  ASSERT_TRUE(rig_.run_until_true([this] { return !rig_.events.empty(); }, 30 * ms));
+  EXPECT_EQ(rig_.events[0].kind, ChipEvent::Kind::reset);
+  EXPECT_EQ(rig_.events[0].cause, ResetCause::software);
+  rig_.run_for(100 * ms);
+  EXPECT_LE(last_edge_, failed + 30 * ms);
+  EXPECT_TRUE(prints("stopped by: the PLL has lost its lock, pc 08"));
+  expect_silence_and_restarts("the PLL does not lock");
+  rig_.chip.set_pll(true);
+  expect_report();
+}
+
+TEST_F(ClockFailure, APllThatLosesItsLockForAMomentIsReported) {
+  rig_.start_robot(20'000);
+  rig_.chip.set_pll(false);
+  ASSERT_TRUE(rig_.run_until_true([this] { return !rig_.events.empty(); }, 70 * ms));
+  rig_.chip.set_pll(true);
+  expect_report();
 }
 
 TEST_F(ClockFailure, AnNmiThatIsNotFromTheClockSecuritySystemIsAnotherFault) {

@@ -24,6 +24,8 @@ bool start_detector() {
   rcc::apb1enr.set(rcc::apb1enr_pwr);
   static_cast<void>(rcc::apb1enr.read());
   pwr::cr.set(pwr::cr_pvde);
+  // As look() does it, so that a program that starts does not end at once.
+  compare_with(pwr::cr_pls_2v8);
   compare_with(pwr::cr_pls_2v5);
   return !is_below();
 }
@@ -61,13 +63,15 @@ Supply::Level Supply::look(std::uint32_t stamp) {
   if (stamp - changed_at_ < look_every_us) {
     return Level::low;
   }
-  if (watches_for_none_ == is_below()) {
-    return watches_for_none_ ? Level::none : Level::good;
+  if (threshold_ == pwr::cr_pls_2v5 && is_below()) {
+    return Level::none;
   }
-  watches_for_none_ = !watches_for_none_;
+  const bool is_good = threshold_ == pwr::cr_pls_2v9 && !is_below();
+  const std::uint32_t other = threshold_ == pwr::cr_pls_2v9 ? pwr::cr_pls_2v5 : pwr::cr_pls_2v9;
+  threshold_ = is_good ? pwr::cr_pls_2v8 : other;
   changed_at_ = stamp;
-  pwr::cr.change(pwr::cr_pls_mask, watches_for_none_ ? pwr::cr_pls_2v5 : pwr::cr_pls_2v8);
-  return Level::low;
+  pwr::cr.change(pwr::cr_pls_mask, threshold_);
+  return is_good ? Level::good : Level::low;
 }
 
 }  // namespace proleg::stm32f405

@@ -11,8 +11,8 @@
 
 namespace proleg::stm32f405 {
 
-/// Switches the detector on, with the threshold of 2.51 V: above it the flash is as fast as the clocks of pins.hpp need
-/// it (clock.cpp). Returns whether the voltage is above it.
+/// Switches the detector on. Returns whether the voltage is above 2.60 V: the flash is then as fast as the clocks of
+/// pins.hpp need it (clock.cpp), and it may fall for a while. From then on the threshold is 2.51 V.
 [[nodiscard]] bool start_detector();
 
 /// Whether the voltage is above 2.93 V, and the flash can be erased and programmed: words of 32 bits need 2.7 V
@@ -28,7 +28,7 @@ class Supply {
   enum class Level : std::uint8_t {
     good,  ///< above 3.03 V
     low,   ///< the servo must have no pulses
-    none,  ///< below 2.51 V: the program must end before the voltage is too low for its clock
+    none,  ///< below 2.60 V: the program must end before the voltage is too low for its clock
   };
 
   /// Watches for 2.93 V from now on. The detector must be on.
@@ -45,8 +45,9 @@ class Supply {
 
   /// Pause between two calls of look() while the voltage is low [us].
   static constexpr std::uint32_t look_every_us = 500;
-  /// Must be called while the voltage is low, with MicrosecondClock::stamp(). The two thresholds take turns, so that it
-  /// sees a change after 1 ms at most. The last call returns good.
+  /// Must be called while the voltage is low, with MicrosecondClock::stamp(). Two thresholds take turns, so that it
+  /// sees a change after 1 ms at most: the next higher one, at which the voltage is good again (a new threshold has no
+  /// hysteresis), and the one at which the program must end. The last call returns good.
   [[nodiscard]] Level look(std::uint32_t stamp);
 
   /// Must be called by the interrupt. It comes at both edges; the rising one is needed, because the interrupt may come
@@ -58,7 +59,7 @@ class Supply {
 
  private:
   std::atomic<bool> has_dropped_{false};
-  bool watches_for_none_ = false;
+  std::uint32_t threshold_ = pwr::cr_pls_2v8;
   std::uint32_t changed_at_ = 0;  ///< stamp of the last change of the threshold
 };
 

@@ -10,10 +10,9 @@
 namespace proleg::sim {
 namespace {
 
-// Thresholds of the chip's voltage detector (firmware/stm32f405/supply.hpp), when the voltage falls and when it rises:
-// below the first ones the program has ended, below the others the servo has no pulses.
-constexpr std::uint32_t ends_below_mv = 2'510;
-constexpr std::uint32_t starts_from_mv = 2'600;
+// Thresholds of the chip's voltage detector (firmware/stm32f405/supply.hpp): below the first one no program runs; below
+// the others, when the voltage falls and when it rises, the servo has no pulses.
+constexpr std::uint32_t runs_from_mv = 2'600;
 constexpr std::uint32_t low_below_mv = 2'930;
 constexpr std::uint32_t good_from_mv = 3'030;
 
@@ -201,7 +200,7 @@ void NativeModule::end_pause(BusTime now) {
 void NativeModule::set_supply(BusTime now, std::uint32_t mv) {
   const bool had_power = has_power_;
   const bool was_low = is_supply_low_;
-  has_power_ = mv >= (had_power ? ends_below_mv : starts_from_mv);
+  has_power_ = mv >= runs_from_mv;
   is_supply_low_ = mv < (was_low ? good_from_mv : low_below_mv);
   if (has_power_ != had_power) {
     power_on(now);

@@ -15,6 +15,7 @@ inline constexpr std::uint32_t cr_pvde = 1U << 4U;
 inline constexpr std::uint32_t cr_pls_mask = 7U << 5U;
 inline constexpr std::uint32_t cr_pls_2v5 = 3U << 5U;
 inline constexpr std::uint32_t cr_pls_2v8 = 6U << 5U;
+inline constexpr std::uint32_t cr_pls_2v9 = 7U << 5U;
 
 inline constexpr Register csr{base + 0x04};
 inline constexpr std::uint32_t csr_pvdo = 1U << 2U;  ///< the supply is below the threshold

@@ -68,7 +68,7 @@ TEST_F(Supply, ThatFallsFasterThanTheProgramCanFollowStopsTheModelWithItsReason)
 class FallingSupply : public Supply, public testing::WithParamInterface<std::uint32_t> {};
 
 TEST_P(FallingSupply, EndsTheProgramBeforeItsClockIsTooFast) {
-  const bool ends = GetParam() < 2'500;
+  const bool ends = GetParam() < 2'600;
   const BusTime falls = rig_.bus.now();
   ramp_to(GetParam());
   rig_.run_for(500 * ms);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
 #include "shared/can/can_port.hpp"
 
@@ -21,6 +22,10 @@ enum class ClockResult : std::uint8_t {
 /// which is too inaccurate for CAN at 1 Mbit/s. From now on a crystal that stops is a fault
 /// (FaultRecord::Reason::crystal_stopped).
 [[nodiscard]] ClockResult start_clocks();
+
+/// Whether the clocks have the right frequency, as far as the chip can say: a PLL that has lost its lock runs on with
+/// an unknown one, and raises no interrupt. Pulses and timeouts are wrong then, and a watchdog would be fed.
+[[nodiscard]] inline bool is_pll_locked() { return rcc::cr.has(rcc::cr_pllrdy); }
 
 /// The module's own clock (TIM5): microseconds since start(), on the crystal. Interrupts record the 32 bits of the
 /// counter; the module's program extends them to 64. Only the priority of that program may call functions other than

@@ -153,6 +153,9 @@ void start_clocks_or_give_up(const Start& start) {
 
 void start_module(const Start& start) {
   hardware.servo.start();
+  if (!is_pll_locked()) {
+    give_up(FaultRecord::Reason::pll_unlocked);
+  }
   if (!hardware.can.start()) {
     give_up(FaultRecord::Reason::no_can);
   }

@@ -4,7 +4,6 @@
 #include <type_traits>
 
 #include "firmware/stm32f405/faults.hpp"
-#include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/reset.hpp"
 
 namespace proleg::stm32f405 {
@@ -151,9 +150,7 @@ void ModuleTask::publish_tick() {
 
 /// Comes before each pulse that the program requests.
 void ModuleTask::poll(Microseconds now) {
-  // A PLL that has lost its lock runs on with an unknown frequency, and raises no interrupt. Pulses and timeouts are
-  // wrong then, and the watchdog would be fed.
-  if (!rcc::cr.has(rcc::cr_pllrdy)) {
+  if (!is_pll_locked()) {
     stop(FaultRecord::Reason::pll_unlocked);
   }
   if (module_) {

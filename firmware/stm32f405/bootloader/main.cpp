@@ -164,7 +164,7 @@ void sleep_until(Microseconds deadline) {
 /// Serves the bus until the chip must be reset. The clocks and TIM5 run. left: by the start before.
 [[noreturn]] void serve_bus(const Handover& left) {
   the_can.emplace();
-  if (!the_can->start()) {
+  if (!is_pll_locked() || !the_can->start()) {
     reset_chip();
   }
   firmware::ModuleIdentity identity;

@@ -96,6 +96,15 @@ std::string_view text_of(FaultRecord::Reason reason) {
   return "unknown";
 }
 
+void guard_stack() {
+  constexpr std::uint32_t guarded = 4 * 1024;
+  const std::uint32_t bottom = std::bit_cast<std::uint32_t>(&stack_bottom[0]);
+  mpu::rbar.write((bottom - guarded) | mpu::rbar_valid);
+  mpu::rasr.write(mpu::rasr_xn | mpu::rasr_size_4k | mpu::rasr_enable);
+  mpu::ctrl.write(mpu::ctrl_privdefena | mpu::ctrl_enable);
+  asm volatile("dsb\n\tisb" : : : "memory");
+}
+
 std::optional<FaultRecord> take_fault_record() {
   if (stored.mark != valid_mark || stored.check != check_of(stored.record)) {
     return std::nullopt;

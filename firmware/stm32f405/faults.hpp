@@ -44,6 +44,11 @@ struct FaultRecord {
          reason == Reason::crystal_stopped;
 }
 
+/// Forbids accesses to the 4 KiB below the stack, with the MPU: what the chip does there is not documented. Must be
+/// called once. A stack overflow then locks the processor up (the fault finds no stack either), and the watchdog resets
+/// the chip.
+void guard_stack();
+
 /// Text for the console that describes the reason.
 [[nodiscard]] std::string_view text_of(FaultRecord::Reason reason);
 

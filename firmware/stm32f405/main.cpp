@@ -184,6 +184,7 @@ extern "C" {
 void run_program() {
   make_hardware();
   static_cast<void>(start_watchdog(watchdog_ms));  // if it fails, the watchdog has 512 ms, which is enough
+  guard_stack();
   const Start start = find_start();
   start_pins();
   start_clocks_or_give_up(start);

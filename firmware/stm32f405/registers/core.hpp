@@ -29,6 +29,25 @@ inline constexpr Register bfar{base + 0x38};
 
 }  // namespace scb
 
+/// The memory protection unit: PM0214, section 4.2.
+namespace mpu {
+
+inline constexpr std::uintptr_t base = 0xE000'ED90;
+
+inline constexpr Register ctrl{base + 0x04};
+inline constexpr std::uint32_t ctrl_enable = 1U << 0U;
+inline constexpr std::uint32_t ctrl_privdefena = 1U << 2U;  ///< outside of the regions everything is as without MPU
+
+inline constexpr Register rbar{base + 0x0C};
+inline constexpr std::uint32_t rbar_valid = 1U << 4U;  ///< the region is that of the lowest bits
+/// AP = 0: no access.
+inline constexpr Register rasr{base + 0x10};
+inline constexpr std::uint32_t rasr_enable = 1U << 0U;
+inline constexpr std::uint32_t rasr_size_4k = 11U << 1U;
+inline constexpr std::uint32_t rasr_xn = 1U << 28U;
+
+}  // namespace mpu
+
 enum class Interrupt : std::uint8_t {
   pvd = 1,
   dma1_stream_5 = 16,

@@ -216,6 +216,10 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
                                        (engine_.read(CoreRegister::control) & unprivileged) == 0);
   }
 
+  [[nodiscard]] bool is_forbidden(std::uint32_t address) const override {
+    return system_control_.protection().forbids(address);
+  }
+
   void send_event() override { exceptions_.send_event(); }
 
   // SystemControlOwner

@@ -36,6 +36,10 @@ struct ChipMemory {
   static constexpr std::uint32_t ccm_size = 64 * 1024;
   static constexpr std::uint32_t system_memory_start = 0x1FFF'0000;  ///< with unique id and calibration values
   static constexpr std::uint32_t system_memory_size = 32 * 1024;
+  /// Addresses just below the RAM, which RM0090 reserves (2.3). What an access does is not documented: here a write is
+  /// lost without a fault, unless the MPU forbids it.
+  static constexpr std::uint32_t reserved_start = 0x1FFF'F000;
+  static constexpr std::uint32_t reserved_size = 4 * 1024;
 };
 
 /// What lies behind the CPU's addresses, other than memory and its own system registers.

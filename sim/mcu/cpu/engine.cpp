@@ -89,6 +89,7 @@ void Engine::map_memory() {
   check(uc_mem_map(uc_, ChipMemory::flash_start, ChipMemory::flash_size, UC_PROT_READ | UC_PROT_EXEC), "map flash");
   check(uc_mem_map(uc_, ChipMemory::system_memory_start, ChipMemory::system_memory_size, UC_PROT_READ),
         "map system memory");
+  check(uc_mem_map(uc_, ChipMemory::reserved_start, ChipMemory::reserved_size, UC_PROT_READ), "map reserved addresses");
 }
 
 void Engine::map_registers(std::uint32_t start, std::uint32_t size) {
@@ -326,6 +327,10 @@ bool Engine::on_bad_access(uc_engine* /*uc*/, uc_mem_type type, std::uint64_t ad
     if (engine.client_.store_to_flash(address, bytes, bytes < 4 ? word & ((1U << 8U * bytes) - 1U) : word)) {
       return true;
     }
+  }
+  if (type == UC_MEM_WRITE_PROT && lies_in(address, bytes, ChipMemory::reserved_start, ChipMemory::reserved_size) &&
+      !engine.client_.is_forbidden(address)) {
+    return true;
   }
   engine.has_fault_ = true;
   engine.fault_ = {address, bytes, type == UC_MEM_WRITE_UNMAPPED || type == UC_MEM_WRITE_PROT,

@@ -29,6 +29,8 @@ class EngineClient {
   [[nodiscard]] virtual bool stops() = 0;
   /// Called before a block with coprocessor instructions: whether it may execute them.
   [[nodiscard]] virtual bool coprocessor_allowed() const = 0;
+  /// Called when an address in ChipMemory::reserved_start is written. False: the write is lost; true: it is a fault.
+  [[nodiscard]] virtual bool is_forbidden(std::uint32_t address) const = 0;
   /// SEV was executed.
   virtual void send_event() = 0;
 

@@ -20,6 +20,9 @@ constexpr std::uint32_t return_to_process = 0xFFFF'FFFD;
 
 // CFSR (DDI 0403, B3.2.15).
 constexpr std::uint32_t iaccviol = 1U << 0U;
+constexpr std::uint32_t daccviol = 1U << 1U;
+constexpr std::uint32_t mstkerr = 1U << 4U;
+constexpr std::uint32_t mmarvalid = 1U << 7U;
 constexpr std::uint32_t ibuserr = 1U << 8U;
 constexpr std::uint32_t preciserr = 1U << 9U;
 constexpr std::uint32_t unstkerr = 1U << 11U;
@@ -161,11 +164,15 @@ void Exceptions::enter(unsigned number) {
     set_mode(number, new_flags, old_control & unprivileged);
   }
   event_ = true;
-  if (memory == nullptr) {
+  const bool is_forbidden = system_control_->protection().forbids(place);
+  const bool is_lost = place >= ChipMemory::reserved_start && !is_forbidden && place < ChipMemory::ram_start;
+  if (memory == nullptr && !is_lost) {
     const std::string cause = "the stack at " + hexadecimal(place) +
-                              ", where there is no memory, at the entry of exception " + std::to_string(number);
+                              (is_forbidden ? ", which the MPU forbids" : ", where there is no memory") +
+                              ", at the entry of exception " + std::to_string(number);
+    const unsigned derived = is_forbidden ? exception::memory_management : exception::bus_fault;
     nvic_->activate(number);
-    system_control_->note_configurable(stkerr);
+    system_control_->note_configurable(is_forbidden ? mstkerr : stkerr);
     note(cause);
     if (nvic_->active_priority() < 0) {
       lock_up();
@@ -174,12 +181,12 @@ void Exceptions::enter(unsigned number) {
     // The first exception waits until the derived one has been handled.
     nvic_->deactivate(number);
     nvic_->set_pending(number, true);
-    const bool is_enabled = nvic_->is_enabled(exception::bus_fault) &&
-                            nvic_->group_priority(exception::bus_fault) < nvic_->group_priority(number);
+    const bool is_enabled =
+        nvic_->is_enabled(derived) && nvic_->group_priority(derived) < nvic_->group_priority(number);
     if (!is_enabled) {
       system_control_->note_hard(forced);
     }
-    enter_without_frame(is_enabled ? exception::bus_fault : exception::hard_fault, exc_return);
+    enter_without_frame(is_enabled ? derived : exception::hard_fault, exc_return);
     return;
   }
   nvic_->activate(number);
@@ -359,6 +366,11 @@ void Exceptions::raise_memory_fault(const MemoryFault& fault) {
     } else {
       raise(exception::bus_fault, ibuserr, cause);
     }
+    return;
+  }
+  if (system_control_->protection().forbids(fault.address)) {
+    system_control_->set_memory_fault_address(fault.address);
+    raise(exception::memory_management, daccviol | mmarvalid, cause);
     return;
   }
   system_control_->set_bus_fault_address(fault.address);

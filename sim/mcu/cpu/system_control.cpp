@@ -36,6 +36,10 @@ constexpr std::uint32_t bfar = 0xE000'ED38;
 constexpr std::uint32_t afsr = 0xE000'ED3C;
 constexpr std::uint32_t cpacr = 0xE000'ED88;
 constexpr std::uint32_t mpu_type = 0xE000'ED90;
+constexpr std::uint32_t mpu_ctrl = 0xE000'ED94;
+constexpr std::uint32_t mpu_rnr = 0xE000'ED98;
+constexpr std::uint32_t mpu_rbar = 0xE000'ED9C;
+constexpr std::uint32_t mpu_rasr = 0xE000'EDA0;
 constexpr std::uint32_t dhcsr = 0xE000'EDF0;
 constexpr std::uint32_t demcr = 0xE000'EDFC;
 constexpr std::uint32_t stir = 0xE000'EF00;
@@ -105,6 +109,12 @@ void SystemControl::halt(std::uint32_t address, const char* what) {
   text << what << " 0x" << std::hex << std::uppercase << address << " (private peripheral bus, " << unit_at(address)
        << "), which is not modelled";
   owner_->halt(text.str());
+}
+
+void SystemControl::check_protection() {
+  if (std::optional<std::string> obstacle = protection_.obstacle()) {
+    owner_->halt(std::move(*obstacle));
+  }
 }
 
 std::uint32_t SystemControl::load(std::uint32_t address, unsigned size) {
@@ -212,9 +222,18 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
       return coprocessor_access_;
     case demcr:
       return cycle_counter_.debug_control();
+    case mpu_type:
+      return MemoryProtection::type;
+    case mpu_ctrl:
+      return protection_.control();
+    case mpu_rnr:
+      return protection_.number();
+    case mpu_rbar:
+      return protection_.base();
+    case mpu_rasr:
+      return protection_.attributes();
     case afsr:
-    case mpu_type:  // no MPU
-    case dhcsr:     // no debugger
+    case dhcsr:  // no debugger
     case stir:
       return 0;
     default:
@@ -306,6 +325,21 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
       break;
     case cpacr:
       coprocessor_access_ = value & 0x00F0'0000U;
+      break;
+    case mpu_ctrl:
+      protection_.write_control(value);
+      check_protection();
+      break;
+    case mpu_rnr:
+      protection_.write_number(value);
+      break;
+    case mpu_rbar:
+      protection_.write_base(value);
+      check_protection();
+      break;
+    case mpu_rasr:
+      protection_.write_attributes(value);
+      check_protection();
       break;
     case stir:
       if ((value & 0x1FFU) < Nvic::interrupt_count) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/mcu/cpu/cpu_surroundings.hpp"
+#include "sim/mcu/cpu/memory_protection.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_tick.hpp"
 
@@ -96,6 +97,8 @@ class SystemControl {
   void note_configurable(std::uint32_t bits) { configurable_status_ |= bits; }
   void note_hard(std::uint32_t bits) { hard_status_ |= bits; }
   void set_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
+  void set_memory_fault_address(std::uint32_t address) { memory_fault_address_ = address; }
+  [[nodiscard]] const MemoryProtection& protection() const { return protection_; }
 
   [[nodiscard]] SystemTick& system_tick() { return system_tick_; }
   [[nodiscard]] const SystemTick& system_tick() const { return system_tick_; }
@@ -116,6 +119,7 @@ class SystemControl {
   [[nodiscard]] std::uint32_t interrupts(std::uint32_t word, bool (Nvic::*is)(unsigned) const) const;
   void change_interrupts(std::uint32_t word, std::uint32_t value, void (Nvic::*change)(unsigned, bool), bool to);
   void halt(std::uint32_t address, const char* what);
+  void check_protection();
 
   SystemControlOwner* owner_;
   Nvic* nvic_;
@@ -126,6 +130,7 @@ class SystemControl {
   std::uint32_t configurable_status_ = 0;
   std::uint32_t hard_status_ = 0;
   std::uint32_t memory_fault_address_ = 0;
+  MemoryProtection protection_;
   std::uint32_t bus_fault_address_ = 0;
   std::uint32_t auxiliary_control_ = 0;
   std::uint32_t coprocessor_access_ = 0;

@@ -118,6 +118,7 @@ TEST(ChipFault, ThatComesAgainAtEachStartIsPrintedEachTime) {
   EXPECT_TRUE(prints(rig, rig.board.console.size(), "stopped by: processor fault, pc "));
 }
 
+// The model of the chip has no fault below the RAM but that of the MPU.
 TEST(ChipFault, APushBelowTheRamLocksTheProcessorUpAndTheWatchdogComes) {
   // movs r3, #1; lsls r3, r3, #29; mov sp, r3; push {r0}: the begin of the RAM, where the stack ends
   ChipRig rig;
@@ -134,7 +135,7 @@ TEST(ChipFault, APushBelowTheRamLocksTheProcessorUpAndTheWatchdogComes) {
 }
 
 TEST(ChipFault, AnInterruptThatFindsNoStackIsAFaultWithItsRecord) {
-  // ARMv7-M, B1.5.12: the error of the stacking (CFSR.STKERR) is taken in the interrupt's place, without another
+  // ARMv7-M, B1.5.12: the error of the stacking (CFSR.MSTKERR) is taken in the interrupt's place, without another
   // stacking.
   ChipRig rig;
   rig.boot();
@@ -143,7 +144,7 @@ TEST(ChipFault, AnInterruptThatFindsNoStackIsAFaultWithItsRecord) {
   ASSERT_TRUE(rig.run_until_true([&] { return rig.events.size() >= 2; }, 500 * ms));
   EXPECT_EQ(rig.events.back().cause, ResetCause::software);
   EXPECT_TRUE(prints(rig, before, "stopped by: processor fault, pc 00000000, lr 00000000, sp 1fff"));
-  EXPECT_TRUE(prints(rig, before, ", cfsr 00001000, hfsr 40000000, "));
+  EXPECT_TRUE(prints(rig, before, ", cfsr 00000010, hfsr 40000000, "));
 }
 
 }  // namespace

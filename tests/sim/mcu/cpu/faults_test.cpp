@@ -213,11 +213,35 @@ TEST_F(Faults, AFaultUnderFaultmaskLocksUp) {
   EXPECT_EQ(cpu_.run(10'000), Cpu::State::locked_up);
 }
 
-TEST_F(Faults, AStackOverflowEndsWhereTheRamBegins) {
-  const CpuFault fault = fault_of("stack_overflow");
+/// Registers of the MPU (DDI 0403, B3.5): region 0 is the 4 KiB below the RAM, without access.
+class GuardedStack : public Faults {
+ protected:
+  void overflow(std::uint32_t control) {
+    script(0, {step::store(0xE000'ED9C, 0x1FFF'F010), step::store(0xE000'EDA0, 0x1000'0017),
+               step::store(0xE000'ED94, control), step::call(address_of("stack_overflow") | 1U)});
+  }
+};
+
+TEST_F(GuardedStack, AnOverflowEndsWhereTheRamBegins) {
+  overflow(5);  // PRIVDEFENA, ENABLE
+  const CpuFault fault = fault_of("reset_handler");
   EXPECT_EQ(fault.registers[13], ChipMemory::ram_start);
   EXPECT_TRUE(fault.cause.starts_with("store to 0x1FFFFF") || fault.cause.starts_with("the stack at 0x1FFFFF"))
       << fault.cause;
+}
+
+TEST_F(GuardedStack, WithoutTheMpuAnOverflowGoesOnInReservedAddresses) {
+  overflow(4);
+  const CpuFault fault = fault_of("reset_handler");
+  EXPECT_EQ(fault.registers[13], ChipMemory::reserved_start);
+}
+
+TEST_F(GuardedStack, OtherRegionsAreNotModelled) {
+  script(0,
+         {step::store(0xE000'ED9C, 0x2000'0010), step::store(0xE000'EDA0, 0x1000'0017), step::store(0xE000'ED94, 5)});
+  start("reset_handler");
+  EXPECT_EQ(cpu_.run(10'000), Cpu::State::halted);
+  EXPECT_NE(cpu_.halt_reason().find("only regions of the MPU without access"), std::string::npos);
 }
 
 TEST_F(Faults, AnExceptionWithoutMemoryForItsStackIsAnotherFault) {

@@ -40,6 +40,11 @@ FaultRunResult run_with_faults(const Scenario& scenario, const FaultSchedule& sc
   const MotionWatch& watch = loop.motion_watch();
   result.ends = watch.ends();
   std::ranges::copy(watch.violations(), std::back_inserter(result.violations));
+  for (const ModuleProblem& problem : loop.problems()) {
+    if (problem.leaves_model) {
+      result.violations.push_back(scenario.robot.joints[problem.joint].name + " " + problem.text);
+    }
+  }
   if (const auto& difference = loop.first_difference()) {
     result.violations.push_back(describe(*difference, scenario.robot.joints[difference->joint].name));
   }

@@ -16,8 +16,9 @@ namespace proleg::sim {
 
 /// How a run with faults ended.
 struct FaultRunResult {
-  std::vector<JointEnd> ends;           ///< by joint
-  std::vector<std::string> violations;  ///< of the rules of MotionWatch, and differences before the first fault
+  std::vector<JointEnd> ends;  ///< by joint
+  /// Violations of the rules of MotionWatch, differences before the first fault, and modules that leave the model.
+  std::vector<std::string> violations;
   MotionWatch::Worst worst;
   std::string setpoint_hash;
   std::string servo_hash;

@@ -64,6 +64,7 @@ struct ModuleProblem {
   std::uint32_t tick;
   unsigned joint;
   std::string text;
+  bool leaves_model;  ///< JointModule::leaves_model()
 };
 
 /// What a run with hardware in the loop has found so far.

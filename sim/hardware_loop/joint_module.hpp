@@ -96,6 +96,8 @@ class JointModule {
   /// The oldest problem that this function has not returned yet, as text for a person: a fault of the program, a reset
   /// by the watchdog.
   [[nodiscard]] virtual std::optional<std::string> take_problem() { return std::nullopt; }
+  /// Whether the last problem that take_problem() has returned ends the module: what a real one would do is not known.
+  [[nodiscard]] virtual bool leaves_model() const { return false; }
 };
 
 /// Whether this tick is the last one that a module has computed, for its joint.

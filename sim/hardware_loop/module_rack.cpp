@@ -208,7 +208,7 @@ void ModuleRack::end_tick() {
 void ModuleRack::take_problems(std::uint32_t tick, HardwareReport& report) {
   for (unsigned joint = 0; joint < size(); ++joint) {
     while (const auto problem = modules_[joint]->take_problem()) {
-      report.problems.push_back({tick, joint, *problem});
+      report.problems.push_back({tick, joint, *problem, modules_[joint]->leaves_model()});
       if (options_.notice) {
         options_.notice(scenario_.robot.joints[joint].name + " (node " + std::to_string(scenario_.modules[joint].node) +
                         "): " + *problem);

@@ -239,6 +239,7 @@ std::optional<std::string> VirtualModule::take_problem() {
     if (event->kind == ChipEvent::Kind::reset && event->cause == ResetCause::software) {
       continue;  // the fault handler reset it, and the fault is reported; or the reset was requested
     }
+    leaves_model_ = event->kind == ChipEvent::Kind::unmodelled;
     return describe(*event);
   }
   return std::nullopt;

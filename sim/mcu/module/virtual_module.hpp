@@ -90,6 +90,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   [[nodiscard]] std::size_t controller() const override { return chip_.controller(); }
   void note_sync(std::uint32_t tick) override;
   [[nodiscard]] std::optional<std::string> take_problem() override;
+  [[nodiscard]] bool leaves_model() const override { return leaves_model_; }
 
   /// The most expensive tick so far, by the instructions to the state frame.
   [[nodiscard]] const TickCost& worst_tick() const { return worst_; }
@@ -116,7 +117,8 @@ class VirtualModule final : public JointModule, private BoardSignals {
   std::uint64_t sync_instructions_ = 0;
   std::uint64_t state_frame_instructions_ = 0;
   TickCost worst_{};
-  bool has_clock_ = true;  ///< crystal and PLL run, unless a fault has stopped them
+  bool has_clock_ = true;      ///< crystal and PLL run, unless a fault has stopped them
+  bool leaves_model_ = false;  ///< of the last problem
   bool is_pulse_whole_ = true;
   PulseWatch pulse_watch_;
   std::optional<BusTime> pulse_begin_;

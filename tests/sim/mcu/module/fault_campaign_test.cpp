@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <random>
 #include <string>
 
 #include "sim/fault/fault.hpp"
@@ -84,6 +85,40 @@ Campaign run_campaign(bool only_at_ticks) {
 TEST(ImageFaultCampaign, KeepsMotionBoundedWhateverFails) {
   const Campaign campaign = run_campaign(false);
   EXPECT_EQ(campaign.statistics.joints_ended[static_cast<std::size_t>(JointEnd::unsafe)], 0U);
+}
+
+// The chips have no brown-out reset. Each module's supply falls once or twice, to any voltage, and rises again.
+TEST(ImageFaultCampaign, NoRampOfTheSupplyEndsUnsafeOrWithAClockThatIsTooFast) {
+  const std::uint32_t first = from_environment("PROLEG_FAULTS_FIRST", 1);
+  const std::uint32_t runs = from_environment("PROLEG_FAULTS_RUNS", 6);
+  FaultStatistics statistics;
+  for (std::uint32_t seed = first; seed < first + runs; ++seed) {
+    const Scenario scenario = scenario_of(seed);
+    const auto ticks = static_cast<std::uint32_t>(duration_s * 1e6 / scenario.kernel.tick_period_us);
+    std::mt19937 random(seed);
+    const auto between = [&](std::uint32_t low, std::uint32_t high) {
+      return low + static_cast<std::uint32_t>(random() % (high - low));
+    };
+    FaultSchedule schedule;
+    for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
+      for (const std::uint32_t start_us : {500'000U, 1'700'000U}) {
+        Fault fault;
+        fault.kind = FaultKind::supply;
+        fault.joint = joint;
+        fault.start_us = between(start_us, start_us + 600'000);
+        fault.duration_us = between(1'000, 500'000);
+        fault.amount = between(1'500, 2'950);
+        schedule.push_back(fault);
+      }
+    }
+    const FaultRunResult result = run_image(scenario, schedule, ticks);
+    statistics.add(schedule, result);
+    for (const std::string& violation : result.violations) {
+      ADD_FAILURE() << "seed " << seed << ": " << violation << "\n" << faults_text(schedule, scenario.robot);
+    }
+  }
+  std::printf("%u schedules, %u faults, %u broken\n", statistics.runs, statistics.faults, statistics.broken_runs);
+  EXPECT_EQ(statistics.joints_ended[static_cast<std::size_t>(JointEnd::unsafe)], 0U);
 }
 
 TEST(ImageFaultCampaign, FaultsThatActAtTicksLeaveTheImageIdenticalToNativeModules) {

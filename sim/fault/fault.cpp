@@ -17,7 +17,7 @@ constexpr std::array declarations{
                      "The module's bus wires are off; it keeps its supply."},
     FaultDeclaration{
         FaultKind::supply, "supply", true, Argument::voltage, Duration::needed, false, true,
-        "The supply of the module's chip falls to this voltage, from 2.95V on by 0.1V a millisecond, and "
+        "The supply of the module's chip falls to this voltage, from 2.94V on by 0.1V a millisecond, and "
         "rises again in the same way. 0V: it has no power, at once. Below 2.93V the servo gets no pulses, "
         "below 2.6V the program ends. The board sets no brown-out level, so the chip itself is reset below "
         "1.68V."},

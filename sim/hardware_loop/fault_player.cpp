@@ -15,7 +15,7 @@ constexpr std::uint32_t for_touch = 0x200;
 
 // Ramps of a supply: three times as steep as the capacitors of the board allow (docs/board.md). What is above the
 // threshold of the detector has no effect, and takes no time.
-constexpr std::uint32_t top_of_ramps_mv = 2'950;
+constexpr std::uint32_t top_of_ramps_mv = 2'940;
 constexpr std::uint32_t ramp_step_mv = 20;
 constexpr std::uint64_t ramp_step_us = 200;
 

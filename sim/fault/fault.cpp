@@ -26,7 +26,7 @@ constexpr std::array declarations{
     FaultDeclaration{FaultKind::crystal, "crystal", true, Argument::none, Duration::needed, true, false,
                      "The module's crystal stops. Together with 'supply JOINT 0V' it does not start."},
     FaultDeclaration{FaultKind::pll, "pll", true, Argument::none, Duration::needed, true, false,
-                     "The clock multiplier of the module's chip loses its lock."},
+                     "The clock multiplier of the module's chip loses its lock, and runs on with a wrong frequency."},
     FaultDeclaration{
         FaultKind::adc, "adc", true, Argument::none, Duration::needed, false, true,
         "The results of the module's converter are not read: no new measurements, and an overrun that the program must "

@@ -110,15 +110,39 @@ void Bus::advance_to(BusTime time) {
   now_ = std::max(now_, time);
 }
 
+std::unique_lock<std::mutex> Bus::lock() const {
+  return is_shared_ ? std::unique_lock(mutex_) : std::unique_lock<std::mutex>();
+}
+
+void Bus::end_sharing() {
+  is_shared_ = false;
+  if (has_changed_in_share_) {
+    has_changed_in_share_ = false;
+    schedule_arbitration();
+  }
+}
+
+void Bus::end_wait(const Controller& controller) {
+  const auto held = lock();
+  waits_.remove(controller);
+}
+
 void Bus::candidates_changed(bool had_one, bool has_one) {
+  const auto held = lock();
   candidates_ += has_one ? 1U : 0U;
   candidates_ -= had_one ? 1U : 0U;
-  if (!sending_) {
+  if (sending_) {
+    return;
+  }
+  if (is_shared_) {
+    has_changed_in_share_ = true;  // the candidates of other threads may change now
+  } else {
     schedule_arbitration();
   }
 }
 
 void Bus::watch_changed(bool watched, bool watches) {
+  const auto held = lock();
   watchers_ += watches ? 1U : 0U;
   watchers_ -= watched ? 1U : 0U;
 }

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "sim/bus/controller.hpp"
@@ -78,6 +79,14 @@ class Bus final : private ControllerBus {
   /// could start now.
   [[nodiscard]] BusTime earliest_delivery() const;
 
+  /// Whether a listener may be called before earliest_delivery(): one that watches the begins of frames.
+  [[nodiscard]] bool is_watched() const { return watchers_ > 0; }
+
+  /// Until end_sharing() each controller may be used by a thread of its own. A thread may read now() and busy_until(),
+  /// switch its controller off, reset its errors and end its watch. The result does not depend on their order.
+  void begin_sharing() { is_shared_ = true; }
+  void end_sharing();
+
   /// Lets time pass. Every frame that ends by `time`, inclusive, is reported: to its sender (or senders, in the order
   /// of attachment), then to all other controllers in the order of attachment. A time before now() changes nothing.
   /// Must not be called by a listener: std::logic_error.
@@ -135,7 +144,7 @@ class Bus final : private ControllerBus {
   // What controllers use.
   void candidates_changed(bool had_one, bool has_one) override;
   void begin_wait(Controller& controller, unsigned sequences) override { waits_.add(controller, sequences, now_); }
-  void end_wait(const Controller& controller) override { waits_.remove(controller); }
+  void end_wait(const Controller& controller) override;
   void destroy_frame() override;
   void begin_counting() override { counting_ = true; }
   void report_states() override;
@@ -155,6 +164,8 @@ class Bus final : private ControllerBus {
   void deliver_delayed(BusTime time);
   void count_dominant_errors();
 
+  /// Held by a thread that changes what controllers share.
+  [[nodiscard]] std::unique_lock<std::mutex> lock() const;
   void schedule_arbitration();
   void end_waits(BusTime time);
 
@@ -191,6 +202,9 @@ class Bus final : private ControllerBus {
   bool counting_ = false;           ///< an error has occurred, so error counters may differ from 0
   RecessiveWaits waits_;
   std::size_t watchers_ = 0;
+  bool is_shared_ = false;             ///< between begin_sharing() and end_sharing()
+  bool has_changed_in_share_ = false;  ///< the next arbitration may be another
+  mutable std::mutex mutex_;
 
   bool dominant_ = false;
   std::vector<Delayed> delayed_;  ///< by time, then in the order of the frames

@@ -172,11 +172,19 @@ class HardwareLoop::Implementation {
       end_tick_without_sync(next);
     }
     faults_.advance_to(next);
-    rack_.advance_to(next, std::min(bus_.earliest_delivery(), faults_.next_event()));
+    advance_rack(next);
     if (host_.next_event() <= next) {
       host_.advance_to(next);
     }
     report_host();
+  }
+
+  void advance_rack(BusTime now) {
+    const BusTime quiet_until = std::min(bus_.earliest_delivery(), faults_.next_event());
+    const BusTime ahead_until =
+        bus_.is_watched() ? now
+                          : std::min({quiet_until, host_.next_event(), plant_ticks_.next_event(), tick_deadline()});
+    rack_.advance_to(now, quiet_until, ahead_until);
   }
 
   void report_host() {

@@ -112,6 +112,8 @@ struct HardwareOptions {
   std::uint32_t start_time_us = 0;
   /// Crystals are off by up to this, each by an amount that follows from the scenario's seed.
   std::uint32_t crystal_error_ppm = 100;
+  /// Threads on which virtual chips run, at least 1. The result does not depend on it.
+  unsigned threads = 1;
   /// A hook for tests: changes the identities of the modules, and frames on their way into the program of a joint's
   /// module.
   std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;

@@ -42,6 +42,17 @@ class JointModule {
   /// time to execute may be executed up to there.
   virtual void advance_to(BusTime now, BusTime quiet_until) = 0;
 
+  // A part of advance_to() may be done before it, on another thread.
+  /// Whether prepare() may be called with `from`, which is next_event() or later.
+  [[nodiscard]] virtual bool can_prepare(BusTime /*from*/) const { return false; }
+  /// Takes to the bus what its program has requested of it up to now. Before prepare(now, quiet_until).
+  virtual void submit(BusTime /*now*/) {}
+  /// Does the part of advance_to(from, a time not before quiet_until) that needs no bus. Between the two calls nothing
+  /// else may be called that changes the module, and next_event() is `from`. Several modules may do it at a time, each
+  /// on a thread of its own; the bus is shared (Bus::begin_sharing()), and the signals of their pins stand still. All
+  /// functions that the module was given are called by advance_to(), except those that read signals.
+  virtual void prepare(BusTime /*from*/, BusTime /*quiet_until*/) {}
+
   /// Called before its readings change, and before pulse(), with the time, which next_event() does not precede. What it
   /// measured before are the readings as they are.
   virtual void catch_up_before(BusTime /*time*/) {}

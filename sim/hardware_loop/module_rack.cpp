@@ -82,10 +82,14 @@ firmware::ModuleIdentity make_identity(const Scenario& scenario, std::size_t joi
 }
 
 ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options)
-    : scenario_(scenario),
+    : bus_(bus),
+      scenario_(scenario),
       options_(options),
       records_(scenario.modules.size()),
-      ticks_before_(scenario.modules.size()) {
+      ticks_before_(scenario.modules.size()),
+      prepared_from_(scenario.modules.size()),
+      threads_(std::clamp(options.threads, 1U, static_cast<unsigned>(scenario.modules.size())),
+               static_cast<unsigned>(scenario.modules.size())) {
   for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
     firmware::ModuleIdentity identity = make_identity(scenario, joint);
     if (options.change_identity) {
@@ -162,16 +166,43 @@ void ModuleRack::take_serial_input(BusTime now) {
   }
 }
 
-void ModuleRack::advance_to(BusTime now, BusTime quiet_until) {
+void ModuleRack::advance_to(BusTime now, BusTime quiet_until, BusTime ahead_until) {
   if (next_serial_input() <= now) {
     take_serial_input(now);
   }
   quiet_until = std::min(quiet_until, next_serial_input());
+  prepare(now, quiet_until, std::min(ahead_until, quiet_until));
   for (const auto& module : modules_) {
     if (module->next_event() <= now) {
       module->advance_to(now, quiet_until);
     }
   }
+}
+
+void ModuleRack::prepare(BusTime now, BusTime quiet_until, BusTime ahead_until) {
+  // A module that acts later may run to the same end, since no frame can reach it before. It must have a long way to
+  // go, because its advance_to() takes it further.
+  const BusTime latest = quiet_until > now ? std::min(ahead_until, now + (quiet_until - now) / 2) : now;
+  preparations_.clear();
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    JointModule& module = *modules_[joint];
+    const BusTime next = module.next_event();
+    if (next <= now) {
+      module.submit(now);
+    } else if (next >= latest) {
+      continue;
+    }
+    prepared_from_[joint] = std::max(now, next);
+    if (module.can_prepare(prepared_from_[joint])) {
+      preparations_.push_back(joint);
+    }
+  }
+  if (preparations_.size() < 2) {
+    return;
+  }
+  bus_.begin_sharing();
+  threads_.run(preparations_, [&](unsigned joint) { modules_[joint]->prepare(prepared_from_[joint], quiet_until); });
+  bus_.end_sharing();
 }
 
 void ModuleRack::catch_up_before(BusTime time) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/module/module.hpp"
+#include "shared/computer/threads/worker_threads.hpp"
 #include "shared/kernel/kernel.hpp"
 #include "sim/hardware_loop/crystal.hpp"
 #include "sim/hardware_loop/hardware_options.hpp"
@@ -45,8 +46,10 @@ class ModuleRack {
 
   void power_on(BusTime now);
   [[nodiscard]] BusTime next_event() const;
-  /// quiet_until: as JointModule::advance_to() has it.
-  void advance_to(BusTime now, BusTime quiet_until);
+  /// quiet_until: as JointModule::advance_to() has it. ahead_until: before this nothing but modules acts, so that they
+  /// may be prepared (JointModule::prepare()): no module is advanced, changed or read by others than the rack, and no
+  /// signal of a pin changes.
+  void advance_to(BusTime now, BusTime quiet_until, BusTime ahead_until);
 
   /// Calls JointModule::catch_up_before() of each module.
   void catch_up_before(BusTime time);
@@ -83,12 +86,17 @@ class ModuleRack {
   void take_serial_input(BusTime now);
   [[nodiscard]] std::unique_ptr<JointModule> make_native(const ModuleParts& parts) const;
   void restart(unsigned joint, BusTime now);
+  void prepare(BusTime now, BusTime quiet_until, BusTime ahead_until);
 
+  Bus& bus_;
   const Scenario& scenario_;
   const HardwareOptions& options_;
   std::vector<std::unique_ptr<JointModule>> modules_;  ///< by joint
   std::vector<firmware::TickRecord> records_;          ///< by joint
   std::vector<std::uint32_t> ticks_before_;            ///< by joint: of the record before
+  std::vector<unsigned> preparations_;                 ///< joints of the modules that are prepared now
+  std::vector<BusTime> prepared_from_;                 ///< by joint
+  WorkerThreads threads_;
   std::size_t next_restart_ = 0;
   JointMask restarted_;
   std::array<std::optional<std::int32_t>, max_joints> last_pulses_;  ///< of modules that restarted, before that

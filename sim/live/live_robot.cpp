@@ -14,6 +14,7 @@ HardwareOptions for_rack(const LiveRobotOptions& options) {
   rack.change_identity = options.change_identity;
   rack.crystal_error_ppm = options.crystal_error_ppm;
   rack.gateway = options.gateway;
+  rack.threads = options.threads;
   return rack;
 }
 
@@ -68,7 +69,11 @@ bool LiveRobot::run_events(BusTime time, bool ends_with_frame) {
       begin_tick(tick_begin_ + tick_period(), false);
     }
     // A frame from an outside program is on the bus after `time`, so it is delivered after `time` too.
-    rack_.advance_to(next, bus_.earliest_delivery());
+    const BusTime quiet_until = bus_.earliest_delivery();
+    // At `time` the caller may use the modules.
+    const BusTime ahead_until =
+        bus_.is_watched() ? next : std::min({quiet_until, plant_ticks_.next_event(), tick_deadline(), time});
+    rack_.advance_to(next, quiet_until, ahead_until);
     if (ends_with_frame && has_had_frame_) {
       return false;
     }

@@ -29,6 +29,7 @@ struct LiveRobotOptions {
   std::function<std::unique_ptr<JointModule>(const ModuleParts&)> make_module;
   std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;
   std::uint32_t crystal_error_ppm = 100;
+  unsigned threads = 1;  ///< HardwareOptions::threads
   /// The host of a gateway (HardwareOptions). It sends characters from outside not before LiveRobot::now() plus 200 us,
   /// because the program of a module may run ahead of the bus.
   std::optional<HardwareOptions::GatewayHost> gateway;

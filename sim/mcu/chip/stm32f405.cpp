@@ -128,16 +128,22 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     return *next_event_;
   }
 
-  void advance_to(BusTime now_on_bus, BusTime quiet_until) {
+  void submit(BusTime now_on_bus) {
+    if (on_ && !stands_still_ && !is_held_) {
+      invalidate_next_events();
+      can_.submit(now_on_bus);
+    }
+  }
+
+  bool run(BusTime now_on_bus, BusTime quiet_until, bool ends_before_restart) {
     if (!on_ || stands_still_) {
-      return;
+      return true;
     }
     if (is_held_) {
       pass_to(std::max(now(), oscillator_.at(now_on_bus)));
-      return;
+      return true;
     }
     invalidate_next_events();
-    can_.submit(now_on_bus);
     const LocalTime due = oscillator_.at(now_on_bus);
     const LocalTime horizon = std::max(due, oscillator_.at(quiet_until));
     if (cpu_.state() == Cpu::State::sleeping) {
@@ -149,25 +155,29 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         take_events();
       }
       if (stands_still_) {
-        return;
+        return true;
       }
       if (reset_cause_) {
+        if (ends_before_restart) {
+          return false;
+        }
         restart();
       } else if (!is_awake()) {
         const LocalTime next = next_visible_event();
         if (next > horizon) {
           pass_to(std::max(now(), due));
-          return;
+          return true;
         }
         pass_to(next);
       } else if (now() >= horizon) {
-        return;
+        return true;
       } else if (stalls()) {
         pass_to(std::min({flash_.busy_until(), next_internal_event(), horizon}));
       } else {
         execute(std::min(horizon, next_internal_event()));
       }
     }
+    return true;
   }
 
   void catch_up_before(BusTime time) {
@@ -664,7 +674,15 @@ void Stm32f405::read(std::uint32_t address, std::span<std::uint8_t> bytes) const
 }
 void Stm32f405::power_on(BusTime now) { implementation_->power_on(now); }
 BusTime Stm32f405::next_event() const { return implementation_->next_event(); }
-void Stm32f405::advance_to(BusTime now, BusTime quiet_until) { implementation_->advance_to(now, quiet_until); }
+void Stm32f405::advance_to(BusTime now, BusTime quiet_until) {
+  submit(now);
+  static_cast<void>(run(now, quiet_until));
+}
+BusTime Stm32f405::next_request() const { return implementation_->can_.next_request(); }
+void Stm32f405::submit(BusTime now) { implementation_->submit(now); }
+bool Stm32f405::run(BusTime from, BusTime quiet_until, bool ends_before_restart) {
+  return implementation_->run(from, quiet_until, ends_before_restart);
+}
 void Stm32f405::catch_up_before(BusTime time) { implementation_->catch_up_before(time); }
 void Stm32f405::set_crystal(bool runs) {
   implementation_->change_outside([this, runs] { implementation_->rcc_.set_crystal(runs); });
@@ -709,6 +727,7 @@ void Stm32f405::set_flash_watch(FlashWatch watch) { implementation_->flash_.set_
 std::uint64_t Stm32f405::starts() const { return implementation_->starts(); }
 void Stm32f405::set_transmit_watch(TransmitWatch watch) { implementation_->transmit_watch_ = std::move(watch); }
 void Stm32f405::set_debug_hook(DebugHook hook) { implementation_->debug_hook_ = std::move(hook); }
+bool Stm32f405::has_debug_hook() const { return static_cast<bool>(implementation_->debug_hook_); }
 Cpu& Stm32f405::cpu() { return implementation_->cpu_; }
 std::optional<ChipEvent> Stm32f405::take_event() { return implementation_->take_event(); }
 

@@ -62,6 +62,18 @@ class Stm32f405 {
   /// Does what is due. Nothing reaches the chip from outside before quiet_until: its program may run ahead up to this
   /// time.
   void advance_to(BusTime now, BusTime quiet_until);
+
+  // The same in two parts.
+  /// Time of the first request of the program to the bus that waits for submit(); never_on_bus if none does.
+  [[nodiscard]] BusTime next_request() const;
+  /// Takes the requests of times up to now to the bus, whose time must be now.
+  void submit(BusTime now);
+  /// Does the rest of advance_to(from, quiet_until). Uses nothing outside of the chip but what a thread may use between
+  /// Bus::begin_sharing() and end_sharing(), the BoardSignals and the watches. May be called again with a later
+  /// quiet_until: the result is that of one call. ends_before_restart: it ends where the program restarts the chip, and
+  /// then returns false.
+  bool run(BusTime from, BusTime quiet_until, bool ends_before_restart = false);
+
   /// Does what a program that sleeps does not see, up to a time before which next_event() has nothing: conversions of
   /// the ADC take the present signals. To be called before a signal changes, and before pulse_time().
   void catch_up_before(BusTime time);
@@ -131,6 +143,7 @@ class Stm32f405 {
   /// may throw.
   using DebugHook = std::function<bool(DebugEvent)>;
   void set_debug_hook(DebugHook hook);
+  [[nodiscard]] bool has_debug_hook() const;
   [[nodiscard]] Cpu& cpu();
 
   /// Takes the oldest event.

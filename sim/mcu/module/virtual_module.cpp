@@ -132,7 +132,46 @@ void VirtualModule::power_on(BusTime now) {
   chip_.power_on(now);
 }
 
-void VirtualModule::advance_to(BusTime now, BusTime quiet_until) { chip_.advance_to(now, quiet_until); }
+void VirtualModule::advance_to(BusTime now, BusTime quiet_until) {
+  if (!prepared_from_) {
+    chip_.advance_to(now, quiet_until);
+    return;
+  }
+  prepared_from_.reset();
+  for (const std::function<void()>& call : std::exchange(reports_, {})) {
+    call();
+  }
+  if (error_) {
+    std::rethrow_exception(std::exchange(error_, nullptr));
+  }
+  if (quiet_until > prepared_until_) {
+    static_cast<void>(chip_.run(now, quiet_until));
+  }
+}
+
+bool VirtualModule::can_prepare(BusTime from) const {
+  // A request that is due at `from` comes first.
+  return !prepared_from_ && !chip_.has_debug_hook() && chip_.next_request() > from;
+}
+
+void VirtualModule::prepare(BusTime from, BusTime quiet_until) {
+  prepared_from_ = from;
+  is_preparing_ = true;
+  try {
+    prepared_until_ = chip_.run(from, quiet_until, true) ? quiet_until : 0;
+  } catch (...) {
+    error_ = std::current_exception();
+  }
+  is_preparing_ = false;
+}
+
+void VirtualModule::report(std::function<void()> call) {
+  if (is_preparing_) {
+    reports_.push_back(std::move(call));
+  } else {
+    call();
+  }
+}
 
 firmware::TickRecord VirtualModule::last_tick() const {
   if (start_of_program_ != chip_.starts()) {
@@ -187,10 +226,16 @@ void VirtualModule::set_pulse_watch(PulseWatch watch) {
 }
 
 void VirtualModule::set_command_watch(CommandWatch watch) {
-  chip_.set_compare_watch([watch = std::move(watch)](BusTime time, std::uint32_t counts) {
+  chip_.set_compare_watch([this, watch = std::move(watch)](BusTime time, std::uint32_t counts) {
     if (counts != 0) {  // 0: no pulses
-      watch(time, static_cast<std::int32_t>(counts));
+      report([&watch, time, counts] { watch(time, static_cast<std::int32_t>(counts)); });
     }
+  });
+}
+
+void VirtualModule::set_serial_watch(SerialWatch watch) {
+  chip_.set_serial_watch([this, watch = std::move(watch)](BusTime time, std::uint8_t byte) {
+    report([&watch, time, byte] { watch(time, byte); });
   });
 }
 
@@ -205,8 +250,9 @@ void VirtualModule::see_edge(BusTime time, bool high) {
     // The program publishes the state after the event that has begun the first pulse.
     const bool was_enabled = power_at_begin_ == canopen::PowerState::operation_enabled ||
                              power_at_begin_ == canopen::PowerState::quick_stop_active;
-    pulse_watch_({*pulse_begin_, static_cast<std::int32_t>(counts), was_enabled ? power_at_begin_ : power(),
-                  std::nullopt, is_pulse_whole_});
+    const WatchedPulse pulse{*pulse_begin_, static_cast<std::int32_t>(counts), was_enabled ? power_at_begin_ : power(),
+                             std::nullopt, is_pulse_whole_};
+    report([this, pulse] { pulse_watch_(pulse); });
     pulse_begin_.reset();
   }
 }
@@ -235,6 +281,9 @@ void VirtualModule::note_sync(std::uint32_t tick) {
 }
 
 std::optional<std::string> VirtualModule::take_problem() {
+  if (prepared_from_) {
+    return std::nullopt;  // what it has found comes later
+  }
   while (const auto event = chip_.take_event()) {
     if (event->kind == ChipEvent::Kind::reset && event->cause == ResetCause::software) {
       continue;  // the fault handler reset it, and the fault is reported; or the reset was requested
@@ -317,7 +366,7 @@ std::int32_t VirtualModule::chip_temperature() { return readings_().temperature_
 void VirtualModule::serial_output(unsigned /*usart*/, std::uint8_t byte) {
   if (byte == '\n') {
     if (options_.console) {
-      options_.console(line_);
+      report([this, line = line_] { options_.console(line); });
     }
     line_.clear();
   } else if (byte != '\r') {

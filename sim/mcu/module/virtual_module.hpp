@@ -3,6 +3,7 @@
 // The firmware of a joint module, and a module that runs the flashed image in a virtual chip.
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -72,8 +73,11 @@ class VirtualModule final : public JointModule, private BoardSignals {
   VirtualModule& operator=(const VirtualModule&) = delete;
 
   void power_on(BusTime now) override;
-  [[nodiscard]] BusTime next_event() const override { return chip_.next_event(); }
+  [[nodiscard]] BusTime next_event() const override { return prepared_from_ ? *prepared_from_ : chip_.next_event(); }
   void advance_to(BusTime now, BusTime quiet_until) override;
+  [[nodiscard]] bool can_prepare(BusTime from) const override;
+  void submit(BusTime now) override { chip_.submit(now); }
+  void prepare(BusTime from, BusTime quiet_until) override;
   void catch_up_before(BusTime time) override { chip_.catch_up_before(time); }
   void run_out(BusTime now, BusTime until) override { chip_.advance_to(now, until); }
   void set_supply(BusTime now, std::uint32_t mv) override;
@@ -81,7 +85,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   void set_crystal(BusTime now, bool runs) override;
   void set_pll(BusTime now, bool locks) override;
   void begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) override;
-  void set_serial_watch(SerialWatch watch) override { chip_.set_serial_watch(std::move(watch)); }
+  void set_serial_watch(SerialWatch watch) override;
   [[nodiscard]] canopen::PowerState power() const override;
   void set_pulse_watch(PulseWatch watch) override;
   void set_command_watch(CommandWatch watch) override;
@@ -97,6 +101,8 @@ class VirtualModule final : public JointModule, private BoardSignals {
   [[nodiscard]] Stm32f405& chip() { return chip_; }
 
  private:
+  /// Calls a function of another object: now, or at advance_to() while the module is being prepared.
+  void report(std::function<void()> call);
   void see_edge(BusTime time, bool high);
   [[nodiscard]] std::optional<bool> pin(char port, unsigned number) override;
   [[nodiscard]] std::uint32_t analog_uv(unsigned channel) override;
@@ -121,6 +127,11 @@ class VirtualModule final : public JointModule, private BoardSignals {
   bool leaves_model_ = false;  ///< of the last problem
   bool is_pulse_whole_ = true;
   PulseWatch pulse_watch_;
+  std::optional<BusTime> prepared_from_;  ///< advance_to() is due then, and has been prepared
+  BusTime prepared_until_ = 0;
+  bool is_preparing_ = false;                   ///< in prepare()
+  std::vector<std::function<void()>> reports_;  ///< calls that wait for advance_to()
+  std::exception_ptr error_;                    ///< of prepare(), for advance_to()
   std::optional<BusTime> pulse_begin_;
   canopen::PowerState power_at_begin_ = canopen::PowerState::switch_on_disabled;
 };

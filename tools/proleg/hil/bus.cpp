@@ -198,6 +198,7 @@ class Server final : private host::BusServerListener {
 
   sim::LiveRobotOptions live_options(HilModules& modules, const BrokenModules& broken) {
     sim::LiveRobotOptions options;
+    options.threads = modules.threads();
     options.make_module = [&modules, &broken](const sim::ModuleParts& parts) {
       std::unique_ptr<sim::JointModule> module = broken.make(parts);
       return module ? std::move(module) : modules.make(parts);

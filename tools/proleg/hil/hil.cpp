@@ -232,6 +232,7 @@ int hil(const HilOptions& options) {
     };
   }
   hardware.make_module = [&modules](const sim::ModuleParts& parts) { return modules.make(parts); };
+  hardware.threads = modules.threads();
   hardware.before_start = [&] {
     open_files(options, run, modules, files);
     if (files.recorder) {

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -163,6 +164,9 @@ void add_module_options(CommandLine& command_line, ModuleOptions& options) {
       "--gdb", options.gdb,
       "PORT or NODE:PORT: wait until gdb-multiarch attaches to a virtual module (by default the first) with "
       "'target remote :PORT'. While the program is stopped, so is the simulation.");
+  command_line.add_option("--threads", options.threads,
+                          "N: run the virtual modules on N threads; by default one for each core. The result is the "
+                          "same with any number.");
 }
 
 HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario)
@@ -179,6 +183,19 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
     image_.emplace(read_image(options.image));
   } else if (options.image) {
     throw InputError("--image", 0, "no module that runs the image", "--modules mcu");
+  }
+  if (image_) {
+    threads_ = std::max(std::thread::hardware_concurrency(), 1U);
+  }
+  if (options.threads) {
+    const auto threads = parse_whole<std::uint8_t>(*options.threads);
+    if (!threads || *threads == 0) {
+      throw InputError("--threads", 0, in_quotes(*options.threads), "a number of threads from 1 to 255");
+    }
+    if (!image_) {
+      throw InputError("--threads", 0, "no virtual module", "--modules mcu");
+    }
+    threads_ = *threads;
   }
   if (options.gdb) {
     const std::size_t colon = options.gdb->find(':');

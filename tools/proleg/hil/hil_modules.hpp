@@ -23,6 +23,7 @@ struct ModuleOptions {
   std::vector<std::string> consoles;
   std::vector<std::string> traces;
   std::optional<std::string> gdb;
+  std::optional<std::string> threads;
 };
 
 void add_module_options(CommandLine& command_line, ModuleOptions& options);
@@ -43,6 +44,8 @@ class HilModules {
   /// modules get the contents of its flash. The first make() prints a line with the name of this program. Throws
   /// BadInput if the bootloader is missing or refuses the image, and std::runtime_error if the program does not run.
   void flash(const std::string& program);
+  /// For HardwareOptions::threads: --threads, by default a thread for each core; 1 without virtual modules.
+  [[nodiscard]] unsigned threads() const { return threads_; }
   /// Start time of a chip, for HardwareOptions::start_time_us: native modules then start as virtual ones do.
   [[nodiscard]] std::uint32_t start_time_us() const;
   /// Makes a module, for HardwareOptions::make_module; this object must outlive the loop.
@@ -79,6 +82,7 @@ class HilModules {
   std::string flash_report_;                  ///< report that is not printed yet
   std::vector<sim::VirtualModule*> modules_;  ///< modules by joint; null for a native one
   std::unique_ptr<Debugger> debugger_;
+  unsigned threads_ = 1;
 };
 
 }  // namespace proleg::tools

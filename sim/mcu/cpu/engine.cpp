@@ -198,7 +198,8 @@ std::vector<std::uint8_t> Engine::code(std::uint32_t address, std::uint32_t size
 CodeBlock Engine::examine(std::uint32_t address, std::uint32_t size) {
   const CodeBlock block = examine_block(code(address, size));
   if (lies_in(address, size, ChipMemory::flash_start, ChipMemory::flash_size)) {
-    flash_blocks_.add(address, block);
+    const auto [begin, length] = flash_blocks_.memory_for(address);
+    flash_blocks_.add(address, block, code(begin, length));
   } else {
     code_in_ram_ = true;
   }

@@ -140,6 +140,9 @@ std::optional<ObjectText> read_text(const ModuleIdentity& identity, canopen::Add
   } else if (address == canopen::object::hardware_version.address) {
     text.append("board ");
     text.append_decimal(identity.board_id);
+    if ((identity.capabilities & canopen::has_no_current_sensor) != 0) {
+      text.append(", no current sensor");
+    }
   } else if (address == canopen::object::software_version.address) {
     text = software_text;
     text.append_hex(identity.core_fingerprint);

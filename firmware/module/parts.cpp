@@ -10,7 +10,7 @@ Parts::Parts(const ModuleIdentity& module_identity, const Ports& ports)
       recovery(ports.can),
       gateway(identity, ports),
       drive(ports.servo),
-      monitor(ports.sensors),
+      monitor(ports.sensors, (module_identity.capabilities & canopen::has_no_current_sensor) == 0),
       contacts(ports.contacts),
       update(identity, ports) {}
 

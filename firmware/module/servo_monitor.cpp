@@ -19,14 +19,16 @@ void ServoMonitor::reset(const BoardRecord& board) {
 void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
   constexpr std::uint16_t max_current_ma = 0x7FFF;  // greatest value of object 0x6078
   readings_ = port_.take_readings();
-  readings_.current_ma = std::min(readings_.current_ma, max_current_ma);
+  readings_.current_ma = measures_current_ ? std::min(readings_.current_ma, max_current_ma) : std::uint16_t{0};
   if (!measures_angle_) {
     readings_.angle.reset();
   }
   if (readings_.are_new) {
     stale_readings_ = 0;
     is_too_hot_ = readings_.temperature_c >= (is_too_hot_ ? cool_temperature_c : max_temperature_c);
-    judge_current(now);
+    if (measures_current_) {
+      judge_current(now);
+    }
   } else if (!sensors_failed()) {
     ++stale_readings_;
   }

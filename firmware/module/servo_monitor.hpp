@@ -11,7 +11,8 @@ class ServoMonitor {
   /// Number of calls in a row without new readings that is a failure. A single one can come right after another call.
   static constexpr std::uint8_t max_stale_readings = 5;
 
-  explicit ServoMonitor(SensorPort& port) : port_(port) {}
+  /// measures_current: without a sensor the current is 0, and over-current is not detected, whatever the limit.
+  ServoMonitor(SensorPort& port, bool measures_current) : port_(port), measures_current_(measures_current) {}
 
   /// Temperature at which the chip is too hot. Its junction may have 105 degrees (data sheet DS8626, general operating
   /// conditions).
@@ -61,6 +62,7 @@ class ServoMonitor {
   void judge_current(Microseconds now);
 
   SensorPort& port_;
+  bool measures_current_;
   bool is_too_hot_ = false;
   bool measures_angle_ = false;
   std::uint16_t limit_ma_ = canopen::object::current_limit.default_value;

@@ -9,14 +9,8 @@
 namespace proleg::stm32f405 {
 namespace {
 
-// Factors of the PLL: its input must be 1 to 2 MHz, where 2 gives the least jitter (RM0090, section 7.3.2), the VCO 100
-// to 432 MHz; Q gives 48 MHz.
-constexpr std::uint32_t pll_m = 4;
-constexpr std::uint32_t pll_n = 168;
-constexpr std::uint32_t pll_p = 2;
-constexpr std::uint32_t pll_q = 7;
-static_assert(board::crystal / pll_m * pll_n / pll_p == board::core);
-static_assert(board::crystal / pll_m * pll_n / pll_q == 48'000'000);
+constexpr PllFactors pll = pll_factors_of(board::profile.crystal);
+static_assert(std::uint64_t{board::profile.crystal} * pll.n == std::uint64_t{board::core} * pll.m * pll.p);
 
 /// Wait states of the flash: one for each 22 MHz, which is enough down to 2.1 V (RM0090, table 10). So nothing must
 /// happen within microseconds when the supply falls. At 2.7 V five would do; two more cost two cycles for each line of
@@ -52,7 +46,7 @@ ClockResult start_clocks() {
   }
   rcc::cr.set(rcc::cr_csson);  // from now on, NMI comes if the crystal stops (faults.cpp)
   // 168 MHz needs the voltage regulator in scale 1, which it has from reset on (RM0090, section 5.4.1).
-  rcc::pllcfgr.change(rcc::pllcfgr_mask, rcc::pllcfgr_of(pll_m, pll_n, pll_p, pll_q) | rcc::pllcfgr_pllsrc_hse);
+  rcc::pllcfgr.change(rcc::pllcfgr_mask, rcc::pllcfgr_of(pll.m, pll.n, pll.p, pll.q) | rcc::pllcfgr_pllsrc_hse);
   rcc::cr.set(rcc::cr_pllon);
   if (!wait_until_set(rcc::cr, rcc::cr_pllrdy, reads_in_50_ms / 10)) {
     return ClockResult::no_pll;

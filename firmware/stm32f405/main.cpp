@@ -162,7 +162,8 @@ void start_module(const Start& start) {
   firmware::ModuleIdentity identity;
   identity.board_id = board::id;
   const bool has_brown_out_reset = (flash_interface::optcr.read() & flash_interface::optcr_bor_lev_mask) == 0;
-  identity.capabilities = has_brown_out_reset ? proleg::canopen::has_brown_out_reset : 0U;
+  identity.capabilities = (has_brown_out_reset ? canopen::has_brown_out_reset : 0U) |
+                          (board::profile.servo_current ? 0U : canopen::has_no_current_sensor);
   identity.unique_id = factory::unique_id();
   identity.core_fingerprint = core_fingerprint;
   identity.reset_cause = start.cause;

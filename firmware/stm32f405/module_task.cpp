@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "firmware/stm32f405/faults.hpp"
+#include "firmware/stm32f405/led.hpp"
 #include "firmware/stm32f405/reset.hpp"
 
 namespace proleg::stm32f405 {
@@ -20,6 +21,20 @@ constexpr Microseconds recovery_poll_us = 1'000;
   hardware.servo.finish_last_pulse();
   record_fault(reason);
   reset_chip();
+}
+
+LedPattern pattern_of(const firmware::Module& module) {
+  if (module.power() == canopen::PowerState::fault) {
+    return LedPattern::fault;
+  }
+  switch (module.state()) {
+    case canopen::NmtState::operational:
+      return LedPattern::operational;
+    case canopen::NmtState::stopped:
+      return LedPattern::stopped;
+    default:
+      return LedPattern::pre_operational;
+  }
 }
 
 static_assert(std::is_trivially_destructible_v<firmware::Module>,
@@ -155,6 +170,7 @@ void ModuleTask::poll(Microseconds now) {
   }
   if (module_) {
     module_->poll(in_order(now));
+    show(pattern_of(*module_), now);
   }
   feed_watchdog();
   poll_by_ = now + max_pause_us;

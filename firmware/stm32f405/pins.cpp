@@ -30,6 +30,8 @@ void connect(Pin pin, unsigned function) {
   set_mode(pin, PinMode::alternate);
 }
 
+void set_high(Pin pin) { GpioPort(pin.port).bsrr().write(1U << pin.number); }
+
 void set_low(Pin pin) { GpioPort(pin.port).bsrr().write(1U << (pin.number + 16U)); }
 
 namespace {
@@ -59,11 +61,20 @@ void start_pins() {
   set_fast_edges(board::can_transmit);
   connect(board::can_receive, board::can_function);
   connect(board::can_transmit, board::can_function);
-  set_pull(board::console_receive, Pull::up);
-  connect(board::console_receive, board::console_function);
-  connect(board::console_transmit, board::console_function);
-  set_mode(board::servo_current, PinMode::analog);
-  set_mode(board::feedback, PinMode::analog);
+  if constexpr (board::profile.console_receive.has_value()) {
+    set_pull(*board::profile.console_receive, Pull::up);
+    connect(*board::profile.console_receive, board::console_function);
+    connect(*board::profile.console_transmit, board::console_function);
+  }
+  if constexpr (board::profile.led.has_value()) {
+    set_mode(board::profile.led->pin, PinMode::output);
+  }
+  if constexpr (board::profile.servo_current.has_value()) {
+    set_mode(*board::profile.servo_current, PinMode::analog);
+  }
+  if constexpr (board::profile.feedback.has_value()) {
+    set_mode(*board::profile.feedback, PinMode::analog);
+  }
 }
 
 }  // namespace proleg::stm32f405

@@ -1,53 +1,52 @@
 #pragma once
 
-// The reference board, board id 1: the use of its pins and the frequencies of its clocks, as docs/board.md describes
-// them, and the functions that set pins.
+// The board for which the program is compiled: the use of its pins and the frequencies of its clocks, and the functions
+// that set pins. PROLEG_BOARD, a definition of the compiler, is the board's name in the namespace boards
+// (firmware/stm32f405/boards); without it: the reference board.
 
 #include <array>
 #include <cstdint>
 
-namespace proleg::stm32f405 {
+#include "firmware/stm32f405/boards/boards.hpp"
 
-struct Pin {
-  char port;
-  unsigned number;
-};
+#ifndef PROLEG_BOARD
+#define PROLEG_BOARD reference
+#endif
+
+namespace proleg::stm32f405 {
 
 namespace board {
 
-inline constexpr std::uint16_t id = 1;
-inline constexpr std::uint8_t revision = 1;  ///< revision of the hardware, which decides which images it can run
+inline constexpr const BoardProfile& profile = boards::PROLEG_BOARD;
+inline constexpr std::uint16_t id = profile.id;
+inline constexpr std::uint8_t revision = profile.revision;
 
 // Clocks in Hz (RM0090, section 7.2). The limits are those of the data sheet.
-inline constexpr std::uint32_t crystal = 8'000'000;
 inline constexpr std::uint32_t internal_oscillator = 16'000'000;  ///< HSI: the clock before the crystal has started
-inline constexpr std::uint32_t core = 168'000'000;
+inline constexpr std::uint32_t core = clocks::core;
 inline constexpr std::uint32_t apb1 = core / 4;         ///< clock of CAN1 and USART2; at most 42 MHz
 inline constexpr std::uint32_t apb1_timers = 2 * apb1;  ///< clock of TIM2 and TIM5
 inline constexpr std::uint32_t apb2 = core / 2;         ///< clock of ADC1; at most 84 MHz
 
-inline constexpr Pin can_receive{'B', 8};
-inline constexpr Pin can_transmit{'B', 9};
+inline constexpr Pin can_receive = profile.can_receive;
+inline constexpr Pin can_transmit = profile.can_transmit;
+inline constexpr Pin servo = profile.servo;
+inline constexpr std::array<Pin, 4> contacts = profile.contacts;
+
+// The alternate functions are the same at all pins that check_board() allows.
 inline constexpr unsigned can_function = 9;
-
-inline constexpr Pin servo{'A', 5};  ///< TIM2, channel 1
 inline constexpr unsigned servo_function = 1;
-
-/// Touch sensors: switches to ground, in the order of firmware::ContactPort: rear and front of the link behind the
-/// joint, rear and front of the link in front of it.
-inline constexpr std::array<Pin, 4> contacts{{{'B', 12}, {'B', 13}, {'B', 14}, {'B', 15}}};
-
-inline constexpr Pin servo_current{'C', 0};  ///< 1 V per A
-inline constexpr unsigned servo_current_channel = 10;
-inline constexpr Pin feedback{'C', 1};  ///< slider of the potentiometer, between ground and VDDA
-inline constexpr unsigned feedback_channel = 11;
-inline constexpr unsigned temperature_channel = 16;  ///< channel of the sensor inside the chip
-inline constexpr std::uint32_t vdda_millivolt = 3300;
-
-inline constexpr Pin console_transmit{'A', 2};
-inline constexpr Pin console_receive{'A', 3};
 inline constexpr unsigned console_function = 7;
 inline constexpr std::uint32_t console_baud = 115'200;
+
+/// Channel of the internal reference voltage, which is converted if nothing measures the current or the angle.
+inline constexpr unsigned reference_channel = 17;
+inline constexpr unsigned servo_current_channel =
+    profile.servo_current ? analog_channel_of(*profile.servo_current) : reference_channel;
+inline constexpr unsigned feedback_channel =
+    profile.feedback ? analog_channel_of(*profile.feedback) : reference_channel;
+inline constexpr unsigned temperature_channel = 16;  ///< channel of the sensor inside the chip
+inline constexpr std::uint32_t vdda_millivolt = 3300;
 
 }  // namespace board
 
@@ -63,6 +62,7 @@ void set_fast_edges(Pin pin);
 void connect_function(Pin pin, unsigned function);
 /// Connects a pin with a peripheral. function: AF0 to AF15, data sheet, table 9.
 void connect(Pin pin, unsigned function);
+void set_high(Pin pin);
 void set_low(Pin pin);
 
 /// Makes the servo's pin low, which floats from the reset on. Nothing else is needed before: it may be the first call.

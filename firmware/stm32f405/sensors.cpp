@@ -21,6 +21,12 @@ constexpr std::uint32_t reads_in_10_us = board::core / 100'000 / 3;
 constexpr std::uint32_t temperature_sampling_cycles = 480;
 static_assert(temperature_sampling_cycles > adc_hz / 100'000);
 
+/// Sampling of a channel in SMPR1. Those inside the chip need longer.
+constexpr std::uint32_t sampling_of(unsigned channel) {
+  return adc1::smpr1_of(channel,
+                        channel < board::temperature_channel ? adc1::sampling_84_cycles : adc1::sampling_480_cycles);
+}
+
 /// Channel 0 of this stream is ADC1 (RM0090, table 43).
 constexpr dma::Stream samples(dma::dma2, 0);
 
@@ -32,12 +38,18 @@ constexpr std::uint32_t on =
 
 std::uint8_t Contacts::read_contacts() {
   // All four inputs are read at once, so that they are from the same instant.
-  constexpr unsigned first = board::contacts[0].number;
-  static_assert(board::contacts[1].port == board::contacts[0].port && board::contacts[1].number == first + 1);
-  static_assert(board::contacts[2].port == board::contacts[0].port && board::contacts[2].number == first + 2);
-  static_assert(board::contacts[3].port == board::contacts[0].port && board::contacts[3].number == first + 3);
-  constexpr std::uint32_t all = 15;
-  return static_cast<std::uint8_t>(~(GpioPort(board::contacts[0].port).idr().read() >> first) & all);
+  constexpr auto& pins = board::contacts;
+  const std::uint32_t levels = GpioPort(pins[0].port).idr().read();
+  if constexpr (pins[1].number == pins[0].number + 1 && pins[2].number == pins[0].number + 2 &&
+                pins[3].number == pins[0].number + 3) {
+    constexpr std::uint32_t all = 15;
+    return static_cast<std::uint8_t>(~(levels >> pins[0].number) & all);
+  }
+  std::uint32_t contacts = 0;
+  for (unsigned i = 0; i < pins.size(); ++i) {
+    contacts |= (~(levels >> pins[i].number) & 1U) << i;
+  }
+  return static_cast<std::uint8_t>(contacts);
 }
 
 void Sensors::start() {
@@ -46,9 +58,8 @@ void Sensors::start() {
   static_cast<void>(rcc::apb2enr.read());
   adc1::ccr.write(adc1::ccr_adcpre_4 | adc1::ccr_tsvrefe);
   adc1::cr1.write(adc1::cr1_scan);
-  adc1::smpr1.write(adc1::smpr1_of(board::servo_current_channel, adc1::sampling_84_cycles) |
-                    adc1::smpr1_of(board::feedback_channel, adc1::sampling_84_cycles) |
-                    adc1::smpr1_of(board::temperature_channel, adc1::sampling_480_cycles));
+  adc1::smpr1.write(sampling_of(board::servo_current_channel) | sampling_of(board::feedback_channel) |
+                    sampling_of(board::temperature_channel));
   adc1::sqr1.write(0);
   adc1::sqr3.write(board::servo_current_channel);
   adc1::jsqr.write(adc1::jsqr_of(board::feedback_channel, board::temperature_channel));
@@ -122,7 +133,7 @@ bool Sensors::take_current() {
   for (std::uint32_t back = 1; back <= count; ++back) {
     sum += ring_[(next - back) % ring_size];
   }
-  readings_.current_ma = current_of((sum + count / 2) / count);
+  readings_.current_ma = board::profile.servo_current ? current_of((sum + count / 2) / count) : std::uint16_t{0};
   taken_ = next;
   taken_at_ = now;
   return true;

@@ -43,7 +43,14 @@ template <unsigned interrupt_count>
 struct VectorTable {
   using Handler = void (*)();
 
+  /// A word that ARM reserves.
+  union Reserved {
+    Handler handler;
+    std::uint32_t number;
+  };
+
   constexpr VectorTable() {
+    faults.fill(fault_handler);
     exceptions.fill(fault_handler);
     interrupts.fill(fault_handler);
   }
@@ -51,7 +58,9 @@ struct VectorTable {
 
   const std::uint32_t* initial_stack = stack_top;
   Handler reset = reset_handler;
-  std::array<Handler, 14> exceptions{};  ///< handlers from NMI, exception 2, on
+  std::array<Handler, 5> faults{};      ///< handlers of NMI, exception 2, to usage fault, 6
+  Reserved reserved{fault_handler};     ///< exception 7; a bootloader names its board here (board_names.hpp)
+  std::array<Handler, 8> exceptions{};  ///< handlers from exception 8 on
   std::array<Handler, interrupt_count> interrupts{};
 };
 static_assert(sizeof(VectorTable<5>) == sizeof(VectorTable<5>::Handler) * (16 + 5));

@@ -9,7 +9,7 @@ using Table = VectorTable<interrupt_count>;
 
 constexpr Table make_vectors() {
   Table table;
-  constexpr unsigned first_exception = 2;
+  constexpr unsigned first_exception = 8;
   constexpr unsigned pend_sv = 14;
   table.exceptions[pend_sv - first_exception] = pend_sv_handler;
   table.set(Interrupt::pvd, pvd_handler);

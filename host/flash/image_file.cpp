@@ -11,6 +11,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"
+#include "shared/image/board_names.hpp"
 
 namespace proleg::host {
 namespace {
@@ -286,6 +287,22 @@ std::vector<std::uint8_t> bootloader_of(const std::string& file, Bytes bytes, co
            "one within " + range_text(sector) + ", where the chip starts");
   }
   return contents;
+}
+
+std::uint16_t board_of_bootloader(Bytes bootloader) {
+  constexpr std::uint32_t id_bits = 0xFFFF;
+  constexpr std::uint16_t reference_board = 1;
+  if (bootloader.size() < image::bootloader_board_at + 4) {
+    return reference_board;
+  }
+  const std::uint32_t word = read_little_endian(bootloader, image::bootloader_board_at, 4);
+  return (word & ~id_bits) == image::bootloader_board_mark ? static_cast<std::uint16_t>(word & id_bits)
+                                                           : reference_board;
+}
+
+std::string board_text(std::uint16_t id) {
+  const std::string_view name = image::board_name(id);
+  return "board " + std::to_string(id) + (name.empty() ? "" : " (" + std::string(name) + ")");
 }
 
 std::vector<std::uint8_t> read_bootloader(const std::string& file, const FlashPart& sector) {

@@ -64,6 +64,13 @@ void check_image_body(const std::string& file, const image::Header& header, std:
 /// InputError for anything else, and for a bootloader that does not fit into the sector, or does not start there.
 [[nodiscard]] std::vector<std::uint8_t> bootloader_of(const std::string& file, std::span<const std::uint8_t> bytes,
                                                       const FlashPart& sector);
+/// The id of the board for which a bootloader is (shared/image/board_names.hpp). One that names none is for the
+/// reference board.
+[[nodiscard]] std::uint16_t board_of_bootloader(std::span<const std::uint8_t> bootloader);
+
+/// A board for messages: "board 3 (weact-stm32f405)", "board 77" for an id without a name.
+[[nodiscard]] std::string board_text(std::uint16_t id);
+
 /// Reads a file and returns bootloader_of() its bytes.
 [[nodiscard]] std::vector<std::uint8_t> read_bootloader(const std::string& file, const FlashPart& sector);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/flash/image_file.hpp"
+
 namespace proleg::host {
 namespace {
 
@@ -73,8 +75,7 @@ class Diagnosis {
 
   [[nodiscard]] Action another_program() const {
     if (means_.image == nullptr) {
-      return {Remedy::by_hand,
-              "'proleg recover IMAGE.pimg' flashes a program for board " + std::to_string(module_.board_id)};
+      return {Remedy::by_hand, "'proleg recover IMAGE.pimg' flashes a program for " + board_text(module_.board_id)};
     }
     const bool is_same = program_.image && is_same_image(*program_.image, *means_.image);
     if (is_same && program_.is(flag::is_confirmed)) {

@@ -17,12 +17,11 @@ std::string protocol_text(std::uint16_t version) {
   return std::to_string(version >> 8U) + "." + std::to_string(version & 0xFFU);
 }
 
-std::string board_text(const image::Header& image) {
-  return "board " + std::to_string(image.board_id) +
-         (image.lowest_revision == 0 && image.highest_revision == 0xFF
-              ? ""
-              : ", revisions " + std::to_string(image.lowest_revision) + " to " +
-                    std::to_string(image.highest_revision));
+std::string boards_text(const image::Header& image) {
+  return board_text(image.board_id) + (image.lowest_revision == 0 && image.highest_revision == 0xFF
+                                           ? ""
+                                           : ", revisions " + std::to_string(image.lowest_revision) + " to " +
+                                                 std::to_string(image.highest_revision));
 }
 
 FlashVerdict refuse(const std::string& why) { return {FlashAction::refuse, why}; }
@@ -196,7 +195,7 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
     return refuse("has no bootloader: flash it with 'proleg flash --bare'");
   }
   if (module.board_id != image.board_id && !permissions.other_board) {
-    return refuse("is board " + std::to_string(module.board_id) + ", the image is for " + board_text(image) +
+    return refuse("is " + board_text(module.board_id) + ", the image is for " + boards_text(image) +
                   "; --force-board sends it anyway");
   }
   if (image.length > slot_room) {

@@ -6,6 +6,7 @@
 
 #include "host/robot/frame_load.hpp"
 #include "shared/canopen/declared_objects.hpp"
+#include "shared/image/board_names.hpp"
 
 namespace proleg::host {
 namespace {
@@ -227,8 +228,10 @@ void BusExamination::search(Microseconds now) {
     finish(true);
     return;
   }
-  constexpr std::uint32_t reference_board = 1;
-  std::vector<std::uint32_t> products{reference_board};
+  std::vector<std::uint32_t> products;
+  for (const image::BoardName& board : image::board_names) {
+    products.push_back(board.id);
+  }
   std::vector<std::uint32_t> known;
   for (const ScannedNode& node : scan_.nodes()) {
     if (!node.is_module) {

@@ -33,6 +33,8 @@ inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< the joint has a 
 /// The chip is reset when its supply falls below 2.8 V: its option bytes have the brown-out level that docs/board.md
 /// asks for.
 inline constexpr std::uint32_t has_brown_out_reset = 1U << 1U;
+/// Nothing measures the servo's current: 0x6078 is 0, and over-current is not detected.
+inline constexpr std::uint32_t has_no_current_sensor = 1U << 2U;
 
 /// Bit 10 of the statusword (0x6041): target reached (CiA 402, 8.4.2). Here it says that the joint has ramped in.
 inline constexpr std::uint16_t target_reached = 1U << 10U;
@@ -143,9 +145,10 @@ inline constexpr Object core_fingerprint = read_only(device.at(3), "Core fingerp
                                                      "modules with equal fingerprints compute equal bits");
 inline constexpr Object board_id =
     read_only(device.at(4), "Board id", DataType::unsigned16, "1: reference board STM32F405");
-inline constexpr Object capabilities =
-    read_only(device.at(5), "Capabilities", DataType::unsigned32,
-              "bit 0: measures the actual angle of the joint; bit 1: its chip is reset below 2.8 V");
+inline constexpr Object capabilities = read_only(
+    device.at(5), "Capabilities", DataType::unsigned32,
+    "bit 0: measures the actual angle of the joint; bit 1: its chip is reset below 2.8 V; bit 2: has no sensor "
+    "for the servo's current, so over-current is not detected");
 
 inline constexpr ObjectGroup place{0x2001, ObjectCode::record, "Place in the robot"};
 inline constexpr Object joint_index =

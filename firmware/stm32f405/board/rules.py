@@ -5,12 +5,14 @@ from pathlib import Path
 
 from tables import QUESTIONS, TWO_PINS
 
-PINS_HPP = Path(__file__).resolve().parent.parent / "pins.hpp"
+FIRMWARE_FOLDER = Path(__file__).resolve().parent.parent
+PINS_HPP = FIRMWARE_FOLDER / "pins.hpp"
+PROFILE = FIRMWARE_FOLDER / "boards/reference.hpp"
 CHIP, GROUND, LOGIC, ANALOG = "U1", "GND", "3V3", "VDDA"
 # Greatest voltage at a pin (data sheet, general operating conditions and I/O static characteristics, with VDD at 3.3 V).
 PIN_VOLTS = {"FT": 5.5, "TTa": 3.6, "RST": 3.6, "B": 3.6, "-": 3.6}
 ANALOG_VOLTS = 3.6  # an FT pin is not 5 V tolerant while it is analog
-# The pins of pins.hpp: function in the chip, constant with the number of the alternate function or the channel, and where the
+# The pins of the profile: function in the chip, constant of pins.hpp with the number of the alternate function, and where the
 # signal must arrive, through resistors in series and the buffer.
 FIRMWARE = {
     "can_receive": ("CAN1_RX", "can_function", "U2.4"),
@@ -20,10 +22,12 @@ FIRMWARE = {
     "contacts[1]": ("GPIO", None, "J4.3"),
     "contacts[2]": ("GPIO", None, "J4.4"),
     "contacts[3]": ("GPIO", None, "J4.5"),
-    "servo_current": ("ADC123_IN", "servo_current_channel", "U4.1"),
-    "feedback": ("ADC123_IN", "feedback_channel", "J5.2"),
+    "servo_current": ("ADC123_IN", None, "U4.1"),
+    "feedback": ("ADC123_IN", None, "J5.2"),
     "console_transmit": ("USART2_TX", "console_function", "J6.2"),
     "console_receive": ("USART2_RX", "console_function", "J6.3"),
+    "led": ("GPIO", None, "D3.2"),
+    "recover_button": ("GPIO", None, "SW3.1"),
 }
 
 
@@ -239,19 +243,24 @@ def reachable(board, net):
     return reached
 
 
-def read_pins_hpp(path):
-    """The pins and the numbers that pins.hpp declares."""
+def read_profile(path):
+    """The pins that the profile of the reference board declares."""
     text = path.read_text()
-    pins = {name: f"P{port}{number}" for name, port, number in re.findall(r"\bPin (\w+)\{'([A-I])', (\d+)\};", text)}
-    for name, body in re.findall(r"std::array<Pin, \d+> (\w+)\{\{(.*?)\}\};", text):
+    pins = {name: f"P{port}{number}"
+            for name, port, number in re.findall(r"\.(\w+) = (?:Pin|Switch\{)?\{'([A-I])', (\d+)\}", text)}
+    for name, body in re.findall(r"\.(\w+) = \{\{(\{.*?\})\}\},", text):
         for index, (port, number) in enumerate(re.findall(r"\{'([A-I])', (\d+)\}", body)):
             pins[f"{name}[{index}]"] = f"P{port}{number}"
-    numbers = {name: int(number) for name, number in re.findall(r"constexpr unsigned (\w+) = (\d+);", text)}
-    return pins, numbers
+    return pins
 
 
-def firmware_finds_its_signals(board, path=PINS_HPP):
-    pins, numbers = read_pins_hpp(path)
+def read_functions(path):
+    """The numbers of the alternate functions that pins.hpp declares."""
+    return {name: int(number) for name, number in re.findall(r"constexpr unsigned (\w+) = (\d+);", path.read_text())}
+
+
+def firmware_finds_its_signals(board, path=PROFILE, functions_path=PINS_HPP):
+    pins, numbers = read_profile(path), read_functions(functions_path)
     for name in sorted(FIRMWARE.keys() - pins.keys()):
         yield f"{path.name}: found no pin {name}, expected it"
     for name in sorted(pins.keys() - FIRMWARE.keys()):
@@ -262,13 +271,13 @@ def firmware_finds_its_signals(board, path=PINS_HPP):
         if not pin:
             yield f"{pins[name]}: found no net, expected the signal {name} of {path.name}"
             continue
-        number = numbers.get(constant)
         alternate = board.package[pin.number].functions if pin.number in board.package else {}
-        wanted = f"{function}{number}" if function.startswith("ADC") else function
+        # analog_channel_of() of boards/profile.hpp: PC0 is channel 10.
+        wanted = f"{function}{10 + int(pins[name][2:])}" if function.startswith("ADC") else function
         if pin.function != wanted:
             yield f"{pin}: found function {pin.function}, expected {wanted} of {name} in {path.name}"
-        elif not function.startswith("ADC") and constant and alternate.get(function) != number:
-            yield f"{pin}: found alternate function {number} in {path.name}, expected {alternate.get(function)} for {function}"
+        elif constant and alternate.get(function) != numbers.get(constant):
+            yield f"{pin}: found alternate function {numbers.get(constant)} in {functions_path.name}, expected {alternate.get(function)} for {function}"
         if pin.program != "now":
             yield f"{pin}: found program {pin.program}, expected now: {path.name} has it as {name}"
         if target not in reachable(board, pin.net):

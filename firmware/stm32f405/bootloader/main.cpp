@@ -17,6 +17,7 @@
 #include "firmware/stm32f405/factory_data.hpp"
 #include "firmware/stm32f405/flash.hpp"
 #include "firmware/stm32f405/handover.hpp"
+#include "firmware/stm32f405/led.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/reset.hpp"
@@ -185,6 +186,7 @@ void sleep_until(Microseconds deadline) {
     feed_watchdog();
     take_events();
     const Microseconds now = the_clock.now();
+    show(LedPattern::bootloader, now);
     recovery.follow(now);
     if (now >= the_bootloader->next_deadline()) {
       the_bootloader->poll(now);
@@ -208,6 +210,9 @@ void run_program() {
   Handover left = take_handover();
   if (reset_cause_of(rcc::csr.read()) == ResetCause::pin) {
     left = {is_second_press(left) ? HandoverAction::stay : HandoverAction::none, 0};
+  }
+  if (is_recover_button_held()) {
+    left = {HandoverAction::stay, 0};
   }
   SlotMemory memory;
   Slots slots(memory, image_place());

@@ -1,7 +1,11 @@
 // The vector table of the bootloader, with which the chip starts.
 
+#include <cstddef>
+
+#include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/reset.hpp"
 #include "firmware/stm32f405/vector_table.hpp"
+#include "shared/image/board_names.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -10,6 +14,8 @@ using Table = VectorTable<static_cast<unsigned>(Interrupt::timer_5) + 1>;
 
 constexpr Table make_vectors() {
   Table table;
+  static_assert(offsetof(Table, reserved) == image::bootloader_board_at);
+  table.reserved.number = image::bootloader_board_mark | board::id;
   table.set(Interrupt::pvd, pvd_handler);
   table.set(Interrupt::can1_tx, can1_tx_handler);
   table.set(Interrupt::can1_rx0, can1_rx0_handler);

@@ -45,7 +45,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         exti_(*this),
         pwr_(*this, &exti_),
         flash_(*this, *this),
-        rcc_(*this, flash_, pwr_, iwdg_),
+        rcc_(*this, flash_, pwr_, iwdg_, settings.crystal),
         syscfg_(*this),
         timer_2_(*this, 2),
         timer_3_(*this, 3),

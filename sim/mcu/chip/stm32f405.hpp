@@ -24,9 +24,10 @@ namespace proleg::sim {
 
 struct ChipSettings {
   std::array<std::uint32_t, 3> unique_id{};
-  std::int32_t crystal_parts_per_billion = 0;  ///< error of the 8 MHz crystal against true time
+  std::int32_t crystal_parts_per_billion = 0;  ///< error of the crystal against true time
   std::uint64_t seed = 0;                      ///< of the bits that a cut flash operation leaves
   unsigned brown_out_level = 3;                ///< option bytes BOR_LEV: 0 to 2: level 3 to 1, 3: off
+  std::uint32_t crystal = 8'000'000;           ///< Hz
 };
 
 /// An event to report to the user.

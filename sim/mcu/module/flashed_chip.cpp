@@ -9,11 +9,11 @@
 #include "firmware/bootloader/slots.hpp"
 #include "firmware/module/module_identity.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
-#include "firmware/stm32f405/pins.hpp"
 #include "shared/broadcast/image_sender.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
+#include "shared/image/board_names.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/hardware_loop/crystal.hpp"
 
@@ -46,6 +46,25 @@ firmware::ModuleIdentity identity_of(const std::array<std::uint32_t, 3>& unique_
   identity.node = 1;
   identity.unique_id = unique_id;
   return identity;
+}
+
+/// The bootloader must be that of the image's board: another one can have another clock.
+void require_same_board(const FirmwareImage& image, const FlashImage& bootloader) {
+  constexpr std::uint32_t id_bits = 0xFFFF;
+  std::uint32_t word = 0;
+  for (const ElfImage::Segment& segment : bootloader.elf().segments()) {
+    if (segment.load_address == layout::bootloader && segment.bytes.size() >= image::bootloader_board_at + 4) {
+      word = static_cast<std::uint32_t>(read_little_endian(segment.bytes, image::bootloader_board_at, 4));
+    }
+  }
+  const auto board = static_cast<std::uint16_t>(word & id_bits);
+  if ((word & ~id_bits) == image::bootloader_board_mark && board != image.board().id) {
+    const auto text = [](std::uint16_t id) {
+      return "board " + std::to_string(id) + " (" + std::string(image::board_name(id)) + ")";
+    };
+    throw ElfError(image.file().string() + ": found an image for " + text(image.board().id) + ", expected one for " +
+                   text(board) + ", as the bootloader " + bootloader.elf().file().string());
+  }
 }
 
 /// A slot that contains only this image.
@@ -130,12 +149,12 @@ class Flashing final : private BusListener {
 
   [[noreturn]] void refuse(image::Error error) const {
     const image::Header header = image::decode(image_).header;
-    const auto with = [](unsigned board, std::uint32_t address) {
-      return "an image for board " + std::to_string(board) + " at " + hexadecimal(address, 8);
-    };
-    throw ElfError(file_.string() + ": found " + with(header.board_id, header.address) +
-                   " that the bootloader refuses (" + std::string(image::describe(error)) + "), expected " +
-                   with(stm32f405::board::id, layout::image_body));
+    const std::string_view name = image::board_name(header.board_id);
+    throw ElfError(file_.string() + ": found an image for board " + std::to_string(header.board_id) + " (" +
+                   std::string(name.empty() ? "not known" : name) + ") at " + hexadecimal(header.address, 8) +
+                   " that the bootloader refuses (" + std::string(image::describe(error)) +
+                   "), expected an image for the board of " + bootloader_.bootloader.string() + " at " +
+                   hexadecimal(layout::image_body, 8));
   }
 
   /// Starts the program on trial; true if it confirms itself.
@@ -242,7 +261,9 @@ class Flashing final : private BusListener {
 
 FlashedChip flash_chip(const FirmwareImage& image, const std::filesystem::path& bootloader,
                        const std::array<std::uint32_t, 3>& unique_id) {
-  return Flashing(image, read_bootloader(bootloader), identity_of(unique_id)).run();
+  const FlashImage program = read_bootloader(bootloader);
+  require_same_board(image, program);
+  return Flashing(image, program, identity_of(unique_id)).run();
 }
 
 }  // namespace proleg::sim

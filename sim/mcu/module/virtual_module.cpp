@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "firmware/module/board_record.hpp"
+#include "firmware/stm32f405/boards/boards.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "shared/canopen/messages.hpp"
+#include "shared/image/image_header.hpp"
 #include "shared/kernel/servo_pulses.hpp"
 
 namespace proleg::sim {
@@ -24,8 +26,10 @@ constexpr unsigned servo_channel = 1;  ///< channel of TIM2
 constexpr std::uint32_t microvolts_per_ma = 1'000;
 constexpr std::uint32_t max_uv = board::vdda_millivolt * 1'000;
 
-ChipSettings chip_settings(const ModuleParts& parts) {
-  return {parts.identity.unique_id, parts.crystal.parts_per_billion(), parts.identity.node};
+ChipSettings chip_settings(const ModuleParts& parts, const stm32f405::BoardProfile& board) {
+  ChipSettings settings{parts.identity.unique_id, parts.crystal.parts_per_billion(), parts.identity.node};
+  settings.crystal = board.crystal;
+  return settings;
 }
 
 firmware::BoardRecord board_record(const ModuleParts& parts) {
@@ -76,7 +80,8 @@ const char* in_words(ResetCause cause) {
 
 }  // namespace
 
-FirmwareImage::FirmwareImage(const std::filesystem::path& file) : file_(file), flash_(file) {
+FirmwareImage::FirmwareImage(const std::filesystem::path& file)
+    : file_(file), flash_(file), board_(&stm32f405::boards::reference) {
   const auto& symbols = flash_.elf().symbols();
   const auto symbol = std::ranges::find(symbols, record_symbol, &ElfImage::Symbol::name);
   if (symbol == symbols.end()) {
@@ -85,6 +90,9 @@ FirmwareImage::FirmwareImage(const std::filesystem::path& file) : file_(file), f
   }
   flash_.require_vector_table(flash_layout::image_body);  // behind the start stub
   tick_record_ = flash_.require_word(symbol->address);
+  if (const auto* const board = stm32f405::boards::find(image::decode(image()).header.board_id); board != nullptr) {
+    board_ = board;
+  }
 }
 
 std::vector<std::uint8_t> FirmwareImage::image() const {
@@ -104,10 +112,11 @@ std::vector<std::uint8_t> FirmwareImage::image() const {
 VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& image, VirtualModuleOptions options)
     : image_(image),
       options_(std::move(options)),
+      board_(options_.board != nullptr ? *options_.board : image.board()),
       sensors_(parts.sensors),
       readings_(parts.readings),
       state_frame_(static_cast<std::uint16_t>(canopen::identifier::state_frame + parts.identity.node)),
-      chip_(parts.bus, *this, chip_settings(parts)) {
+      chip_(parts.bus, *this, chip_settings(parts, board_)) {
   const auto& parts_of_flash = options_.flash != nullptr ? options_.flash->parts : image.flash().elf().segments();
   for (const ElfImage::Segment& segment : parts_of_flash) {
     chip_.write(segment.load_address, segment.bytes);
@@ -221,7 +230,7 @@ canopen::PowerState VirtualModule::power() const { return static_cast<canopen::P
 
 void VirtualModule::set_pulse_watch(PulseWatch watch) {
   pulse_watch_ = std::move(watch);
-  chip_.set_pin_watch(board::servo.port, board::servo.number,
+  chip_.set_pin_watch(board_.servo.port, board_.servo.number,
                       [this](BusTime time, bool high) { see_edge(time, high); });
 }
 
@@ -335,21 +344,21 @@ std::vector<std::string> VirtualModule::trace(const ChipEvent& event) const {
 // Signals of the board at the pins.
 
 std::optional<bool> VirtualModule::pin(char port, unsigned number) {
-  for (unsigned i = 0; i < board::contacts.size(); ++i) {
-    if (board::contacts[i].port == port && board::contacts[i].number == number) {
-      // A pressed switch closes to ground, an open one leaves the pin to its pull-up.
-      const bool pressed = ((unsigned{sensors_()} >> i) & 1U) != 0;
-      return pressed ? std::optional(false) : std::nullopt;
-    }
+  const stm32f405::Pin pin{port, number};
+  const auto contact = std::ranges::find(board_.contacts, pin);
+  if (contact != board_.contacts.end()) {
+    // A pressed switch closes to ground, an open one leaves the pin to its pull-up.
+    const bool pressed = ((unsigned{sensors_()} >> (contact - board_.contacts.begin())) & 1U) != 0;
+    return pressed ? std::optional(false) : std::nullopt;
   }
   return std::nullopt;
 }
 
 std::uint32_t VirtualModule::analog_uv(unsigned channel) {
-  if (channel == board::servo_current_channel) {
+  if (board_.servo_current && channel == analog_channel_of(*board_.servo_current)) {
     return std::min<std::uint32_t>(readings_().current_ma * microvolts_per_ma, max_uv);
   }
-  if (channel == board::feedback_channel) {
+  if (board_.feedback && channel == analog_channel_of(*board_.feedback)) {
     constexpr std::int64_t quarter_turn = std::int64_t{1} << 30U;
     constexpr std::int64_t codes = 4096;
     const std::int64_t angle = readings_().angle.value_or(0);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/stm32f405/boards/profile.hpp"
 #include "sim/hardware_loop/hardware_loop.hpp"
 #include "sim/mcu/chip/stm32f405.hpp"
 #include "sim/mcu/cpu/back_trace.hpp"
@@ -19,7 +20,7 @@
 
 namespace proleg::sim {
 
-/// The firmware of a joint module, as linked for the reference board (firmware/stm32f405).
+/// The firmware of a joint module, as linked for a board with an STM32F405 (firmware/stm32f405).
 class FirmwareImage {
  public:
   /// Reads an ELF file. Throws ElfError if it is not a program for this chip, or not that of a joint module: one line
@@ -31,12 +32,16 @@ class FirmwareImage {
   /// The image that is flashed over the bus, with its header (shared/image/image_header.hpp). The build writes the same
   /// bytes to the file with the name .pimg.
   [[nodiscard]] std::vector<std::uint8_t> image() const;
+  /// The board that the image's header names; the reference board if this version of the program does not know it, so
+  /// that the bootloader can refuse the image.
+  [[nodiscard]] const stm32f405::BoardProfile& board() const { return *board_; }
   /// Address of the record of the module's last tick (firmware/module/tick_record.hpp).
   [[nodiscard]] std::uint32_t tick_record() const { return tick_record_; }
 
  private:
   std::filesystem::path file_;
   FlashImage flash_;
+  const stm32f405::BoardProfile* board_;
   std::uint32_t tick_record_;
 };
 
@@ -57,6 +62,8 @@ struct VirtualModuleOptions {
   /// Contents of the flash, which must outlive the module. Null: all of the image's ELF file, which its start stub
   /// starts.
   const FlashContents* flash = nullptr;
+  /// The board around the chip: its crystal, and what is connected to its pins. Null: the image's.
+  const stm32f405::BoardProfile* board = nullptr;
   /// Called with each line that the program prints on its console (USART2).
   std::function<void(const std::string&)> console{};
   /// Called at the end of each tick.
@@ -113,6 +120,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
 
   const FirmwareImage& image_;
   VirtualModuleOptions options_;
+  const stm32f405::BoardProfile& board_;
   std::function<std::uint8_t()> sensors_;
   std::function<ServoReadings()> readings_;
   std::uint16_t state_frame_;  ///< identifier of the state frame

@@ -34,12 +34,12 @@ unsigned apb_divisor(std::uint32_t cfgr, unsigned lowest) {
 }
 
 struct Pll {
-  explicit Pll(std::uint32_t pllcfgr)
+  Pll(std::uint32_t pllcfgr, std::uint32_t crystal)
       : m(field(pllcfgr, 0, 6)),
         n(field(pllcfgr, 6, 9)),
         p(2 * (field(pllcfgr, 16, 2) + 1)),
         q(field(pllcfgr, 24, 4)),
-        input_hz(pll_from_hse(pllcfgr) ? hse_hz : hsi_hz) {}
+        input_hz(pll_from_hse(pllcfgr) ? crystal : hsi_hz) {}
 
   std::uint64_t m;
   std::uint64_t n;
@@ -57,10 +57,10 @@ struct Period {
 Period system_period(const ClockSettings& settings) {
   switch (settings.source) {
     case ClockSource::hse:
-      return {hse_period, 1};
+      return {local_time_hz, settings.crystal};
     case ClockSource::pll: {
-      const Pll pll(settings.pllcfgr);
-      return {local_time_hz / pll.input_hz * pll.m * pll.p, pll.n};
+      const Pll pll(settings.pllcfgr, settings.crystal);
+      return {local_time_hz * pll.m * pll.p, pll.input_hz * pll.n};
     }
     case ClockSource::hsi:
       break;
@@ -70,8 +70,8 @@ Period system_period(const ClockSettings& settings) {
 
 }  // namespace
 
-std::optional<std::string> pll_fault(std::uint32_t pllcfgr) {
-  const Pll pll(pllcfgr);
+std::optional<std::string> pll_fault(std::uint32_t pllcfgr, std::uint32_t crystal) {
+  const Pll pll(pllcfgr, crystal);
   const auto fault = [](const std::string& what, const char* expected) {
     return what + ": expected " + expected + " (RM0090, 7.3.2)";
   };

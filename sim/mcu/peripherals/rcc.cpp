@@ -91,8 +91,12 @@ void Rcc::Oscillator::switch_to(bool wanted, LocalTime now, LocalTime start, Loc
   on = wanted;
 }
 
-Rcc::Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg)
-    : RegisterBlock(chip, "RCC", 0x4002'3800, 0x400, registers), flash_(&flash), power_(&power), iwdg_(&iwdg) {
+Rcc::Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg, std::uint32_t crystal)
+    : RegisterBlock(chip, "RCC", 0x4002'3800, 0x400, registers),
+      flash_(&flash),
+      power_(&power),
+      iwdg_(&iwdg),
+      crystal_(crystal) {
   start_registers(0);
 }
 
@@ -272,7 +276,7 @@ void Rcc::set_clocks(const Clocks& next, bool stands_still) {
 }
 
 Clocks Rcc::clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const {
-  const ClockSettings settings{.source = source, .pllcfgr = pllcfgr_, .cfgr = setting};
+  const ClockSettings settings{.source = source, .pllcfgr = pllcfgr_, .cfgr = setting, .crystal = crystal_};
   const ClockOutcome outcome =
       proleg::sim::clocks_of(settings, {.core_mhz = power_->max_core_mhz(), .wait_states = flash_->wait_states()});
   if (outcome.fault) {
@@ -380,7 +384,7 @@ void Rcc::write_cr(std::uint32_t value) {
   const bool pll_on = (value & cr_pllon) != 0 || uses_pll;
   if (pll_on) {
     if (!pll_.on) {
-      if (const std::optional<std::string> fault = pll_fault(pllcfgr_)) {
+      if (const std::optional<std::string> fault = pll_fault(pllcfgr_, crystal_)) {
         reject_write(cr, value, "PLLON with " + *fault);
       }
       if (!(from_hse ? hse_ : hsi_).ready(now)) {
@@ -393,7 +397,7 @@ void Rcc::write_cr(std::uint32_t value) {
   }
   constexpr LocalTime stop_cycles = 6;
   hsi_.switch_to(hsi_on, now, hsi_start, stop_cycles * hsi_period);
-  hse_.switch_to(hse_on, now, hse_start, stop_cycles * hse_period);
+  hse_.switch_to(hse_on, now, hse_start, stop_cycles * local_time_per_us * 1'000'000 / crystal_);
   if (!crystal_runs_ && hse_.on && !hse_.ready(now)) {
     hse_.ready_at = never_on_chip;
   }

@@ -27,7 +27,8 @@ class Rcc final : public RegisterBlock {
   static constexpr LocalTime failure_detection = 10 * local_time_per_us;
 
   /// flash and power limit the core clock; iwdg keeps LSI on while it runs.
-  Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg);
+  /// crystal: its frequency in Hz.
+  Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg, std::uint32_t crystal = hse_hz);
 
   /// Adds a peripheral whose clock and reset are switched here, or that counts clocks; known by its base(). It must
   /// outlive RCC.
@@ -97,6 +98,7 @@ class Rcc final : public RegisterBlock {
   FlashInterface* flash_;
   Pwr* power_;
   Iwdg* iwdg_;
+  std::uint32_t crystal_;
   PeripheralGates gates_;
   Clocks clocks_;
 

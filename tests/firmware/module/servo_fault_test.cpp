@@ -66,6 +66,42 @@ TEST_F(OverCurrent, IsAFaultAfterHalfASecondAbove2000MilliamperesAndNotATickSoon
   EXPECT_EQ(robot.bus.value(node, object::statusword) & 0x4FU, 0x08U) << "CiA 402: fault";
 }
 
+TEST(ServoWithoutCurrentSensor, IsNotGuardedByItsCurrentAndTheModuleSaysSo) {
+  test::TestBus bus;
+  firmware::ModuleIdentity identity;
+  identity.node = 3;
+  identity.board_id = 3;
+  identity.capabilities = canopen::has_no_current_sensor;
+  test::ModuleNode& module = bus.add(identity);
+  module.power_on(0);
+  module.meters.readings.current_ma = 30'000;  // noise of a pin without a sensor
+  bus.run_until(2'000'000);
+  EXPECT_EQ(bus.value(3, object::capabilities) & canopen::has_no_current_sensor, canopen::has_no_current_sensor);
+  EXPECT_EQ(bus.value(3, object::actual_current), 0U);
+  EXPECT_EQ(bus.value(3, object::error_register), 0U);
+}
+
+TEST(ServoWithoutCurrentSensor, IsNotInFaultAboveTheLimit) {
+  struct Meter final : firmware::SensorPort {
+    ServoReadings take_readings() override {
+      ServoReadings readings;
+      readings.current_ma = 30'000;
+      return readings;
+    }
+  } meter;
+  firmware::ServoMonitor with_sensor(meter, true);
+  firmware::ServoMonitor without_sensor(meter, false);
+  for (firmware::ServoMonitor* const monitor : {&with_sensor, &without_sensor}) {
+    monitor->reset({});
+    for (Microseconds now = 0; now <= 1'000'000; now += 10'000) {
+      monitor->read(now, 10'000);
+    }
+  }
+  EXPECT_TRUE(with_sensor.over_current());
+  EXPECT_FALSE(without_sensor.over_current());
+  EXPECT_EQ(without_sensor.current_ma(), 0U);
+}
+
 TEST_F(OverCurrent, UpToTheLimitIsNone) {
   draw(2'000);
   robot.run(0);

@@ -71,7 +71,8 @@ TEST(FlashVerdict, AnotherBoardNeedsAWord) {
   other.board_id = 2;
   const FlashVerdict refused = judge_image(header(2), other);
   EXPECT_EQ(refused.action, FlashAction::refuse);
-  EXPECT_NE(refused.text.find("is board 2, the image is for board 1"), std::string::npos);
+  EXPECT_NE(refused.text.find("is board 2 (olimex-stm32-p405), the image is for board 1 (reference)"),
+            std::string::npos);
   EXPECT_EQ(judge(header(2), other, {.other_board = true}).action, FlashAction::install);
 }
 

@@ -56,6 +56,12 @@ def image(size=200, board=1, address=SLOT_A + 512):
     return header + struct.pack("<I", zlib.crc32(header)) + body
 
 
+def bootloader_of_board(board):
+    """With the board in the vector table, as shared/image/board_names.hpp says."""
+    content = program(FLASH, 300, seed=6)
+    return content[:28] + struct.pack("<HH", board, 0x5042) + content[32:]
+
+
 def elf(parts):
     """(physical address, content): a file with a program header for each."""
     offset = 52 + 32 * len(parts)
@@ -420,8 +426,17 @@ class FlashBare(unittest.TestCase):
                                 "module.pimg")
         self.expect_failed(result, "found no answer on the line, expected the ROM bootloader: set BOOT0 to high")
 
+    def test_any_board_is_taken_that_image_and_bootloader_name(self):
+        for board, name in ((3, "board 3 (weact-stm32f405)"), (77, "board 77")):
+            self.write("other.pimg", image(board=board))
+            self.write("other.bin", bootloader_of_board(board))
+            result = self.run_flash("--bare", "--dry-run", "--probe", "dfu", "--bootloader", "other.bin", "other.pimg")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(f"other.pimg, {name}, for 0x08020000", result.stdout)
+
     def test_bad_input_starts_nothing(self):
         self.write("other_board.pimg", image(board=2))
+        self.write("boot_3.bin", bootloader_of_board(3))
         self.write("slot_b.pimg", image(address=0x08080200))
         self.write("large.pimg", image(size=90112 - 508))
         self.write("large.bin", program(FLASH, PLACE + 4, seed=4))
@@ -438,7 +453,10 @@ class FlashBare(unittest.TestCase):
                 ("module.pimg", {"--node": "x"}, "--node: found 'x'"),
                 ("missing.pimg", {}, "missing.pimg: found no file"),
                 ("boot.bin", {}, "boot.bin: found a raw binary"),
-                ("other_board.pimg", {}, "expected an image for board 1"),
+                ("other_board.pimg", {}, "other_board.pimg: found an image for board 2 (olimex-stm32-p405), expected one for "
+                 "board 1 (reference), as the bootloader boot.bin"),
+                ("module.pimg", {"--bootloader": "boot_3.bin"}, "module.pimg: found an image for board 1 (reference), "
+                 "expected one for board 3 (weact-stm32f405), as the bootloader boot_3.bin"),
                 ("slot_b.pimg", {}, "the address 0x08020200"),
                 ("large.pimg", {}, "large.pimg: found"),
                 ("module.pimg", {"--bootloader": None}, "proleg_boot_stm32f405.bin: found no file"),

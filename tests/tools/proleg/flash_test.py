@@ -187,7 +187,7 @@ class Flash(unittest.TestCase):
             self.assertEqual(report["modules"][0]["now"]["version"], "0.2.0")
             self.assert_all_run(self.flash(bus.tcp, "0.1.0", "--node", "1", "--allow-downgrade"), "0.1.0", [1])
             report = self.flash(bus.tcp, foreign, "--node", "2", status=1)
-            self.assertIn("is board 1, the image is for board 2", report["modules"][0]["reason"])
+            self.assertIn("is board 1 (reference), the image is for board 2 (olimex-stm32-p405)", report["modules"][0]["reason"])
             self.assert_all_run(self.flash(bus.tcp, foreign, "--node", "2", "--force-board"), "0.3.0", [2])
 
     def test_settings_stay(self):

@@ -123,9 +123,8 @@ void Flashing::judge_all() {
 }
 
 void Flashing::print_verdicts() const {
-  std::printf("%s: %s, SHA-256 %s..., for board %u\n", options_.image.c_str(),
-              host::version_text(image_.header).c_str(), digits_of_hash(image_.header).c_str(),
-              unsigned{image_.header.board_id});
+  std::printf("%s: %s, SHA-256 %s..., for %s\n", options_.image.c_str(), host::version_text(image_.header).c_str(),
+              digits_of_hash(image_.header).c_str(), host::board_text(image_.header.board_id).c_str());
   for (const Module& module : modules_) {
     std::printf("  %-22s %-7s %s\n", name_of(module.found).c_str(), word_of(module.verdict.action),
                 module.verdict.text.c_str());

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "firmware/module/board_record.hpp"
-#include "firmware/module/module_identity.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "host/flash/bare_commands.hpp"
 #include "host/flash/image_file.hpp"
@@ -62,6 +61,7 @@ class WorkFolder {
 struct Work {
   BarePlan plan;
   std::string bootloader_name;
+  std::uint16_t board_id = 0;
   Bytes bootloader;
   Bytes image;
   Bytes settings;  ///< with the board record; empty: none is written
@@ -123,19 +123,27 @@ Bytes read_settings(const std::string& word, const BarePlan& plan) {
   return settings;
 }
 
-Bytes read_checked_image(const std::string& file) {
+host::ImageFile read_checked_image(const std::string& file) {
   host::ImageFile image = host::read_image(file);
   image::Place place;
-  place.board_id = firmware::ModuleIdentity{}.board_id;
+  place.board_id = image.header.board_id;
   place.revision = image.header.lowest_revision;  // nothing but the board knows its own
   place.address = flash_layout::image_body;
   place.room = flash_layout::max_image_size - image::header_size;
   if (const image::Error error = check_place(image.header, place); error != image::Error::none) {
     throw InputError(file, 0, std::string(describe(error)),
-                     "an image for board " + std::to_string(place.board_id) + " and the address " +
-                         hexadecimal(place.address, 8) + ", as 'proleg image info' shows");
+                     "an image for the address " + hexadecimal(place.address, 8) + ", as 'proleg image info' shows");
   }
-  return std::move(image.bytes);
+  return image;
+}
+
+/// Nothing but these two files knows which board it is: a bootloader starts only images for its own.
+void require_same_board(const BareOptions& options, const Work& work) {
+  const std::uint16_t board = host::board_of_bootloader(work.bootloader);
+  if (work.board_id != board) {
+    throw InputError(options.image, 0, "an image for " + host::board_text(work.board_id),
+                     "one for " + host::board_text(board) + ", as the bootloader " + work.bootloader_name);
+  }
 }
 
 Work read_work(const BareOptions& options) {
@@ -150,10 +158,13 @@ Work read_work(const BareOptions& options) {
     work.settings = read_settings(*options.node, plan);
     plan.settings_size = static_cast<std::uint32_t>(work.settings.size());
   }
-  work.image = read_checked_image(options.image);
+  host::ImageFile image = read_checked_image(options.image);
+  work.board_id = image.header.board_id;
+  work.image = std::move(image.bytes);
   work.bootloader_name =
       options.bootloader.value_or((std::filesystem::path(options.image).parent_path() / default_bootloader).string());
   work.bootloader = host::read_bootloader(work.bootloader_name, plan.bootloader);
+  require_same_board(options, work);
   plan.image_size = static_cast<std::uint32_t>(work.image.size());
   plan.bootloader_size = static_cast<std::uint32_t>(work.bootloader.size());
   return work;
@@ -165,7 +176,8 @@ void print_files(const BareOptions& options, const Work& work) {
     std::cout << name << bytes.size() << " bytes, " << what << ", for " << hexadecimal(part.address, 8) << '\n';
   };
   print(host::bare_file::bootloader, work.bootloader, one_line(work.bootloader_name), work.plan.bootloader);
-  print(host::bare_file::image, work.image, one_line(options.image), work.plan.image);
+  print(host::bare_file::image, work.image, one_line(options.image) + ", " + host::board_text(work.board_id),
+        work.plan.image);
   if (work.plan.settings_size > 0) {
     print(host::bare_file::settings, work.settings, "the board record of node " + *options.node, work.plan.settings);
   }

@@ -11,6 +11,7 @@
 #include "shared/canopen/object_name.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
+#include "shared/image/board_names.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -30,8 +31,10 @@ constexpr Microseconds longest_search = 60 * second;
 
 /// Begins to search for modules that are not among the known ones.
 void start(BusAccess& bus, host::SilentModules& search, std::span<const FlashCandidate> known) {
-  constexpr std::uint32_t reference_board = 1;
-  std::vector<std::uint32_t> products{reference_board};
+  std::vector<std::uint32_t> products;
+  for (const image::BoardName& board : image::board_names) {
+    products.push_back(board.id);
+  }
   std::vector<std::uint32_t> serials;
   for (const FlashCandidate& module : known) {
     serials.push_back(module.program.serial);

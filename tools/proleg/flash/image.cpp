@@ -18,6 +18,7 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
+#include "shared/image/board_names.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 
@@ -84,7 +85,9 @@ void print_text(const std::string& file, const Examined& examined) {
   };
   const std::string commit = commit_digits(header);
   std::cout << one_line(file) << '\n';
-  print("board", std::to_string(header.board_id) + ", " + revisions_text(header));
+  const std::string_view board = image::board_name(header.board_id);
+  print("board", std::to_string(header.board_id) + (board.empty() ? "" : " (" + std::string(board) + ")") + ", " +
+                     revisions_text(header));
   print("version", version_text(header.version));
   print("commit", (commit.empty() ? "not known" : commit) + (header.has_changed_sources ? " + changes" : ""));
   print("protocol version", std::to_string(header.protocol >> 8U) + '.' + std::to_string(header.protocol & 0xFFU));

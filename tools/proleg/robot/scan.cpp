@@ -6,6 +6,7 @@
 
 #include "host/robot/state_text.hpp"
 #include "shared/computer/text/text.hpp"
+#include "shared/image/board_names.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
@@ -74,11 +75,16 @@ void print_table(const host::BusScan& scan, const std::string& bus) {
       std::printf("%-5u %-6s %-16s does not answer\n", unsigned{node.node}, "-", state.c_str());
       continue;
     }
-    std::printf("%-5u %-6s %-16s %-18s %-11s %-9s %s%s\n", unsigned{node.node},
+    // What differs from the reference board, in the module's own words.
+    const bool is_other_board = node.is_module && node.product != image::board_names[0].id && !node.hardware.empty();
+    const std::string board(image::board_name(static_cast<std::uint16_t>(node.product)));
+    const std::string hardware =
+        is_other_board ? "  (" + one_line(node.hardware) + (board.empty() ? "" : "; " + board) + ")" : "";
+    std::printf("%-5u %-6s %-16s %-18s %-11s %-9s %s%s%s\n", unsigned{node.node},
                 node.joint ? std::to_string(*node.joint).c_str() : "-", state.c_str(),
                 node.is_module ? std::string(host::drive_text(node.statusword)).c_str() : "-",
                 hexadecimal(node.serial, 8).c_str(), node.is_module ? version_text(node.protocol).c_str() : "-",
-                node.name.c_str(), node.error_register != 0 ? "  (reports an error)" : "");
+                node.name.c_str(), hardware.c_str(), node.error_register != 0 ? "  (reports an error)" : "");
   }
   std::printf("%zu node%s%s%s\n", nodes.size(), nodes.size() == 1 ? "" : "s", scan.syncs() > 0 ? ", SYNC" : "",
               scan.has_host() ? ", driven by a host" : "");

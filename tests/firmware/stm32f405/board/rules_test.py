@@ -1,4 +1,4 @@
-"""The tables of the reference module against pins.hpp, the package and the rules of the board; and planted faults, each of which is
+"""The tables of the reference module against its profile, pins.hpp, the package and the rules of the board; and planted faults, each of which is
 found and named."""
 
 import re
@@ -14,6 +14,7 @@ import schematic  # noqa: E402
 import tables  # noqa: E402
 
 PINS_HPP = FOLDER.parent / "pins.hpp"
+PROFILE = FOLDER.parent / "boards/reference.hpp"
 
 
 class Board(unittest.TestCase):
@@ -40,17 +41,17 @@ class Board(unittest.TestCase):
                          {"PB8": [61], "PB9": [62], "PA5": [21], "PC0": [8], "PC1": [9], "PA2": [16], "PA3": [17], "PB12": [33],
                           "PB15": [36], "PB2": [28]})
 
-    def test_all_pins_of_pins_hpp_are_read(self):
-        pins, numbers = rules.read_pins_hpp(PINS_HPP)
-        self.assertEqual(len(re.findall(r"\{'[A-Z]', \d+\}", PINS_HPP.read_text())), len(pins))
+    def test_all_pins_of_the_profile_are_read(self):
+        pins = rules.read_profile(PROFILE)
+        self.assertEqual(len(re.findall(r"\{'[A-Z]', \d+\}", PROFILE.read_text())), len(pins))
         self.assertEqual(pins["servo"], "PA5")
         self.assertEqual(pins["contacts[3]"], "PB15")
-        self.assertEqual(numbers["can_function"], 9)
+        self.assertEqual(rules.read_functions(PINS_HPP)["can_function"], 9)
 
     def test_spare_pins_are_for_a_later_program(self):
         later = {pin.name: pin.net.name for pin in self.board.parts["U1"].pins if pin.program == "later"}
-        self.assertEqual(later, {"PC2": "SUPPLY_SENSE", "PC3": "SERVO_TEMPERATURE", "PC6": "LED", "PC7": "SERVO_ON", "PC8": "REV0",
-                                 "PC9": "REV1", "PC13": "RECOVER", "PA8": "MCO"})
+        self.assertEqual(later, {"PC2": "SUPPLY_SENSE", "PC3": "SERVO_TEMPERATURE", "PC7": "SERVO_ON", "PC8": "REV0",
+                                 "PC9": "REV1", "PA8": "MCO"})
 
     def test_current_is_1_v_per_a(self):
         self.assertAlmostEqual(rules.ohms(self.board.parts["R30"]) * 50, 1)
@@ -78,8 +79,8 @@ class Board(unittest.TestCase):
         slope, gate = (rules.microfarads(self.board.parts[name]) for name in ("C32", "C33"))
         self.assertLess(8.4 * slope / (slope + gate), 1)
 
-    def test_straps_say_revision_1_as_pins_hpp_does(self):
-        revision = int(re.search(r"revision = (\d+);", PINS_HPP.read_text())[1])
+    def test_straps_say_revision_1_as_the_profile_does(self):
+        revision = int(re.search(r"\.revision = (\d+),", PROFILE.read_text())[1])
         straps = [any({self.net(f"{part.name}.1"), self.net(f"{part.name}.2")} == {net, "3V3"} for part in self.board.parts.values()
                       if part.symbol == "resistor") for net in ("REV0", "REV1")]
         self.assertEqual(sum(1 << bit for bit, high in enumerate(straps) if high), revision)
@@ -196,32 +197,36 @@ class RandomChanges(unittest.TestCase):
         self.assertGreater(judged, 50)
 
 
-class PlantedInPinsHpp(unittest.TestCase):
-    """What changes in pins.hpp without the tables."""
+class PlantedInTheProfile(unittest.TestCase):
+    """What changes in the profile of the board, or in pins.hpp, without the tables."""
 
-    def faults(self, old, new):
+    def faults(self, old, new, source=PROFILE):
         copy = Copy(self)
-        text = PINS_HPP.read_text()
+        text = source.read_text()
         self.assertIn(old, text)
-        path = copy.folder / "pins.hpp"
+        path = copy.folder / source.name
         path.write_text(text.replace(old, new))
-        return "\n".join(rules.firmware_finds_its_signals(tables.read_board(copy.folder), path))
+        board = tables.read_board(copy.folder)
+        paths = {PROFILE: PROFILE, PINS_HPP: PINS_HPP, source: path}
+        return "\n".join(rules.firmware_finds_its_signals(board, paths[PROFILE], paths[PINS_HPP]))
 
     def test_the_servo_moves(self):
-        self.assertIn("PA4: found no net, expected the signal servo of pins.hpp", self.faults("servo{'A', 5}", "servo{'A', 4}"))
+        self.assertIn("PA4: found no net, expected the signal servo of reference.hpp", self.faults("servo = {'A', 5}", "servo = {'A', 4}"))
 
     def test_two_touch_sensors_are_exchanged(self):
         self.assertIn("U1.34 (PB13): found no way to J4.2, expected one for contacts[0]", self.faults("{'B', 12}, {'B', 13}", "{'B', 13}, {'B', 12}"))
 
     def test_another_alternate_function(self):
-        self.assertIn("found alternate function 8 in pins.hpp, expected 7 for USART2_TX", self.faults("console_function = 7", "console_function = 8"))
+        self.assertIn("found alternate function 8 in pins.hpp, expected 7 for USART2_TX",
+                      self.faults("console_function = 7", "console_function = 8", PINS_HPP))
 
-    def test_another_channel(self):
-        self.assertIn("U1.8 (PC0): found function ADC123_IN10, expected ADC123_IN12", self.faults("servo_current_channel = 10", "servo_current_channel = 12"))
+    def test_another_analog_pin(self):
+        self.assertIn("U1.9 (PC1): found no way to U4.1, expected one for servo_current",
+                      self.faults("servo_current = Pin{'C', 0}", "servo_current = Pin{'C', 1}"))
 
     def test_a_new_pin(self):
-        self.assertIn("pins.hpp: found pin status_led, expected one that FIRMWARE of rules.py knows",
-                      self.faults("inline constexpr Pin servo{", "inline constexpr Pin status_led{'C', 6};\ninline constexpr Pin servo{"))
+        self.assertIn("reference.hpp: found pin beeper, expected one that FIRMWARE of rules.py knows",
+                      self.faults(".servo = {'A', 5}", ".beeper = Pin{'A', 4},\n    .servo = {'A', 5}"))
 
 
 if __name__ == "__main__":

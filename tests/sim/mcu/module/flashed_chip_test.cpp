@@ -252,12 +252,20 @@ TEST_F(RefusedFlashing, NamesAProgramThatIsNoBootloader) {
 }
 
 TEST_F(RefusedFlashing, NamesAnImageForAnotherBoard) {
-  const FirmwareImage image =
+  const FirmwareImage known =
       changed_image([](image::Header& header, std::vector<std::uint8_t>& /*body*/) { header.board_id = 2; });
   expect_line(
-      refusal(image, PROLEG_BOOTLOADER),
-      {"changed.elf: found an image for board 2 at 0x08020200 that the bootloader refuses (it is for another board)",
-       "expected an image for board 1 at 0x08020200"});
+      refusal(known, PROLEG_BOOTLOADER),
+      {"changed.elf: found an image for board 2 (olimex-stm32-p405), expected one for board 1 (reference), as the "
+       "bootloader ",
+       PROLEG_BOOTLOADER});
+  const FirmwareImage unknown =
+      changed_image([](image::Header& header, std::vector<std::uint8_t>& /*body*/) { header.board_id = 77; });
+  expect_line(
+      refusal(unknown, PROLEG_BOOTLOADER),
+      {"changed.elf: found an image for board 77 (not known) at 0x08020200 that the bootloader refuses (it is for "
+       "another board)",
+       "expected an image for the board of ", PROLEG_BOOTLOADER, "at 0x08020200"});
 }
 
 TEST_F(RefusedFlashing, OfAProgramThatDoesNotRunLeavesItOnTrialAndReportsWhatItDid) {

@@ -28,9 +28,10 @@ class VirtualRobot {
 
   static bool all(unsigned /*joint*/) { return true; }
 
-  /// is_virtual: which joints have a virtual chip; the others are native. flash: as VirtualModuleOptions.
+  /// is_virtual: which joints have a virtual chip; the others are native. flash, board: as VirtualModuleOptions.
   explicit VirtualRobot(Scenario scenario, HardwareOptions options = {}, Choice is_virtual = all,
-                        const FlashContents* flash = nullptr)
+                        const FlashContents* flash = nullptr, const FirmwareImage& image = flashed_image(),
+                        const stm32f405::BoardProfile* board = nullptr)
       : scenario_(std::move(scenario)), modules_(scenario_.robot.joints.size()) {
     options.notice = [this](const std::string& text) { notices.push_back(text); };
     options.on_frame = [this, on_frame = options.on_frame](const Transmission& transmission) {
@@ -39,17 +40,19 @@ class VirtualRobot {
         on_frame(transmission);
       }
     };
-    options.make_module = [this, is_virtual, flash](const ModuleParts& parts) -> std::unique_ptr<JointModule> {
+    options.make_module = [this, is_virtual, flash, &image,
+                           board](const ModuleParts& parts) -> std::unique_ptr<JointModule> {
       if (!is_virtual(parts.joint)) {
         return nullptr;
       }
       VirtualModuleOptions module_options;
       module_options.flash = flash;
+      module_options.board = board;
       module_options.console = [this, joint = parts.joint](const std::string& line) {
         console.emplace_back(joint, line);
       };
       module_options.on_tick = [this](const TickCost& cost) { costs.push_back(cost); };
-      auto module = std::make_unique<VirtualModule>(parts, flashed_image(), std::move(module_options));
+      auto module = std::make_unique<VirtualModule>(parts, image, std::move(module_options));
       modules_[parts.joint] = module.get();
       return module;
     };

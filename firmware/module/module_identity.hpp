@@ -23,7 +23,7 @@ struct ModuleIdentity {
   std::uint16_t board_id = 1;                ///< 1: the reference board
   std::array<std::uint32_t, 3> unique_id{};  ///< 96 bits, the lowest word first
   std::uint32_t core_fingerprint = 0;        ///< fingerprint of the core it is built from: proleg::core_fingerprint
-  std::uint32_t capabilities = 0;  ///< bits of object 0x2000:5. measures_angle is the board record's
+  std::uint32_t capabilities = 0;            ///< bits of object 0x2000:5. measures_angle is the board record's
   ResetCause reset_cause = ResetCause::power_on;
   std::uint32_t reset_detail = 0;  ///< for fault and clock: where the program was (program counter); 0: not known
 };

@@ -57,9 +57,9 @@ class ModuleQuery final : public BusUser {
   [[nodiscard]] Microseconds next_deadline() const override { return is_done() ? never : deadline_; }
 
  private:
-  /// Number of the first words of a header, up to the signature. Those behind them, except the CRC at the end, are
+  /// Number of the first words of a header, up to its last field. Those behind them, except the CRC at the end, are
   /// always 0.
-  static constexpr unsigned first_words = 40;
+  static constexpr unsigned first_words = image::layout::next_key_end / 4;
   static constexpr unsigned last_word = image::header_size / 4 - 1;
   /// Greatest number of requests to a module that wait for answers; it answers them in order.
   static constexpr std::size_t max_parallel = 4;

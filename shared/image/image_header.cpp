@@ -35,7 +35,8 @@ bool has_possible_values(const Summary& header, Bytes bytes) {
   return header.lowest_revision <= header.highest_revision && header.length != 0 && header.length % 4 == 0 &&
          header.address % header_size == 0 && bytes[flags_at] <= flag_changed_sources &&
          is_zero(bytes.subspan(reserved_at, address_at - reserved_at)) &&
-         is_zero(bytes.subspan(signature_end, header_crc_at - signature_end));
+         is_zero(bytes.subspan(minimum_version_end, next_key_at - minimum_version_end)) &&
+         is_zero(bytes.subspan(next_key_end, header_crc_at - next_key_end));
 }
 
 Error check_body(const Summary& header, Bytes hash, Bytes body) {
@@ -73,6 +74,22 @@ std::string_view describe(Error error) {
       return "it has not the length that its header gives";
     case Error::damaged_body:
       return "its program is damaged: the checksum is wrong";
+    case Error::not_signed:
+      return "it is not signed, and the module takes only signed images";
+    case Error::other_key:
+      return "it is signed with another key than the module expects";
+    case Error::wrong_signature:
+      return "its signature is not valid: it was changed after it was signed, or its maker does not have the key";
+    case Error::version_too_old:
+      return "its version is below the lowest that the module takes";
+    case Error::unusable_key:
+      return "its key for later images is no key of Ed25519";
+    case Error::has_key:
+      return "it has a key already; an image that is signed with that key can bring another one";
+    case Error::key_too_late:
+      return "it takes its first key only within ten minutes after its start: switch it off and on";
+    case Error::no_room_for_key:
+      return "it changes the key or the lowest version, for which the module has no room any more";
   }
   return "unknown error";
 }
@@ -110,7 +127,7 @@ HeaderResult decode(Bytes bytes) {
   Header& header = result.header;
   result.error = decode(bytes, header);
   if (result.error == Error::none) {
-    header.version = {half_word(bytes, major_at), half_word(bytes, minor_at), half_word(bytes, patch_at)};
+    header.version = read_version(bytes, version_at);
     header.protocol = half_word(bytes, protocol_at);
     header.core_fingerprint = read_little_endian(bytes, fingerprint_at, 4);
     header.settings_schema = bytes[schema_at];
@@ -119,6 +136,8 @@ HeaderResult decode(Bytes bytes) {
     header.key_id = read_little_endian(bytes, key_at, 4);
     read_bytes(bytes, hash_at, header.hash);
     read_bytes(bytes, signature_at, header.signature);
+    header.minimum_version = read_version(bytes, minimum_version_at);
+    read_bytes(bytes, next_key_at, header.next_key);
   }
   return result;
 }

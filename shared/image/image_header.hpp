@@ -18,9 +18,11 @@
 //  32  u32  bytes of the body, a multiple of 4
 //  36  u32  CRC-32 (shared/fixed/crc32.hpp) of the body
 //  40  20 bytes  git commit of the sources; all 0: not known
-//  60  u32  key id; 0: not signed
+//  60  u32  id of the key of the signature (shared/image/image_trust.hpp); 0: not signed
 //  64  32 bytes  SHA-256 of the body
-//  96  64 bytes  signature; readers of format 1 do not look at it
+//  96  64 bytes  signature (shared/image/image_trust.hpp); all 0 if it is not signed
+// 160  u16  lowest version that the module takes after this image: major, u16 minor, u16 patch; all 0: as before
+// 168  32 bytes  key with which later images are signed; all 0: as before
 // 508  u32  CRC-32 of the 508 bytes before
 //
 // A bootloader writes the header last: a valid header stands before a complete body.
@@ -74,6 +76,8 @@ struct Header : Summary {
   std::uint32_t key_id = 0;
   Sha256::Hash hash{};  ///< SHA-256 of the body
   std::array<std::uint8_t, 64> signature{};
+  Version minimum_version;                  ///< lowest version that is taken after this image; 0.0.0: as before
+  std::array<std::uint8_t, 32> next_key{};  ///< key of later images; all 0: as before
 
   friend bool operator==(const Header&, const Header&) = default;
 };
@@ -99,6 +103,15 @@ enum class Error : std::uint8_t {
   too_large,
   wrong_length,  ///< there are more or fewer bytes than the header says
   damaged_body,  ///< the CRC or the SHA-256 of the body is wrong
+  // The rest: what the module trusts (shared/image/image_trust.hpp) forbids the image.
+  not_signed,
+  other_key,        ///< it is signed with another key
+  wrong_signature,  ///< it names the right key, but the signature is not valid
+  version_too_old,  ///< its version is below the lowest that the module takes
+  unusable_key,     ///< the key for later images is none
+  has_key,          ///< instead of an image a first key came, and the module has one
+  key_too_late,     ///< a first key came later than ten minutes after the start of the module
+  no_room_for_key,  ///< the module has no room to keep the key or the lowest version that come with the image
 };
 
 /// A phrase for people that describes the error, without a full stop.
@@ -141,9 +154,7 @@ inline constexpr std::size_t size_at = 6;
 inline constexpr std::size_t board_at = 8;
 inline constexpr std::size_t lowest_revision_at = 10;
 inline constexpr std::size_t highest_revision_at = 11;
-inline constexpr std::size_t major_at = 12;
-inline constexpr std::size_t minor_at = 14;
-inline constexpr std::size_t patch_at = 16;
+inline constexpr std::size_t version_at = 12;
 inline constexpr std::size_t protocol_at = 18;
 inline constexpr std::size_t fingerprint_at = 20;
 inline constexpr std::size_t schema_at = 24;
@@ -156,6 +167,10 @@ inline constexpr std::size_t key_at = 60;
 inline constexpr std::size_t hash_at = 64;
 inline constexpr std::size_t signature_at = 96;
 inline constexpr std::size_t signature_end = 160;
+inline constexpr std::size_t minimum_version_at = 160;
+inline constexpr std::size_t minimum_version_end = 166;
+inline constexpr std::size_t next_key_at = 168;
+inline constexpr std::size_t next_key_end = 200;
 inline constexpr std::size_t header_crc_at = header_size - 4;
 
 inline constexpr std::uint8_t flag_changed_sources = 1;
@@ -167,6 +182,19 @@ constexpr void write_bytes(HeaderBytes& bytes, std::size_t at, const std::array<
   }
 }
 
+constexpr void write_version(std::span<std::uint8_t> bytes, std::size_t at, const Version& version) {
+  write_little_endian(bytes, at, 2, version.major);
+  write_little_endian(bytes, at + 2, 2, version.minor);
+  write_little_endian(bytes, at + 4, 2, version.patch);
+}
+
+constexpr Version read_version(std::span<const std::uint8_t> bytes, std::size_t at) {
+  const auto number = [&](std::size_t offset) {
+    return static_cast<std::uint16_t>(read_little_endian(bytes, at + offset, 2));
+  };
+  return {number(0), number(2), number(4)};
+}
+
 /// The bytes of a header without its CRC, which is 0.
 constexpr HeaderBytes encode_fields(const Header& header) {
   HeaderBytes bytes{};
@@ -176,9 +204,7 @@ constexpr HeaderBytes encode_fields(const Header& header) {
   write_little_endian(bytes, board_at, 2, header.board_id);
   bytes[lowest_revision_at] = header.lowest_revision;
   bytes[highest_revision_at] = header.highest_revision;
-  write_little_endian(bytes, major_at, 2, header.version.major);
-  write_little_endian(bytes, minor_at, 2, header.version.minor);
-  write_little_endian(bytes, patch_at, 2, header.version.patch);
+  write_version(bytes, version_at, header.version);
   write_little_endian(bytes, protocol_at, 2, header.protocol);
   write_little_endian(bytes, fingerprint_at, 4, header.core_fingerprint);
   bytes[schema_at] = header.settings_schema;
@@ -190,6 +216,8 @@ constexpr HeaderBytes encode_fields(const Header& header) {
   write_little_endian(bytes, key_at, 4, header.key_id);
   write_bytes(bytes, hash_at, header.hash);
   write_bytes(bytes, signature_at, header.signature);
+  write_version(bytes, minimum_version_at, header.minimum_version);
+  write_bytes(bytes, next_key_at, header.next_key);
   return bytes;
 }
 

@@ -36,6 +36,8 @@ Header header_of(const std::vector<std::uint8_t>& body) {
   header.has_changed_sources = true;
   header.address = body_address;
   header.commit.fill(0xC3);
+  header.minimum_version = {1, 2, 258};
+  header.next_key.fill(0x7E);
   describe_body(header, body);
   return header;
 }
@@ -73,6 +75,10 @@ TEST(ImageHeader, HasItsValuesAtFixedPlaces) {
   EXPECT_EQ(read_little_endian(bytes, 36, 4), crc32(body));
   EXPECT_EQ(read_little_endian(bytes, 40, 4), 0xC3C3C3C3U);
   EXPECT_TRUE(std::equal(bytes.begin() + 64, bytes.begin() + 96, sha256(body).begin()));
+  EXPECT_EQ(read_little_endian(bytes, 160, 4), 0x0002'0001U);
+  EXPECT_EQ(read_little_endian(bytes, 164, 4), 258U);
+  EXPECT_EQ(read_little_endian(bytes, 168, 4), 0x7E7E'7E7EU);
+  EXPECT_EQ(read_little_endian(bytes, 196, 4), 0x7E7E'7E7EU);
 }
 
 TEST(ImageHeader, IsRefusedWithAnyBitChanged) {
@@ -113,7 +119,8 @@ TEST(ImageHeader, IsRefusedWithAnImpossibleValueAndTheRightChecksum) {
                  {28, 4, body_address + 4},  // vectors must be aligned
                  {32, 4, 0},                 // no body
                  {32, 4, 401},               //
-                 {160, 1, 1},                // reserved
+                 {166, 1, 1},                // reserved
+                 {200, 1, 1},                //
                  {507, 1, 0x80}};
   for (const auto& change : impossible) {
     HeaderBytes changed = bytes;
@@ -130,7 +137,6 @@ TEST(ImageHeader, OfALaterFormatIsNotGuessed) {
   }
 }
 
-// A later version may sign its images; this one runs them.
 TEST(ImageHeader, MayHaveASignature) {
   Header header = header_of(random_body(400, 7));
   header.key_id = 77;

@@ -37,7 +37,9 @@ def parse(image):
     header_crc, = struct.unpack_from("<I", image, 508)
     body = image[HEADER_SIZE:]
     assert (magic, form, size, reserved) == (b"PIMG", 1, HEADER_SIZE, 0)
-    assert not any(image[160:508])
+    assert not any(image[166:168]) and not any(image[200:508])
+    minimum = struct.unpack_from("<3H", image, 160)
+    next_key = image[168:200]
     assert header_crc == zlib.crc32(image[:508])
     assert (length, crc, digest) == (len(body), zlib.crc32(body), hashlib.sha256(body).digest())
     return {
@@ -45,7 +47,13 @@ def parse(image):
         "commit": commit.hex() if any(commit) else None, "changed_sources": flags == 1, "protocol": protocol,
         "core_fingerprint": fingerprint, "settings_schema": schema, "address": address, "length": length,
         "slot_percent": 100 * length / (90112 - HEADER_SIZE), "crc32": crc, "sha256": digest.hex(),
-        "key_id": key or None}
+        "key_id": f"{key:08x}" if key else None,
+        "minimum_version": "{}.{}.{}".format(*minimum) if any(minimum) else None,
+        "next_key_id": key_id(next_key) if any(next_key) else None}
+
+
+def key_id(public_key):
+    return hashlib.sha256(public_key).hexdigest()[:8]
 
 
 def changed(image, at, value):
@@ -108,7 +116,8 @@ class Image(unittest.TestCase):
         self.assertEqual({name: fields[name] for name in fields if name not in ("crc32", "sha256", "slot_percent")}, {
             "board": 1, "lowest_revision": 2, "highest_revision": 5, "version": "1.20.300", "commit": COMMIT,
             "changed_sources": False, "protocol": 0x0100, "core_fingerprint": 0x87932128, "settings_schema": 2,
-            "address": ADDRESS, "length": 1000, "key_id": None})
+            "address": ADDRESS, "length": 1000, "key_id": None, "minimum_version": None,
+            "next_key_id": None})
         result = self.run_image("make", "body.bin", "--output", "module.pimg", "--board", "1", "--address", "0x08020200",
                                 "--version", "1.2.3", "--protocol", "256", "--fingerprint", "87932128", "--schema", "2",
                                 "--commit", COMMIT, "--changed-sources")
@@ -153,7 +162,7 @@ module.pimg
         self.assertIn(f"\n  commit            {COMMIT} + changes\n", self.run_image("info", "flagged.pimg").stdout)
         signed = changed(image, 60, struct.pack("<I", 77) + image[64:96] + b"\x5A" * 64)
         self.write("signed.pimg", signed)
-        self.assertIn("\n  signature         with key 0x0000004D, which was not checked\n",
+        self.assertIn("\n  signature         with key 0000004d, not checked: 'proleg image verify' does that\n",
                       self.run_image("info", "signed.pimg").stdout)
 
     def test_several_files_are_shown_one_after_the_other(self):
@@ -276,10 +285,11 @@ module.pimg
     def test_words_that_are_no_action_are_refused(self):
         self.expect_refused(self.run_image(), "found no ACTION")
         self.expect_refused(self.run_image("inof", "module.pimg", "--json"),
-                            "proleg image: ACTION: found 'inof', expected info or make")
+                            "proleg image: ACTION: found 'inof', expected info, make, key, sign or verify")
         self.expect_refused(self.run_image("--json"), "found no ACTION")
         self.expect_refused(self.run_image("info", "x.pimg", "--jsno"), "did you mean --json?")
-        for words in (("--help",), ("info", "--help"), ("make", "--help")):
+        for words in (("--help",), ("info", "--help"), ("make", "--help"), ("key", "--help"), ("sign", "--help"),
+                      ("verify", "--help")):
             result = self.run_image(*words)
             self.assertEqual(result.returncode, 0)
             self.assertIn(" ".join(("Usage: proleg image", *words[:-1])), result.stdout)

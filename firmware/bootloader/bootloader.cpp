@@ -47,9 +47,12 @@ void Bootloader::power_on(Microseconds now, std::uint8_t node, const Handover& l
   lss_.power_on(node);
   idle_at_ = now + idle_timeout_us;
   flags_ = module_flag::has_bootloader | (starts_badly(left) ? module_flag::starts_badly : 0U);
+  slots_.keep_new_trust();  // before another image is checked
   look_at_slot();
+  key_until_ = now + first_key_time_us;
   if (left.action == HandoverAction::install) {
     const ImageInRam image = ImageInRam::of(left.argument);
+    key_until_ = image.may_be_key ? key_until_ : now;
     receiver_.resume(image.session, image.size);
     ends_line_ = image.ends_line;
   }
@@ -150,6 +153,7 @@ void Bootloader::poll(Microseconds now) {
     static_cast<void>(
         queue_.push_newest(canopen::encode(canopen::Heartbeat{node_, canopen::NmtState::pre_operational})));
   }
+  now_ = now;
   if (receiver_.has_install_request()) {
     install_broadcast();
     if (ends_line_) {
@@ -179,7 +183,8 @@ Microseconds Bootloader::next_deadline() const {
 
 void Bootloader::install_broadcast() {
   // The image is checked before the flash is erased.
-  const image::Error error = image::check_image(receiver_.image(), place_);
+  const auto key = image::decode_key(receiver_.image());
+  const image::Error error = key ? check_key(*key) : slots_.check(receiver_.image());
   if (error != image::Error::none) {
     status_ = status_of(error);
     receiver_.set_state(ReceiverState::refused, static_cast<std::uint8_t>(error));
@@ -190,9 +195,27 @@ void Bootloader::install_broadcast() {
     receiver_.set_state(ReceiverState::refused, broadcast::refused_supply);
     return;
   }
+  if (key) {
+    receiver_.set_state(slots_.trust().append({*key, {}}) ? ReceiverState::installed : ReceiverState::failed);
+    return;
+  }
   const InstallResult result = write_image(receiver_.image());
   receiver_.set_state(status_ == 0 ? ReceiverState::installed : ReceiverState::failed,
                       static_cast<std::uint8_t>(result));
+}
+
+/// Whether a key may become the first one of the module.
+image::Error Bootloader::check_key(const image::PublicKey& key) const {
+  if (slots_.trust().read().key) {
+    return image::Error::has_key;
+  }
+  if (now_ >= key_until_) {
+    return image::Error::key_too_late;
+  }
+  if (slots_.trust().is_full()) {
+    return image::Error::no_room_for_key;
+  }
+  return image::may_be_trusted(key) ? image::Error::none : image::Error::unusable_key;
 }
 
 /// Writes an image that was checked.
@@ -224,6 +247,8 @@ AbortCode Bootloader::read(const Entry& entry, std::uint32_t& value) {
     value = heartbeat_period_us / 1'000;
   } else if (entry.address == canopen::object::product.address || entry.address == canopen::object::board_id.address) {
     value = place_.board_id;
+  } else if (entry.address == canopen::object::update_key.address) {
+    value = trust().key_id;
   } else if (entry.address == canopen::object::serial.address) {
     value = address_.back();
   } else if (entry.address == object::program_identification.address) {
@@ -268,7 +293,7 @@ AbortCode Bootloader::write_part(const Entry& /*entry*/, std::uint32_t offset, s
 }
 
 AbortCode Bootloader::close_write(const Entry& /*entry*/, std::uint32_t size) {
-  const image::Error error = image::check_image(ports_.buffer.first(size), place_);
+  const image::Error error = slots_.check(ports_.buffer.first(size));
   status_ = status_of(error);
   if (error != image::Error::none) {
     return AbortCode::general_incompatibility;

@@ -53,7 +53,7 @@ inline constexpr Object flash_status =
                        "bit 0: in progress; bits 1 to 7: error; bits 8 to 15: why the image was refused");
 
 /// All entries, without texts, for which a bootloader has no room.
-inline constexpr std::array<canopen::Entry, 13> entries{
+inline constexpr std::array<canopen::Entry, 14> entries{
     device_type,
     error_register,
     canopen::object::heartbeat_period,
@@ -67,6 +67,7 @@ inline constexpr std::array<canopen::Entry, 13> entries{
     flash_status,
     canopen::object::version,
     canopen::object::board_id,
+    canopen::object::update_key,
 };
 
 }  // namespace proleg::bootloader::object
@@ -122,11 +123,13 @@ class Bootloader final : private canopen::ObjectAccess, private broadcast::Recei
                ? ports_.flash.contents(FlashSlot::a).first(image::header_size)
                : std::span<const std::uint8_t>();
   }
+  [[nodiscard]] broadcast::TrustSummary trust() const override { return slots_.trust().summary(); }
 
   void receive_lss(Microseconds now, const CanFrame& frame);
   void receive_network_command(Microseconds now, const CanFrame& frame);
   void start_network(Microseconds now, std::uint8_t node);
   void install_broadcast();
+  [[nodiscard]] image::Error check_key(const image::PublicKey& key) const;
   [[nodiscard]] InstallResult write_image(std::span<const std::uint8_t> image);
   void look_at_slot();
   void leave(Microseconds now);
@@ -145,6 +148,7 @@ class Bootloader final : private canopen::ObjectAccess, private broadcast::Recei
   std::uint8_t node_ = 0;  ///< node id; 0: none
   Microseconds heartbeat_at_ = never;
   Microseconds idle_at_ = never;
+  Microseconds key_until_ = 0;    ///< the module takes its first key before this time
   std::uint8_t flags_ = 0;        ///< bits of broadcast::module_flag
   std::uint32_t status_ = 0;      ///< object 0x1F57:1
   bool is_downloading_ = false;   ///< an image is being received by SDO, into the buffer

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "firmware/bootloader/slots.hpp"
+#include "shared/can/can_port.hpp"
 
 namespace proleg::bootloader {
 
@@ -25,24 +26,30 @@ struct Handover {
   std::uint32_t argument = 0;
 };
 
+/// Time after the start of a module in which it takes its first key.
+inline constexpr Microseconds first_key_time_us = 600'000'000;
+
 /// The argument of HandoverAction::install.
 struct ImageInRam {
-  std::uint32_t size = 0;    ///< less than 2^23 bytes
+  std::uint32_t size = 0;    ///< less than 2^22 bytes
   std::uint8_t session = 0;  ///< session of the host that has sent it
   /// The host is on the module's serial line: the bootloader returns to the program without a request.
   bool ends_line = false;
+  /// The program has run for less than first_key_time_us: the bytes may be the first key of the module.
+  bool may_be_key = false;
 
   [[nodiscard]] constexpr std::uint32_t argument() const {
-    return size | std::uint32_t{session} << session_position | (ends_line ? line_bit : 0);
+    return size | std::uint32_t{session} << session_position | (ends_line ? line_bit : 0) | (may_be_key ? key_bit : 0);
   }
   [[nodiscard]] static constexpr ImageInRam of(std::uint32_t argument) {
-    return {argument & (line_bit - 1), static_cast<std::uint8_t>(argument >> session_position),
-            (argument & line_bit) != 0};
+    return {argument & (key_bit - 1), static_cast<std::uint8_t>(argument >> session_position),
+            (argument & line_bit) != 0, (argument & key_bit) != 0};
   }
 
  private:
   static constexpr unsigned session_position = 24;
   static constexpr std::uint32_t line_bit = 1U << 23U;
+  static constexpr std::uint32_t key_bit = 1U << 22U;
 };
 
 /// Number of starts without the report of a good start after which the program is not started any more: the bootloader
@@ -52,7 +59,8 @@ inline constexpr std::uint32_t max_bad_starts = 5;
 /// Actions of the bootloader after a reset of the chip.
 enum class NextStep : std::uint8_t {
   start_program,  ///< start the program in slot A, with the chip as after a reset; Handover `started` must be left
-  prepare,        ///< Slots::prepare_start() decides what runs; it starts after a reset, with Handover `start`
+  prepare,        ///< Slots::prepare_start() decides what runs, and keeps what a confirmed image says about later ones;
+                  ///< the program starts after a reset, with Handover `start`
   serve_bus,
 };
 
@@ -70,7 +78,9 @@ enum class NextStep : std::uint8_t {
   if (left.action == HandoverAction::stay || left.action == HandoverAction::install || starts_badly(left)) {
     return NextStep::serve_bus;
   }
-  const bool may_run = left.action == HandoverAction::start || slots.is_confirmed(FlashSlot::a);
+  // What an image says about later ones waits while it does not start well: its starts are counted.
+  const bool has_work = left.action != HandoverAction::started && slots.has_new_trust();
+  const bool may_run = left.action == HandoverAction::start || (slots.is_confirmed(FlashSlot::a) && !has_work);
   return may_run && !slots.image_in(FlashSlot::a).empty() ? NextStep::start_program : NextStep::prepare;
 }
 

@@ -30,11 +30,12 @@ StartResult Slots::prepare_start() {
   for (bool is_restored = false;; is_restored = true) {
     const Bytes current = image_in(FlashSlot::a);
     if (!current.empty() && is_confirmed(FlashSlot::a)) {
+      keep_new_trust();
       return StartResult::run;
     }
-    if (const unsigned used = attempts(); !current.empty() && used < max_attempts) {
-      return flash_.program(FlashSlot::a, words_at() + 4 * (1 + used), bytes_of(0)) ? StartResult::run_on_trial
-                                                                                    : StartResult::flash_failed;
+    if (may_try(current)) {
+      return flash_.program(FlashSlot::a, words_at() + 4 * (1 + attempts()), bytes_of(0)) ? StartResult::run_on_trial
+                                                                                          : StartResult::flash_failed;
     }
     const Bytes backup = image_in(FlashSlot::b);
     if (backup.empty() || is_same(backup, current)) {
@@ -48,11 +49,48 @@ StartResult Slots::prepare_start() {
 
 bool Slots::may_start() const {
   const Bytes current = image_in(FlashSlot::a);
-  if (!current.empty() && (is_confirmed(FlashSlot::a) || attempts() < max_attempts)) {
+  if ((!current.empty() && is_confirmed(FlashSlot::a)) || may_try(current)) {
     return true;
   }
   const Bytes backup = image_in(FlashSlot::b);
   return !backup.empty() && !is_same(backup, current);
+}
+
+/// Whether an image in A that is not confirmed may be started.
+bool Slots::may_try(Bytes image) const {
+  return !image.empty() && attempts() < max_attempts && check(image) == image::Error::none;
+}
+
+bool Slots::has_new_trust() const {
+  // Each start asks this, so most images must take no time: the records are read, and the checksum of the image is
+  // computed, only if its header says something.
+  const Bytes header = flash_.contents(FlashSlot::a).first(image::header_size);
+  if (!is_confirmed(FlashSlot::a) || !image::changes_trust(header)) {
+    return false;
+  }
+  const image::Trust present = trust_.read();
+  return image::trust_after(present, header) != present && !image_in(FlashSlot::a).empty() && !trust_.is_full();
+}
+
+void Slots::keep_new_trust() {
+  if (!has_new_trust()) {
+    return;
+  }
+  const Bytes current = image_in(FlashSlot::a);
+  // An image that was installed before the key was set, or signed with the key before this one, changes nothing.
+  if (check(current) == image::Error::none) {
+    static_cast<void>(trust_.append(image::trust_after(trust_.read(), current)));
+  }
+}
+
+image::Error Slots::check(Bytes image) const {
+  const image::Trust present = trust_.read();
+  image::Error error = image::check_image(image, place_);
+  if (error == image::Error::none) {
+    error = image::check_trust(present, image);
+  }
+  const bool needs_room = error == image::Error::none && image::trust_after(present, image) != present;
+  return needs_room && trust_.is_full() ? image::Error::no_room_for_key : error;
 }
 
 InstallResult Slots::install(Bytes image) {

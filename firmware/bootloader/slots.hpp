@@ -10,6 +10,10 @@
 //             A and B are not complete: there is nothing to run
 //   restore   erases A and copies B to A
 //
+// A module that has a key (trust_store.hpp) takes only images that are signed with it: they are checked before anything
+// is erased, and at each start on trial. The backup was checked when it was installed. What a confirmed image says
+// about later ones, a new key or a higher lowest version, is kept at the first start after it was confirmed.
+//
 // An image is confirmed when it has started well (the module's own check, or its host). The header of an image is
 // written last, so a header that is right stands before a body that was written completely.
 //
@@ -19,32 +23,12 @@
 //   size - 12, - 8, - 4         u32  erased; 0 for each start on trial
 // The words are programmed once each; one erase clears image and words.
 
-#include <array>
 #include <cstdint>
 #include <span>
 
-#include "shared/image/image_header.hpp"
+#include "firmware/bootloader/trust_store.hpp"
 
 namespace proleg::bootloader {
-
-enum class FlashSlot : std::uint8_t { a, b };
-
-/// The flash of the two slots. An operation takes long, and the program stands still meanwhile.
-class SlotFlash {
- public:
-  /// Sets all bytes of a slot to 0xFF. Returns whether it succeeded.
-  [[nodiscard]] virtual bool erase(FlashSlot slot) = 0;
-  /// Programs bytes that are 0xFF, word by word in ascending order. offset and size: multiples of 4. Returns whether it
-  /// succeeded.
-  [[nodiscard]] virtual bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
-  /// The bytes of a slot. Both slots have the same size: a multiple of 4, more than an image and 16 bytes.
-  [[nodiscard]] virtual std::span<const std::uint8_t> contents(FlashSlot slot) const = 0;
-  /// Whether the supply is good enough for erase() and program().
-  [[nodiscard]] virtual bool is_supplied() const { return true; }
-
- protected:
-  ~SlotFlash() = default;
-};
 
 enum class StartResult : std::uint8_t {
   run,           ///< the image in A runs, which is confirmed
@@ -67,13 +51,20 @@ class Slots {
   static constexpr std::uint32_t words_size = 4 * (1 + max_attempts);  ///< size of the words at the end of a slot
 
   /// place: board and place of images, with the room that a slot has.
-  Slots(SlotFlash& flash, const image::Place& place) : flash_(flash), place_(place) {}
+  Slots(SlotFlash& flash, const image::Place& place) : flash_(flash), place_(place), trust_(flash) {}
 
-  /// Decides which image runs, and restores A if that is needed.
+  /// Decides which image runs, and restores A if that is needed. If A is confirmed it keeps what its image says about
+  /// later images.
   [[nodiscard]] StartResult prepare_start();
+  /// Whether the image in A, which is confirmed, says something about later images that is not kept yet.
+  [[nodiscard]] bool has_new_trust() const;
+  /// Keeps it. If the power or the flash fails, the next call does it. Does nothing if there is nothing new.
+  void keep_new_trust();
+  /// Checks an image: whether it is right, fits the board, and is trusted.
+  [[nodiscard]] image::Error check(std::span<const std::uint8_t> image) const;
   /// Whether prepare_start() would find something that may run.
   [[nodiscard]] bool may_start() const;
-  /// Writes an image into A. The caller has checked it (image::check_image()).
+  /// Writes an image into A. The caller has checked it with check().
   [[nodiscard]] InstallResult install(std::span<const std::uint8_t> image);
   /// Confirms the image in A, which has started well. Returns whether the flash holds that now. Does nothing if it is
   /// confirmed already.
@@ -85,7 +76,11 @@ class Slots {
   /// Number of starts on trial of the image in A.
   [[nodiscard]] unsigned attempts() const;
 
+  [[nodiscard]] TrustStore& trust() { return trust_; }
+  [[nodiscard]] const TrustStore& trust() const { return trust_; }
+
  private:
+  [[nodiscard]] bool may_try(std::span<const std::uint8_t> image) const;
   [[nodiscard]] bool write(FlashSlot slot, std::span<const std::uint8_t> image, bool is_proven);
   [[nodiscard]] bool clear(FlashSlot slot);
   [[nodiscard]] std::uint32_t word_at(FlashSlot slot, std::uint32_t offset) const;
@@ -93,6 +88,7 @@ class Slots {
 
   SlotFlash& flash_;
   image::Place place_;
+  TrustStore trust_;
 };
 
 }  // namespace proleg::bootloader

@@ -245,6 +245,7 @@ constexpr ObjectAccessor accessors[] = {
     read_only(object::core_fingerprint.address, [](const Parts& parts) { return parts.identity.core_fingerprint; }),
     read_only(object::board_id.address, [](const Parts& parts) { return parts.identity.board_id; }),
     read_only(object::capabilities.address, [](const Parts& parts) { return parts.identity.capabilities; }),
+    read_only(object::update_key.address, [](const Parts& parts) { return parts.update.key_id(); }),
     setting<&ModuleSettings::joint>(object::joint_index),
     setting<&ModuleSettings::joint_count>(object::joint_count),
     setting<&ModuleSettings::front_node>(object::front_node),

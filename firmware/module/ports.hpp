@@ -8,6 +8,7 @@
 #include <span>
 
 #include "firmware/module/board_record.hpp"
+#include "shared/broadcast/transfer_frame.hpp"
 #include "shared/can/can_port.hpp"
 #include "shared/gait/joint_readings.hpp"
 
@@ -67,6 +68,14 @@ class LinePort {
   ~LinePort() = default;
 };
 
+/// What the bootloader is to install.
+struct Installation {
+  std::size_t size = 0;       ///< bytes in the buffer
+  std::uint8_t session = 0;   ///< session of the host that has sent them (shared/broadcast)
+  bool ends_line = false;     ///< the host is on the module's serial line, and cannot reach the bootloader
+  Microseconds run_time = 0;  ///< time since the start of the program
+};
+
 /// The program's own place in flash, and the bootloader that starts it (docs/flashing.md).
 class ProgramPort {
  public:
@@ -82,9 +91,10 @@ class ProgramPort {
   virtual void confirm() = 0;
   /// Notes that the program has started well this time.
   virtual void note_good_start() = 0;
-  /// Restarts into the bootloader, which installs the first bytes of the buffer. session: session of the host that has
-  /// sent them (shared/broadcast). ends_line: the host is on the module's serial line, and cannot reach the bootloader.
-  virtual void install(std::size_t size, std::uint8_t session, bool ends_line) = 0;
+  /// Which images the bootloader takes.
+  [[nodiscard]] virtual broadcast::TrustSummary trust_summary() const { return {}; }
+  /// Restarts into the bootloader, which installs the first bytes of the buffer.
+  virtual void install(const Installation& what) = 0;
   /// Restarts into the bootloader, which stays on the bus.
   virtual void enter_bootloader() = 0;
 

@@ -15,6 +15,7 @@ void ProgramUpdate::power_on(Microseconds now) {
   confirm_at_ = port_ == nullptr ? never : now + trial_us;
   good_at_ = port_ == nullptr ? never : now + good_start_us;
   enter_at_ = never;
+  started_at_ = now;
   receiver_.reset();
 }
 
@@ -29,7 +30,7 @@ std::optional<CanFrame> ProgramUpdate::receive(Microseconds now, const CanFrame&
     receiver_.set_state(broadcast::ReceiverState::refused, broadcast::refused_busy);
   }
   if (receiver_.has_install_request()) {
-    install();
+    install(now);
   }
   if (receiver_.take_enter_request() && conditions.may_restart && port_->has_bootloader()) {
     enter_at_ = now + answer_time_us;
@@ -37,9 +38,9 @@ std::optional<CanFrame> ProgramUpdate::receive(Microseconds now, const CanFrame&
   return answer;
 }
 
-void ProgramUpdate::install() {
+void ProgramUpdate::install(Microseconds now) {
   if (conditions_.may_restart && port_->has_bootloader()) {
-    port_->install(receiver_.image().size(), receiver_.session(), conditions_.is_gateway);
+    port_->install({receiver_.image().size(), receiver_.session(), conditions_.is_gateway, now - started_at_});
   } else {
     receiver_.set_state(broadcast::ReceiverState::refused, broadcast::refused_busy);
   }
@@ -75,6 +76,11 @@ Microseconds ProgramUpdate::next_deadline() const {
 std::span<const std::uint8_t> ProgramUpdate::image_header() const {
   const ProgramPort& port = *port_;
   return port.header();
+}
+
+broadcast::TrustSummary ProgramUpdate::trust() const {
+  const ProgramPort& port = *port_;
+  return port.trust_summary();
 }
 
 broadcast::ModuleCondition ProgramUpdate::condition() const {

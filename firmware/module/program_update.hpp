@@ -41,6 +41,9 @@ class ProgramUpdate final : private broadcast::ReceiverOwner {
   /// Must be called when frames were lost, any number.
   void bus_was_lost() { receiver_.bus_was_lost(); }
 
+  /// Id of the key with which images must be signed; 0: the module takes any image.
+  [[nodiscard]] std::uint32_t key_id() const { return port_ == nullptr ? 0 : trust().key_id; }
+
   void poll(Microseconds now, bool may_restart);
   [[nodiscard]] Microseconds next_deadline() const;
 
@@ -48,14 +51,16 @@ class ProgramUpdate final : private broadcast::ReceiverOwner {
   // Functions of ReceiverOwner.
   [[nodiscard]] broadcast::ModuleCondition condition() const override;
   [[nodiscard]] std::span<const std::uint8_t> image_header() const override;
+  [[nodiscard]] broadcast::TrustSummary trust() const override;
 
-  void install();
+  void install(Microseconds now);
 
   ProgramPort* const port_;  ///< null: no updates
   broadcast::ImageReceiver receiver_;
   Conditions conditions_;
   bool has_sent_ = false;
   bool has_received_ = false;
+  Microseconds started_at_ = 0;
   Microseconds confirm_at_ = never;
   Microseconds good_at_ = never;
   Microseconds enter_at_ = never;

@@ -30,6 +30,8 @@ struct Sector {
 /// The slots of the bootloader (firmware/bootloader/slots.hpp). An image is much smaller than one of these sectors.
 inline constexpr Sector image_sector_a{5, slot_a, 128 * 1024};
 inline constexpr Sector image_sector_b{8, 0x0808'0000, 128 * 1024};
+/// Sector 4: the records of what the module trusts (firmware/bootloader/trust_store.hpp). It is never erased.
+inline constexpr Sector trust_sector{4, 0x0801'0000, 64 * 1024};
 /// Greatest size of an image, with its header.
 inline constexpr std::uint32_t max_image_size = 88 * 1024;
 

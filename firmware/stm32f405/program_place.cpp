@@ -68,8 +68,15 @@ void ProgramPlace::note_good_start() {
   }
 }
 
-void ProgramPlace::install(std::size_t size, std::uint8_t session, bool ends_line) {
-  const bootloader::ImageInRam image{static_cast<std::uint32_t>(size), session, ends_line};
+broadcast::TrustSummary ProgramPlace::trust_summary() const {
+  constexpr flash_layout::Sector sector = flash_layout::trust_sector;
+  return bootloader::TrustStore::summary(
+      {reinterpret_cast<const std::uint8_t*>(std::uintptr_t{sector.address}), sector.size});
+}
+
+void ProgramPlace::install(const firmware::Installation& what) {
+  const bootloader::ImageInRam image{static_cast<std::uint32_t>(what.size), what.session, what.ends_line,
+                                     what.run_time < bootloader::first_key_time_us};
   restart_with({HandoverAction::install, image.argument()}, servo_);
 }
 

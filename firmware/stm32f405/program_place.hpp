@@ -18,7 +18,8 @@ class ProgramPlace final : public firmware::ProgramPort {
   [[nodiscard]] bool is_confirmed() const override;
   void confirm() override;
   void note_good_start() override;
-  void install(std::size_t size, std::uint8_t session, bool ends_line) override;
+  [[nodiscard]] broadcast::TrustSummary trust_summary() const override;
+  void install(const firmware::Installation& what) override;
   void enter_bootloader() override;
 
  private:

@@ -94,6 +94,9 @@ CanFrame ImageReceiver::answer(Code code) {
 }
 
 HeaderWord ImageReceiver::header_word(std::uint8_t number) const {
+  if (number >= TrustSummary::first_word) {
+    return {number, owner_.trust().word(number)};
+  }
   constexpr std::size_t size = 4;
   const std::span<const std::uint8_t> header = owner_.image_header();
   const std::size_t begin = number * size;

@@ -15,6 +15,8 @@ class ReceiverOwner {
   [[nodiscard]] virtual ModuleCondition condition() const = 0;
   /// The header of the image in slot A; empty if there is no image.
   [[nodiscard]] virtual std::span<const std::uint8_t> image_header() const = 0;
+  /// Which images the module takes: any, if it has no bootloader that checks them.
+  [[nodiscard]] virtual TrustSummary trust() const { return {}; }
 
  protected:
   ~ReceiverOwner() = default;

@@ -19,7 +19,8 @@
 // Answers have 8 bytes and begin with the code of the request and the low 16 bits of the serial number:
 //
 //   status    u8 state, u8 error, u8 session, u8 flags (module_flag), u8 node id, 0: none
-//   header    u8 word, u32 this word of the header of the image in slot A; 0 without an image
+//   header    u8 word, u32 this word of the header of the image in slot A; 0 without an image; words 128 to 130 say
+//             which images the module takes (TrustSummary)
 //   report    u8 blocks that miss symbols (255: the module waits for `begin`), u8 the most that one of them misses of
 //             those that repair symbols can complete, 3 x u8 some of these blocks, first those that repair symbols
 //             cannot complete, with bit 7; 255: there are no more
@@ -97,6 +98,44 @@ struct StatusAnswer {
 struct HeaderWord {
   std::uint8_t number = 0;
   std::uint32_t value = 0;
+};
+
+/// Which images a module takes. It is read as words behind those of the header: the key id; major and, in the upper
+/// half, minor; patch. Modules that do not know these words answer 0.
+struct TrustSummary {
+  std::uint32_t key_id = 0;  ///< id of the key with which images must be signed; 0: it takes any image
+  std::uint16_t major = 0;   ///< with a key: the lowest version that it takes
+  std::uint16_t minor = 0;
+  std::uint16_t patch = 0;
+
+  static constexpr std::uint8_t first_word = 128;
+  static constexpr unsigned words = 3;
+
+  /// One of the words; 0 for all others.
+  [[nodiscard]] constexpr std::uint32_t word(unsigned number) const {
+    switch (number) {
+      case first_word:
+        return key_id;
+      case first_word + 1:
+        return major | std::uint32_t{minor} << 16U;
+      case first_word + 2:
+        return patch;
+      default:
+        return 0;
+    }
+  }
+  constexpr void set_word(unsigned number, std::uint32_t value) {
+    if (number == first_word) {
+      key_id = value;
+    } else if (number == first_word + 1) {
+      major = static_cast<std::uint16_t>(value);
+      minor = static_cast<std::uint16_t>(value >> 16U);
+    } else if (number == first_word + 2) {
+      patch = static_cast<std::uint16_t>(value);
+    }
+  }
+
+  friend bool operator==(const TrustSummary&, const TrustSummary&) = default;
 };
 
 struct ReportAnswer {

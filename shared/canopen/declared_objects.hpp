@@ -149,6 +149,8 @@ inline constexpr Object capabilities = read_only(
     device.at(5), "Capabilities", DataType::unsigned32,
     "bit 0: measures the actual angle of the joint; bit 1: its chip is reset below 2.8 V; bit 2: has no sensor "
     "for the servo's current, so over-current is not detected");
+inline constexpr Object update_key = read_only(device.at(6), "Key of images", DataType::unsigned32,
+                                               "id of the key with which images must be signed; 0: it takes any image");
 
 inline constexpr ObjectGroup place{0x2001, ObjectCode::record, "Place in the robot"};
 inline constexpr Object joint_index =

@@ -67,6 +67,7 @@ constexpr ObjectRow declared_rows[] = {
     row(object::core_fingerprint),
     row(object::board_id),
     row(object::capabilities),
+    row(object::update_key),
     row(object::joint_index),
     row(object::joint_count),
     row(object::front_node),

@@ -57,6 +57,11 @@ Error check_trust(const Trust& trust, Bytes header) {
   return next == PublicKey{} || may_be_trusted(next) ? Error::none : Error::unusable_key;
 }
 
+bool changes_trust(Bytes header) {
+  return std::ranges::any_of(header.subspan(minimum_version_at, next_key_end - minimum_version_at),
+                             [](std::uint8_t byte) { return byte != 0; });
+}
+
 Trust trust_after(const Trust& trust, Bytes header) {
   Trust after = trust;
   if (!trust.key) {

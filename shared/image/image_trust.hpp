@@ -33,6 +33,9 @@ using SignedBytes = std::array<std::uint8_t, layout::header_crc_at>;
 /// that is right. It takes long: about 20 million instructions of the chip if the image names the right key.
 [[nodiscard]] Error check_trust(const Trust& trust, std::span<const std::uint8_t> header);
 
+/// Whether a header says something about later images: a lowest version or a key.
+[[nodiscard]] bool changes_trust(std::span<const std::uint8_t> header);
+
 /// What a module trusts when an image that it trusts has proven itself: the lowest version only rises, and the key is
 /// the next one that the header names. Without a key nothing changes.
 [[nodiscard]] Trust trust_after(const Trust& trust, std::span<const std::uint8_t> header);

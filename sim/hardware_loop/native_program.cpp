@@ -50,7 +50,8 @@ NativeProgram::NativeProgram(CanPort& port, firmware::FlashPort& settings, const
       settings_(settings),
       serial_(serial_number(identity)),
       place_(place_of(identity.board_id)),
-      slot_bytes_{std::vector<std::uint8_t>(slot_size, erased), std::vector<std::uint8_t>(slot_size, erased)},
+      slot_bytes_{std::vector<std::uint8_t>(slot_size, erased), std::vector<std::uint8_t>(slot_size, erased),
+                  std::vector<std::uint8_t>(layout::trust_sector.size, erased)},
       buffer_(layout::max_image_size),
       slots_(*this, place_) {
   write_image(make_native_image(identity.board_id, {}, first_body_size), true);
@@ -102,8 +103,9 @@ bool NativeProgram::take_reset_request() {
 
 std::span<const std::uint8_t> NativeProgram::header() const { return contents(FlashSlot::a).first(image::header_size); }
 
-void NativeProgram::install(std::size_t size, std::uint8_t session, bool ends_line) {
-  const bootloader::ImageInRam image{static_cast<std::uint32_t>(size), session, ends_line};
+void NativeProgram::install(const firmware::Installation& what) {
+  const bootloader::ImageInRam image{static_cast<std::uint32_t>(what.size), what.session, what.ends_line,
+                                     what.run_time < bootloader::first_key_time_us};
   handover_ = {HandoverAction::install, image.argument()};
   resets_ = true;
 }
@@ -114,6 +116,9 @@ void NativeProgram::enter_bootloader() {
 }
 
 bool NativeProgram::erase(FlashSlot slot) {
+  if (slot == FlashSlot::trust) {
+    return false;
+  }
   std::ranges::fill(slot_bytes_.at(static_cast<std::size_t>(slot)), erased);
   flash_time_us_ += erase_time_us;
   return true;

@@ -70,7 +70,8 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   [[nodiscard]] bool is_confirmed() const override { return slots_.is_confirmed(bootloader::FlashSlot::a); }
   void confirm() override { static_cast<void>(slots_.confirm()); }
   void note_good_start() override { handover_ = {bootloader::HandoverAction::runs, 0}; }
-  void install(std::size_t size, std::uint8_t session, bool ends_line) override;
+  [[nodiscard]] broadcast::TrustSummary trust_summary() const override { return slots_.trust().summary(); }
+  void install(const firmware::Installation& what) override;
   void enter_bootloader() override;
 
  private:
@@ -88,7 +89,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   firmware::FlashPort& settings_;
   const std::uint32_t serial_;
   const image::Place place_;
-  std::array<std::vector<std::uint8_t>, 2> slot_bytes_;
+  std::array<std::vector<std::uint8_t>, 3> slot_bytes_;  ///< by FlashSlot
   std::vector<std::uint8_t> buffer_;
   bootloader::Slots slots_;
   bootloader::Handover handover_;

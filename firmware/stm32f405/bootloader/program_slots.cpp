@@ -19,12 +19,16 @@ static_assert(image_body % 512 == 0);
 constexpr std::uint32_t erase_timeout_us = 4'000'000;
 
 constexpr const flash_layout::Sector& sector_of(FlashSlot slot) {
-  return slot == FlashSlot::a ? flash_layout::image_sector_a : flash_layout::image_sector_b;
+  return slot == FlashSlot::a   ? flash_layout::image_sector_a
+         : slot == FlashSlot::b ? flash_layout::image_sector_b
+                                : flash_layout::trust_sector;
 }
 
 }  // namespace
 
-bool SlotMemory::erase(FlashSlot slot) { return erase_sector(sector_of(slot).number, erase_timeout_us); }
+bool SlotMemory::erase(FlashSlot slot) {
+  return slot != FlashSlot::trust && erase_sector(sector_of(slot).number, erase_timeout_us);
+}
 
 bool SlotMemory::program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) {
   const flash_layout::Sector& sector = sector_of(slot);

@@ -48,11 +48,12 @@ TEST(Handover, AProgramThatStopsFiveTimesInARowBeforeItRunsWellIsGivenUp) {
 
 TEST(Handover, AnImageInRamKeepsItsSizeItsSessionAndWhereItsHostIs) {
   for (const ImageInRam image : {ImageInRam{0, 0, false}, ImageInRam{65'536, 255, true}, ImageInRam{90'112, 1, false},
-                                 ImageInRam{0x7F'FFFF, 128, true}}) {
+                                 ImageInRam{40, 7, false, true}, ImageInRam{0x3F'FFFF, 128, true, true}}) {
     const ImageInRam read = ImageInRam::of(image.argument());
     EXPECT_EQ(read.size, image.size);
     EXPECT_EQ(read.session, image.session);
     EXPECT_EQ(read.ends_line, image.ends_line);
+    EXPECT_EQ(read.may_be_key, image.may_be_key);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "updated_module.hpp"
+#include "signed_module.hpp"
 
 namespace proleg::bootloader {
 namespace {
@@ -26,13 +26,33 @@ struct Scenario {
   Work work;                      ///< operations with a cut at each operation of the flash
   std::vector<unsigned> allowed;  ///< images of which one must run afterwards; 0: none
   bool has_proven;                ///< whether the module had an image that has proven itself, before the work
+  /// Of pairs of cuts only one of this many is tried: the check of a signature takes long.
+  unsigned step = 1;
 };
 
+/// An image of this scenario's maker that is newer than all others.
+Image update_image(UpdatedModule& module) {
+  return module.slots.trust().read().key == stranger().key ? signed_by(stranger(), second) : signed_by(maker(), second);
+}
+
 void update(UpdatedModule& module) {
-  static_cast<void>(module.install(second));
+  static_cast<void>(module.install(update_image(module)));
   static_cast<void>(module.slots.prepare_start());
   static_cast<void>(module.slots.confirm());
 }
+
+/// The image brings another key and a lowest version, which the start after its confirmation keeps.
+void update_with_key(UpdatedModule& module) {
+  Image image = second;
+  image.header.next_key = stranger().key;
+  image.header.minimum_version = {2, 0, 0};
+  static_cast<void>(module.install(signed_by(maker(), image)));
+  static_cast<void>(module.slots.prepare_start());
+  static_cast<void>(module.slots.confirm());
+  static_cast<void>(module.slots.prepare_start());
+}
+
+void set_key(UpdatedModule& module) { EXPECT_TRUE(module.slots.trust().append({maker().key, {}})); }
 
 void start(UpdatedModule& module) { static_cast<void>(module.slots.prepare_start()); }
 
@@ -88,19 +108,40 @@ const Scenario scenarios[]{
      start,
      {1},
      true},
+    {"an update of a module with a key",
+     [](UpdatedModule& module) {
+       module.install_proven(first);
+       set_key(module);
+     },
+     update,
+     {1, 2},
+     true,
+     16},
+    {"an update that brings another key",
+     [](UpdatedModule& module) {
+       module.install_proven(first);
+       set_key(module);
+     },
+     update_with_key,
+     {1, 2},
+     true,
+     16},
 };
 
 /// Switches the power on again.
 void expect_to_run(const Scenario& scenario, const SlotMemory& flash) {
   UpdatedModule module(flash);
   const unsigned running = module.start();
+  EXPECT_FALSE(module.slots.has_new_trust()) << "what a confirmed image says is kept";
   EXPECT_NE(std::ranges::find(scenario.allowed, running), scenario.allowed.end()) << "image " << running << " runs";
 }
 
 void expect_to_accept_an_update(const SlotMemory& flash) {
   UpdatedModule module(flash);
   static_cast<void>(module.start());
-  const InstallResult result = module.install(second);
+  const Image image = update_image(module);
+  EXPECT_EQ(module.slots.check(image.bytes()), image::Error::none);
+  const InstallResult result = module.install(image);
   EXPECT_TRUE(result == InstallResult::ok || result == InstallResult::already_there);
   EXPECT_EQ(module.start(), 2U);
   EXPECT_TRUE(module.slots.confirm());
@@ -148,7 +189,7 @@ TEST_P(PowerCuts, AtEveryOperationAndAtEveryOperationOfTheRestartLeaveAModuleTha
     expect_to_run(scenario, flash);
     expect_to_accept_an_update(flash);
     SlotMemory restarted = flash;
-    constexpr unsigned step = PROLEG_CUT_STEP;
+    const unsigned step = PROLEG_CUT_STEP * scenario.step;
     for (unsigned cut = cuts % step; is_cut(restarted, static_cast<int>(cut), start); restarted = flash) {
       SCOPED_TRACE(testing::Message() << "and at operation " << cut << " of the restart");
       expect_to_run(scenario, restarted);

@@ -16,16 +16,17 @@ struct PowerCut : std::runtime_error {
   PowerCut() : std::runtime_error("power cut") {}
 };
 
-/// NOR flash of two slots: a program operation clears bits of one word; an erase first clears the bits of a slot and
-/// then sets them. The power can fail at any operation, which then is done in part.
+/// NOR flash of two slots and the records of what the module trusts: a program operation clears bits of one word; an
+/// erase first clears the bits of a slot and then sets them. The power can fail at any operation, which then is done in
+/// part.
 class SlotMemory final : public SlotFlash {
  public:
   explicit SlotMemory(std::size_t slot_size) { slots.fill(std::vector<std::uint8_t>(slot_size, 0xFF)); }
 
-  std::array<std::vector<std::uint8_t>, 2> slots;
-  int operations = 0;   ///< number of words programmed and slots erased
-  int cut_at = -1;      ///< the operation that does not end
-  int refused_at = -1;  ///< the operation that reports an error
+  std::array<std::vector<std::uint8_t>, 3> slots;  ///< by FlashSlot
+  int operations = 0;                              ///< number of words programmed and slots erased
+  int cut_at = -1;                                 ///< the operation that does not end
+  int refused_at = -1;                             ///< the operation that reports an error
   bool has_supply = true;
   /// Whether an erase that is cut off leaves all bits as they were. (They are weak now, and may read otherwise later.)
   bool erases_leave_all = false;

@@ -93,6 +93,31 @@ TEST_F(ProgramUpdateTest, ItSaysWhoItIsAndWhichImageItRuns) {
   EXPECT_FALSE(ask(broadcast::status_frame(serial() + 1))) << "another module";
 }
 
+TEST_F(ProgramUpdateTest, ItSaysWhichImagesItsBootloaderTakes) {
+  const auto word = [this](std::uint8_t number) {
+    const auto answer = broadcast::decode_header_word(ask(broadcast::header_frame(serial(), number)).value(), serial());
+    return answer.value().value;
+  };
+  EXPECT_EQ(robot.bus.value(node, canopen::object::update_key), 0U);
+  program().trusted = {0x1A2B'3C4D, 1, 2, 3};
+  EXPECT_EQ(robot.bus.value(node, canopen::object::update_key), 0x1A2B'3C4DU);
+  EXPECT_EQ(word(128), 0x1A2B'3C4DU);
+  EXPECT_EQ(word(129), 0x0002'0001U);
+  EXPECT_EQ(word(130), 3U);
+}
+
+// The bootloader takes the first key of a module only early.
+TEST_F(ProgramUpdateTest, TheBootloaderLearnsHowLongTheProgramHasRun) {
+  constexpr Microseconds minute = 60'000'000;
+  robot.bus.run_for(minute);
+  bring_image();
+  robot.bus.deliver(broadcast::install_frame(9));
+  robot.bus.run_for(1'000);
+  ASSERT_TRUE(program().installed);
+  EXPECT_GE(program().run_time, minute);
+  EXPECT_LT(program().run_time, minute + minute / 10);
+}
+
 TEST_F(ProgramUpdateTest, AStoppedModuleTakesPartToo) {
   robot.bus.deliver(encode(canopen::NmtRequest{NmtCommand::stop, 0}));
   bring_image();

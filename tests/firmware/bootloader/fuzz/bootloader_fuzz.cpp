@@ -21,6 +21,12 @@ constexpr image::Place place{1, 0, 0x0802'0200, 256};
 constexpr std::uint32_t serial = 0x11223344;
 constexpr std::uint8_t node = 9;
 
+/// Of a key that has signed nothing: the public key of RFC 8032, section 7.1, test 1.
+const image::Trust trust{
+    image::PublicKey{0xD7, 0x5A, 0x98, 0x01, 0x82, 0xB1, 0x0A, 0xB7, 0xD5, 0x4B, 0xFE, 0xD3, 0xC9, 0x64, 0x07, 0x3A,
+                     0x0E, 0xE1, 0x72, 0xF3, 0xDA, 0xA6, 0x23, 0x25, 0xAF, 0x02, 0x1A, 0x68, 0xF7, 0x07, 0x51, 0x1A},
+    {1, 2, 3}};
+
 void check_header(std::span<const std::uint8_t> input, bool repairs_crc) {
   std::vector<std::uint8_t> bytes(input.begin(), input.end());
   if (repairs_crc && bytes.size() >= image::header_size) {
@@ -32,6 +38,10 @@ void check_header(std::span<const std::uint8_t> input, bool repairs_crc) {
             "a header has one form");
   }
   require(image::describe(error) != "unknown error", "every error has a description");
+  if (bytes.size() >= image::header_size) {
+    require(image::check_trust(trust, bytes) != image::Error::none, "nobody signs without the key");
+    require(!(image::trust_after(trust, bytes).minimum_version < trust.minimum_version), "the lowest version rises");
+  }
 }
 
 std::vector<std::uint8_t> image_bytes(std::uint16_t number) {
@@ -75,7 +85,7 @@ class Memory final : public SlotFlash {
  private:
   using Bytes = std::vector<std::uint8_t>;
   Bytes& bytes(FlashSlot slot) { return slots[static_cast<std::size_t>(slot)]; }
-  Bytes slots[2] = {Bytes(2'048, 0xFF), Bytes(2'048, 0xFF)};
+  Bytes slots[3] = {Bytes(2'048, 0xFF), Bytes(2'048, 0xFF), Bytes(256, 0xFF)};
 };
 
 class Bus final : public CanPort {
@@ -95,9 +105,11 @@ class Settings final : public canopen::LssStorage {
 /// A bootloader with an image that has proven itself, and a host that may be anybody.
 class Session {
  public:
-  Session() {
+  explicit Session(bool has_key) : has_key_(has_key) {
     require(slots_.install(image_bytes(1)) == InstallResult::ok, "installed");
     require(slots_.prepare_start() == StartResult::run_on_trial && slots_.confirm(), "confirmed");
+    require(!has_key || slots_.trust().append(trust), "the key is kept");
+    erases_ = memory_.erases;
     bootloader_.power_on(0, node, {});
   }
 
@@ -140,6 +152,8 @@ class Session {
       require(image::check_image(slots_.image_in(FlashSlot::a), place) == image::Error::none,
               "what was written is complete, and right for the board");
     }
+    require(!has_key_ || (memory_.erases == erases_ && slots_.trust().read() == trust),
+            "without the key nobody changes anything");
     require(bootloader_.next_deadline() > now_ || bus_.is_full || bootloader_.next_deadline() == 0,
             "a deadline that is polled is over");
   }
@@ -173,6 +187,8 @@ class Session {
     }
   }
 
+  const bool has_key_;
+  unsigned erases_ = 0;  ///< before the host
   Memory memory_;
   Bus bus_;
   Settings settings_;
@@ -190,7 +206,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (mode % 4 < 2 && size > 0) {
     check_header({data + 1, size - 1}, mode % 4 == 1);
   } else {
-    Session().play(input);
+    Session(mode % 8 < 4).play(input);
   }
   return 0;
 }

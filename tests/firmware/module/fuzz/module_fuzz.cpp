@@ -79,8 +79,8 @@ class Program final : public firmware::ProgramPort {
   [[nodiscard]] bool is_confirmed() const override { return is_confirmed_; }
   void confirm() override { is_confirmed_ = true; }
   void note_good_start() override {}
-  void install(std::size_t size, std::uint8_t session, bool /*ends_line*/) override {
-    require(size > 0 && size <= buffer_.size() && session != 0, "an image of a session is installed");
+  void install(const firmware::Installation& what) override {
+    require(what.size > 0 && what.size <= buffer_.size() && what.session != 0, "an image of a session is installed");
     ++restarts;
   }
   void enter_bootloader() override { ++restarts; }

@@ -43,7 +43,7 @@ struct NoProgram final : proleg::firmware::ProgramPort {
   [[nodiscard]] bool is_confirmed() const override { return true; }
   void confirm() override {}
   void note_good_start() override {}
-  void install(std::size_t /*size*/, std::uint8_t /*session*/, bool /*ends_line*/) override {}
+  void install(const proleg::firmware::Installation& /*what*/) override {}
   void enter_bootloader() override {}
 };
 

@@ -40,8 +40,10 @@ struct ProgramPlace final : firmware::ProgramPort {
   [[nodiscard]] bool is_confirmed() const override { return confirmations > 0; }
   void confirm() override { ++confirmations; }
   void note_good_start() override { ++good_starts; }
-  void install(std::size_t size, std::uint8_t session, bool ends_line) override {
-    installed = {size, session, ends_line};
+  [[nodiscard]] broadcast::TrustSummary trust_summary() const override { return trusted; }
+  void install(const firmware::Installation& what) override {
+    installed = {what.size, what.session, what.ends_line};
+    run_time = what.run_time;
   }
   void enter_bootloader() override { ++entries; }
 
@@ -52,6 +54,8 @@ struct ProgramPlace final : firmware::ProgramPort {
 
     friend bool operator==(const Installed&, const Installed&) = default;
   };
+  broadcast::TrustSummary trusted;
+  Microseconds run_time = 0;  ///< of the program, at the request to install
   std::array<std::uint8_t, 2'000> ram{};
   std::array<std::uint8_t, 512> header_bytes{};
   bool is_bootloader_there = true;

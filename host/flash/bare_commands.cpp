@@ -42,6 +42,9 @@ class RomSteps {
     if (plan_.settings_size > 0) {
       write("the board record", plan_.settings, plan_.settings_size, bare_file::settings);
     }
+    if (plan_.trust_size > 0) {
+      write("the key", plan_.trust, plan_.trust_size, bare_file::trust);
+    }
     write("the image", plan_.image, plan_.image_size, bare_file::image);
     const std::size_t first = steps_.size();
     write("the bootloader", plan_.bootloader, plan_.bootloader_size, bare_file::bootloader);
@@ -255,6 +258,9 @@ std::string bare_script(const BarePlan& plan) {
   script << script_start;
   if (plan.settings_size > 0) {
     write_sectors(script, "", bare_file::settings, plan.settings);
+  }
+  if (plan.trust_size > 0) {
+    write_sectors(script, "", bare_file::trust, plan.trust);
   }
   write_sectors(script, "", bare_file::image, plan.image);
   script << "\ndump_image " << bare_file::present << ' ' << address_word(plan.bootloader) << ' ' << plan.bootloader_size

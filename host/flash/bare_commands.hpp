@@ -4,10 +4,10 @@
 // dfu-util (the chip's ROM bootloader over USB, AN3156) and of stm32flash (that bootloader over a UART, AN3155). Text
 // only, no input or output.
 //
-// The order is: board record, image, bootloader, option bytes. The chip starts from sector 0, so that is written when
-// all that it starts is there, and it is protected when it is right. Each step writes the same bytes again at a second
-// try: after an interruption at any point the whole can be repeated. Only the sectors that are written are erased: a
-// chip that had a bootloader before keeps its settings and slot B.
+// The order is: board record, key, image, bootloader, option bytes. The chip starts from sector 0, so that is written
+// when all that it starts is there, and it is protected when it is right. Each step writes the same bytes again at a
+// second try: after an interruption at any point the whole can be repeated. Only the sectors that are written are
+// erased: a chip that had a bootloader before keeps its settings and slot B.
 
 #include <cstdint>
 #include <string>
@@ -39,6 +39,7 @@ namespace bare_file {
 inline constexpr const char* bootloader = "bootloader.bin";
 inline constexpr const char* image = "image.pimg";
 inline constexpr const char* settings = "settings.bin";  ///< settings_file_size() bytes, 0xFF behind the record
+inline constexpr const char* trust = "key.bin";          ///< a record of the key of images
 inline constexpr const char* present = "present.bin";    ///< the bytes of the chip in the place of the bootloader
 inline constexpr const char* script = "bare.tcl";
 inline constexpr const char* end = "end.txt";  ///< the last command of the script writes it
@@ -50,9 +51,11 @@ struct BarePlan {
   FlashPart bootloader;               ///< sectors 0 and 1
   FlashPart settings;                 ///< the sectors of board records
   FlashPart image;                    ///< the sector of slot A that the bootloader uses
+  FlashPart trust;                    ///< the sector of records of the key of images
   std::uint32_t bootloader_size = 0;  ///< bytes of the file; a multiple of 4
   std::uint32_t image_size = 0;       ///< bytes of the file, header included; a multiple of 4
   std::uint32_t settings_size = 0;    ///< bytes of the file with the board record; 0: none is written
+  std::uint32_t trust_size = 0;       ///< bytes of the record of the key; 0: none is written
 };
 
 struct BareStep {

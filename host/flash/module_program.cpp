@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "host/flash/image_file.hpp"
+#include "host/flash/key_file.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/little_endian.hpp"
 
@@ -42,11 +43,31 @@ std::string changes(const image::Header& before, const image::Header& after) {
   return text;
 }
 
+/// Why the module would refuse the image, as far as its header shows; empty: it would not. Only the module checks the
+/// signature.
+std::string trust_refusal(const image::Header& image, const broadcast::TrustSummary& trust) {
+  const image::Version minimum{trust.major, trust.minor, trust.patch};
+  if (trust.key_id == 0) {
+    return "";
+  }
+  if (image.key_id == 0) {
+    return "takes only images that are signed with key " + key_id_text(trust.key_id) +
+           ", the image is not signed: 'proleg image sign' signs it";
+  }
+  if (image.key_id != trust.key_id) {
+    return "the image is signed with another key (id " + key_id_text(image.key_id) + ", expected " +
+           key_id_text(trust.key_id) + ")";
+  }
+  return image.version < minimum ? "takes no version below " + version_number_text(minimum) + ", the image is " +
+                                       version_number_text(image.version)
+                                 : "";
+}
+
 }  // namespace
 
 void ModuleQuery::start(Microseconds now, const std::vector<std::uint32_t>& serials) {
   for (const std::uint32_t serial : serials) {
-    modules_.push_back({serial, false, {}, std::nullopt});
+    modules_.push_back({serial, false, {}, std::nullopt, {}});
   }
   next_ = 0;
   if (!is_done()) {
@@ -120,6 +141,9 @@ void ModuleQuery::receive(Microseconds now, const CanFrame& frame) {
     missing_.push_back(static_cast<std::uint8_t>(word));
   }
   missing_.push_back(last_word);
+  for (unsigned word = 0; word < broadcast::TrustSummary::words; ++word) {
+    missing_.push_back(static_cast<std::uint8_t>(broadcast::TrustSummary::first_word + word));
+  }
   attempt_ = 0;
   ask(now);
 }
@@ -129,7 +153,11 @@ void ModuleQuery::take_word(Microseconds now, const broadcast::HeaderWord& word)
   if (found == missing_.end()) {
     return;  // the word was requested twice
   }
-  write_little_endian(bytes_, 4U * word.number, 4, word.value);
+  if (word.number >= broadcast::TrustSummary::first_word) {
+    module().trust.set_word(word.number, word.value);
+  } else {
+    write_little_endian(bytes_, 4U * word.number, 4, word.value);
+  }
   const bool was_asked = found - missing_.begin() < static_cast<std::ptrdiff_t>(asked_);
   missing_.erase(found);
   asked_ -= was_asked ? 1U : 0U;
@@ -213,6 +241,9 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
     return refuse("answers, but " + std::to_string(program.missing_words) +
                   " words of the header of its program were not received: frames are lost ('proleg doctor' looks "
                   "for the cause); try again");
+  }
+  if (const std::string reason = trust_refusal(image, program.trust); !reason.empty()) {
+    return refuse(reason);
   }
   if (!program.image) {
     return {FlashAction::install, "no program -> " + version_text(image)};

@@ -21,6 +21,7 @@ struct ModuleProgram {
   broadcast::StatusAnswer status{};  ///< valid if the module has answered
   /// Nothing: there is no image, its header is damaged, or words of it are missing.
   std::optional<image::Header> image;
+  broadcast::TrustSummary trust{};  ///< which images it takes; valid if no words are missing and there is an image
   /// Number of words of the header that the module was asked for and that were not received.
   unsigned missing_words = 0;
 

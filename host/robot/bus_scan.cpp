@@ -91,6 +91,7 @@ void BusScan::inquire(std::uint8_t node) {
                 [&info](std::uint32_t number) { info.protocol = static_cast<std::uint16_t>(number); });
     read_number(node, object::core_fingerprint.address,
                 [&info](std::uint32_t number) { info.core_fingerprint = number; });
+    read_number(node, object::update_key.address, [&info](std::uint32_t number) { info.update_key = number; });
     read_number(node, object::statusword.address,
                 [&info](std::uint32_t number) { info.statusword = static_cast<std::uint16_t>(number); });
     read_number(node, object::activate.address, [this, &info, node](std::uint32_t is_active) {

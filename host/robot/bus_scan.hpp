@@ -32,9 +32,11 @@ struct ScannedNode {
   bool is_module = false;
   std::uint16_t protocol = 0;          ///< 0x2000:1
   std::uint32_t core_fingerprint = 0;  ///< 0x2000:3
-  std::optional<std::uint8_t> joint;   ///< 0x2001:1; nothing while the module has no place in a robot (0x2005:6)
-  std::uint16_t statusword = 0;        ///< 0x6041
-  std::uint8_t error_register = 0;     ///< 0x1001
+  /// 0x2000:6, the id of the key with which images must be signed, 0: any image. Nothing: its program does not know it.
+  std::optional<std::uint32_t> update_key;
+  std::optional<std::uint8_t> joint;  ///< 0x2001:1; nothing while the module has no place in a robot (0x2005:6)
+  std::uint16_t statusword = 0;       ///< 0x6041
+  std::uint8_t error_register = 0;    ///< 0x1001
 };
 
 struct BusScanOptions {

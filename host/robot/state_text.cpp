@@ -1,5 +1,8 @@
 #include "host/robot/state_text.hpp"
 
+#include <array>
+#include <cstdio>
+
 #include "shared/canopen/power_state.hpp"
 
 namespace proleg::host {
@@ -92,6 +95,12 @@ std::string_view fault_advice(canopen::EmergencyCode code) {
       return "Start again; if it comes back, look at cable and termination: proleg doctor.";
   }
   return "docs/protocol.md explains the code. Start again; if it comes back, look at its cause.";
+}
+
+std::string image_key_text(std::uint32_t key_id) {
+  std::array<char, 9> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08x", static_cast<unsigned>(key_id));
+  return key_id == 0 ? "takes any image" : std::string("key ") + digits.data();
 }
 
 }  // namespace proleg::host

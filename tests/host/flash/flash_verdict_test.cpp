@@ -105,6 +105,23 @@ TEST(FlashVerdict, AModuleThatCannotBeFlashedOverTheBusIsNamedWithTheWayThatIsLe
   }
 }
 
+TEST(FlashVerdict, AModuleWithAKeyTakesOnlyWhatItsHeaderAllows) {
+  FlashCandidate module = module_with(header(1));
+  module.program.trust = {0x1A2B'3C4D, 0, 2, 0};
+  const auto text_for = [&module](unsigned number, std::uint32_t key_id) {
+    image::Header image = header(static_cast<std::uint16_t>(number));
+    image.key_id = key_id;
+    const FlashVerdict verdict = judge_image(image, module);
+    EXPECT_EQ(verdict.action, key_id == 0x1A2B'3C4D && number >= 2 ? FlashAction::install : FlashAction::refuse);
+    return verdict.text;
+  };
+  EXPECT_NE(text_for(2, 0).find("only images that are signed with key 1a2b3c4d, the image is not signed"),
+            std::string::npos);
+  EXPECT_NE(text_for(2, 0x99).find("another key (id 00000099, expected 1a2b3c4d)"), std::string::npos);
+  EXPECT_NE(text_for(1, 0x1A2B'3C4D).find("no version below 0.2.0, the image is 0.1.0"), std::string::npos);
+  EXPECT_NE(text_for(2, 0x1A2B'3C4D).find("0.1.0 (01010101) -> 0.2.0"), std::string::npos);
+}
+
 TEST(FlashVerdict, CommitsAreShortAndSayIfTheSourcesWereOthers) {
   image::Header image = header(0);
   EXPECT_EQ(commit_text(image), "unknown");

@@ -214,6 +214,34 @@ class FlashBare(unittest.TestCase):
                 self.assertEqual(self.chip.read(SETTINGS, 2 * SECTORS[2]), record.read_bytes())
                 self.assertEqual(self.chip.sectors("erase"), [2, 3, 5, *self.place_of_bootloader(probe)])
 
+    def test_with_a_public_key_the_chip_takes_only_images_that_are_signed_with_it(self):
+        self.run_tool("image", "key", "update.pem")
+        self.write("unsigned.pimg", (self.folder / "module.pimg").read_bytes())
+        self.run_tool("image", "sign", "module.pimg", "--key", "update.pem", "--output", "module.pimg")
+        signed = (self.folder / "module.pimg").read_bytes()
+        public = subprocess.run(["openssl", "pkey", "-pubin", "-in", "update.pub.pem", "-outform", "DER"], check=True,
+                                cwd=self.folder, capture_output=True).stdout[-32:]
+        # firmware/bootloader/trust_store.hpp
+        record = b"PKEY" + public + bytes(24)
+        record += struct.pack("<I", zlib.crc32(record))
+        for probe in PROBES:
+            with self.subTest(probe=probe):
+                self.chip = Stm32F405()
+                self.chip.fill(4, KEPT)
+                self.expect_flashed(self.flash(probe, "--public-key", "update.pub.pem"))
+                self.expect_sector(4, record)
+                self.expect_sector(5, signed)
+                self.assertEqual(self.chip.sectors("erase"), [4, 5, *self.place_of_bootloader(probe)])
+        (self.folder / "unsigned.pimg").replace(self.folder / "module.pimg")
+        self.chip = Stm32F405()
+        result = self.flash("stlink", "--public-key", "update.pub.pem")
+        self.expect_failed(result, "module.pimg: found an image that the module would not start (it is not signed", status=2)
+        self.assertEqual(self.chip.events, [])
+
+    def run_tool(self, *words):
+        subprocess.run([self.programs / "proleg", *words], cwd=self.folder, check=True, capture_output=True,
+                       timeout=LONGEST)
+
     def test_the_image_is_there_before_the_bootloader_and_the_option_bytes_come_last(self):
         self.expect_flashed(self.flash("stlink"))
         self.assertEqual([event[:2] if event[0] != "options" else event[0] for event in self.chip.events],

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/flash/image_file.hpp"
+#include "host/flash/key_file.hpp"
 #include "host/robot/object_word.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -20,6 +21,7 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/flash/flash_bare.hpp"
+#include "tools/proleg/flash/flash_key.hpp"
 #include "tools/proleg/flash/flash_modules.hpp"
 #include "tools/proleg/flash/update_run.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
@@ -34,7 +36,9 @@ using host::UpdateOutcome;
 namespace flag = broadcast::module_flag;
 
 struct FlashOptions : BusOptions {
-  std::string image;
+  std::optional<std::string> image_file;
+  std::optional<std::string> public_key;
+  std::string image;  ///< name of the file with the image
   bool is_bare = false;
   BareOptions bare;
   std::optional<std::string> nodes;
@@ -404,10 +408,33 @@ int run_bare(const FlashOptions& options) {
   bare.image = options.image;
   bare.node = options.nodes;
   bare.dry_run = options.dry_run;
+  bare.public_key = options.public_key;
   return run_flash_bare(bare);
 }
 
-int run(const FlashOptions& options) {
+/// Gives modules their first key over the bus.
+int run_key(const FlashOptions& options) {
+  if (options.image_file || options.dry_run || options.canary || options.settings || !options.report.is_text()) {
+    throw InputError("--public-key", 0, "an image or an option for one, too",
+                     "the key alone: then flash an image that is signed; both at once only with --bare");
+  }
+  const auto nodes = options.nodes ? host::parse_nodes(*options.nodes, "--node") : std::nullopt;
+  static_cast<void>(host::read_public_key(*options.public_key));
+  BusAccess bus(options);
+  catch_interrupts();
+  require_no_host(bus);
+  HostPresence presence(bus.connection());
+  return run_flash_key(bus, *options.public_key, nodes);
+}
+
+int run(FlashOptions& options) {
+  if (options.public_key && !options.is_bare) {
+    return run_key(options);
+  }
+  if (!options.image_file) {
+    throw BadInput("found no IMAGE, expected an image, a .pimg file");
+  }
+  options.image = *options.image_file;
   if (options.is_bare) {
     return run_bare(options);
   }
@@ -444,7 +471,14 @@ int main(int argc, char** argv) {
       "bootloader "
       "and the first image on an empty chip, by a probe (docs/flashing.md).");
   FlashOptions options;
-  command_line.add_option("IMAGE", options.image, "the image, a .pimg file").required();
+  command_line.add_option("IMAGE", options.image_file, "the image, a .pimg file; none with --public-key alone")
+      .value_name("");
+  command_line
+      .add_option("--public-key", options.public_key,
+                  "the modules take only images that are signed with the private key of this public key ('proleg image "
+                  "key'). With --bare and IMAGE; or over the bus alone, for modules that have no key and were started "
+                  "less than ten minutes ago")
+      .value_name("FILE");
   command_line.add_option("--node", options.nodes,
                           "only these modules: 3, 1,3 or 2-5. With --bare: the node id of the board record that is "
                           "written; it replaces all settings that the board has.");

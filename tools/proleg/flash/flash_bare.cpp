@@ -13,10 +13,12 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/bootloader/trust_store.hpp"
 #include "firmware/module/board_record.hpp"
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "host/flash/bare_commands.hpp"
 #include "host/flash/image_file.hpp"
+#include "host/flash/key_file.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
@@ -65,6 +67,7 @@ struct Work {
   Bytes bootloader;
   Bytes image;
   Bytes settings;  ///< with the board record; empty: none is written
+  Bytes trust;     ///< the record of the key; empty: none is written
 };
 
 BareProbe parse_probe(const std::optional<std::string>& word) {
@@ -146,6 +149,18 @@ void require_same_board(const BareOptions& options, const Work& work) {
   }
 }
 
+/// The record of a key. The image starts on trial, so it must be signed with the key.
+Bytes read_trust(const std::string& file, const std::string& image_file, const Bytes& image) {
+  const image::Trust trust{host::read_public_key(file), {}};
+  if (const image::Error error = image::check_trust(trust, image); error != image::Error::none) {
+    throw InputError(image_file, 0, "an image that the module would not start (" + std::string(describe(error)) + ")",
+                     "one that 'proleg image sign' has signed with key " +
+                         host::key_id_text(image::key_id(*trust.key)) + ", because of --public-key");
+  }
+  const auto record = bootloader::TrustStore::encode(trust);
+  return {record.begin(), record.end()};
+}
+
 Work read_work(const BareOptions& options) {
   Work work;
   BarePlan& plan = work.plan;
@@ -154,6 +169,7 @@ Work read_work(const BareOptions& options) {
   plan.bootloader = {flash_layout::bootloader, flash_layout::bootloader_size};
   plan.settings = {flash_layout::board_records, flash_layout::board_records_size};
   plan.image = {flash_layout::image_sector_a.address, flash_layout::image_sector_a.size};
+  plan.trust = {flash_layout::trust_sector.address, flash_layout::trust_sector.size};
   if (options.node) {
     work.settings = read_settings(*options.node, plan);
     plan.settings_size = static_cast<std::uint32_t>(work.settings.size());
@@ -161,6 +177,10 @@ Work read_work(const BareOptions& options) {
   host::ImageFile image = read_checked_image(options.image);
   work.board_id = image.header.board_id;
   work.image = std::move(image.bytes);
+  if (options.public_key) {
+    work.trust = read_trust(*options.public_key, options.image, work.image);
+    plan.trust_size = static_cast<std::uint32_t>(work.trust.size());
+  }
   work.bootloader_name =
       options.bootloader.value_or((std::filesystem::path(options.image).parent_path() / default_bootloader).string());
   work.bootloader = host::read_bootloader(work.bootloader_name, plan.bootloader);
@@ -180,6 +200,9 @@ void print_files(const BareOptions& options, const Work& work) {
         work.plan.image);
   if (work.plan.settings_size > 0) {
     print(host::bare_file::settings, work.settings, "the board record of node " + *options.node, work.plan.settings);
+  }
+  if (work.plan.trust_size > 0) {
+    print(host::bare_file::trust, work.trust, "the public key " + one_line(*options.public_key), work.plan.trust);
   }
   if (uses_swd(work.plan.probe)) {
     std::cout << host::bare_file::script << ":\n";
@@ -221,6 +244,9 @@ void run_all(const Work& work) {
   folder.write(host::bare_file::script, host::bare_script(work.plan));
   if (work.plan.settings_size > 0) {
     folder.write(host::bare_file::settings, work.settings);
+  }
+  if (work.plan.trust_size > 0) {
+    folder.write(host::bare_file::trust, work.trust);
   }
   std::cout << "in " << folder.path().string() << ":\n";
   for (const BareStep& step : bare_steps(work.plan)) {

@@ -7,12 +7,14 @@ namespace proleg::tools {
 
 class CommandLine;
 
-/// Options of `proleg flash --bare`. Flashing over the bus has an image, nodes and a dry run, too: flash.cpp declares
-/// the first three.
+/// Options of `proleg flash --bare`. Flashing over the bus has an image, nodes, a dry run and a key, too: flash.cpp
+/// declares the first four.
 struct BareOptions {
   std::string image;                ///< a file
   std::optional<std::string> node;  ///< of the board record that is written; without it none is
   bool dry_run = false;             ///< only shows the commands
+  /// A file; without it the key that the chip has, or none, stays.
+  std::optional<std::string> public_key;
   // The options that add_bare_options() declares:
   std::optional<std::string> probe;
   std::optional<std::string> port;

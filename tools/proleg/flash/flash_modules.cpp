@@ -56,7 +56,7 @@ std::vector<FlashCandidate> finish(BusAccess& bus, host::SilentModules& search) 
   bus.wait_for("modules without a node id", longest_search + second, [&search] { return search.is_done(); });
   std::vector<FlashCandidate> modules;
   for (const host::SilentModule& module : search.found()) {
-    modules.push_back({{module.serial, false, {}, {}},
+    modules.push_back({{module.serial, false, {}, {}, {}},
                        module.node_id.value_or(0),
                        static_cast<std::uint16_t>(module.product),
                        false});
@@ -86,7 +86,7 @@ FoundModules look_for_modules(BusAccess& bus, SilentSearch search) {
       found.foreign.push_back(node.node);
     } else {
       found.modules.push_back(
-          {{node.serial, false, {}, {}}, node.node, static_cast<std::uint16_t>(node.product), true});
+          {{node.serial, false, {}, {}, {}}, node.node, static_cast<std::uint16_t>(node.product), true});
     }
   }
   const bool are_signs = all.has_fresh_modules() || !found.silent.empty() || !all.duplicates().empty();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -141,6 +142,7 @@ Json json_of(const host::ObservedNode& node) {
           {"joint_module", is_module},
           {"drive", is_module ? Json(host::drive_text(answers->statusword)) : Json()},
           {"error_register", is_module ? Json(unsigned{answers->error_register}) : Json()},
+          {"images", is_module && answers->update_key ? Json(host::image_key_text(*answers->update_key)) : Json()},
           {"core_fingerprint", is_module ? Json(answers->core_fingerprint) : Json()},
           {"produces_sync", node.produces_sync},
           {"emergencies", json_of(node.emergencies)},
@@ -202,6 +204,22 @@ std::string summary(const BusObservations& seen) {
          (seen.host_heartbeats > 0 ? "driven by a host" : "no host drives it");
 }
 
+/// Which images the modules take, in a line for each key.
+void print_keys(const BusObservations& seen) {
+  std::map<std::uint32_t, std::vector<std::uint8_t>> by_key;
+  for (const host::ObservedNode& node : seen.nodes) {
+    if (node.answers && node.answers->is_module && node.answers->update_key) {
+      by_key[*node.answers->update_key].push_back(node.node);
+    }
+  }
+  for (const auto& [key, nodes] : by_key) {
+    std::cout << "Images: " << host::nodes_text(nodes) << ": "
+              << (key == 0 ? "any image, because there is no key ('proleg flash --public-key' sets one)"
+                           : "only those signed with " + host::image_key_text(key))
+              << '\n';
+  }
+}
+
 void print(const Report& report) {
   std::cout << report.bus << '\n';
   unsigned number = 0;
@@ -213,6 +231,7 @@ void print(const Report& report) {
   }
   if (report.observations && !report.observations->nodes.empty()) {
     std::cout << (report.findings.empty() ? "" : "\n") << "Examined: " << summary(*report.observations) << '\n';
+    print_keys(*report.observations);
   }
 }
 

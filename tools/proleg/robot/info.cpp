@@ -51,7 +51,8 @@ struct Group {
 std::span<const Group> first_groups() {
   static constexpr std::array identity{object::device_name.address,      object::hardware_version.address,
                                        object::software_version.address, object::serial.address,
-                                       object::version.address,          object::core_fingerprint.address};
+                                       object::version.address,          object::core_fingerprint.address,
+                                       object::update_key.address};
   static constexpr std::array state{object::error_register.address,  object::statusword.address,
                                     object::position_demand.address, object::actual_position.address,
                                     object::actual_current.address,  object::temperature.address,
@@ -142,6 +143,8 @@ std::string value_of(const Line& line) {
   std::string text = host::value_text(line.object, line.result.value);
   if (line.object.address == object::statusword.address) {
     text.append(" (").append(host::drive_text(static_cast<std::uint16_t>(line.result.number()))).append(")");
+  } else if (line.object.address == object::update_key.address) {
+    text = host::image_key_text(line.result.number());
   } else if (line.object.address.index == object::slot_algorithms.index && line.object.address.sub > 0) {
     const ActuationModule* algorithm = find_algorithm(static_cast<std::uint8_t>(line.result.number()));
     text.append(" (").append(algorithm == nullptr ? "none" : algorithm->declaration().name).append(")");

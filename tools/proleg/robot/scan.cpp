@@ -41,6 +41,7 @@ void print_json(const host::BusScan& scan, const std::string& bus) {
                   {"serial", node.serial},
                   {"protocol", node.protocol},
                   {"core_fingerprint", node.core_fingerprint},
+                  {"images", node.update_key ? Json(host::image_key_text(*node.update_key)) : Json()},
                   {"name", node.name},
                   {"hardware", node.hardware},
                   {"software", node.software}});
@@ -63,8 +64,8 @@ void print_table(const host::BusScan& scan, const std::string& bus) {
   std::printf("%s\n", bus.c_str());
   const auto nodes = scan.nodes();
   if (!nodes.empty()) {
-    std::printf("%-5s %-6s %-16s %-18s %-11s %-9s %s\n", "node", "joint", "state", "drive", "serial", "protocol",
-                "name");
+    std::printf("%-5s %-6s %-16s %-18s %-11s %-9s %-16s %s\n", "node", "joint", "state", "drive", "serial", "protocol",
+                "images", "name");
   }
   for (const host::ScannedNode& node : nodes) {
     // A module sends heartbeats when a host has set it up; other devices always do.
@@ -80,11 +81,12 @@ void print_table(const host::BusScan& scan, const std::string& bus) {
     const std::string board(image::board_name(static_cast<std::uint16_t>(node.product)));
     const std::string hardware =
         is_other_board ? "  (" + one_line(node.hardware) + (board.empty() ? "" : "; " + board) + ")" : "";
-    std::printf("%-5u %-6s %-16s %-18s %-11s %-9s %s%s%s\n", unsigned{node.node},
+    std::printf("%-5u %-6s %-16s %-18s %-11s %-9s %-16s %s%s%s\n", unsigned{node.node},
                 node.joint ? std::to_string(*node.joint).c_str() : "-", state.c_str(),
                 node.is_module ? std::string(host::drive_text(node.statusword)).c_str() : "-",
                 hexadecimal(node.serial, 8).c_str(), node.is_module ? version_text(node.protocol).c_str() : "-",
-                node.name.c_str(), hardware.c_str(), node.error_register != 0 ? "  (reports an error)" : "");
+                node.update_key ? host::image_key_text(*node.update_key).c_str() : "-", node.name.c_str(),
+                hardware.c_str(), node.error_register != 0 ? "  (reports an error)" : "");
   }
   std::printf("%zu node%s%s%s\n", nodes.size(), nodes.size() == 1 ? "" : "s", scan.syncs() > 0 ? ", SYNC" : "",
               scan.has_host() ? ", driven by a host" : "");

@@ -343,7 +343,7 @@ TEST_F(ExceptionOrder, ResetClearsWhatWasPendingEnabledAndActive) {
 TEST_F(ExceptionOrder, FixedRegistersHaveTheValuesOfTheChip) {
   script(0, {step::mark_load(0xE000'ED00), step::mark_load(0xE000'E004), step::mark_load(0xE000'ED90),
              step::mark_load(0xE000'E01C), step::mark_load(scs::ccr), step::mark_load(scs::aircr)});
-  EXPECT_EQ(run_script(), Marks({0x410F'C241, 2, 0, 18'750, 0x200, 0xFA05'0000, thread_end}));
+  EXPECT_EQ(run_script(), Marks({0x410F'C241, 2, 0x800, 18'750, 0x200, 0xFA05'0000, thread_end}));
 }
 
 TEST_F(ExceptionOrder, TheCycleCounterCountsInstructionsWhileItIsEnabled) {

@@ -372,7 +372,7 @@ TEST_F(BusFaults, AModuleWithTooLittleVoltage) {
     EXPECT_TRUE(bus.drive());
     bus.run_for(chances.between(0, second));
     const unsigned joint = chances.joint();
-    bus.robot().module(joint).set_supply(bus.robot().now(), 2'400);
+    bus.robot().module(joint).set_supply(bus.robot().now(), 2'700);
     bus.run_for(100'000);
     EXPECT_EQ(bus.robot().module(joint).power(), canopen::PowerState::fault);
     return std::vector<std::uint8_t>{node(joint)};

@@ -136,7 +136,7 @@ class Image(unittest.TestCase):
         fields = parse(image)
         self.assertEqual(self.run_image("info", "module.pimg").stdout, f"""\
 module.pimg
-  board             1, hardware revisions 2 to 5
+  board             1 (reference), hardware revisions 2 to 5
   version           1.20.300
   commit            {COMMIT}
   protocol version  1.0
@@ -153,7 +153,7 @@ module.pimg
         for name, options in (("all", {}), ("one", {"revisions": "7:7"})):
             self.image(**options)
             lines[name] = self.run_image("info", "module.pimg").stdout
-        self.assertIn("\n  board             1, all hardware revisions\n", lines["all"])
+        self.assertIn("\n  board             1 (reference), all hardware revisions\n", lines["all"])
         self.assertIn("\n  commit            not known\n", lines["all"])
         self.assertIn("\n  board             1, hardware revision 7\n", lines["one"])
         # Bits that 'proleg image make' never writes, or only together with others.

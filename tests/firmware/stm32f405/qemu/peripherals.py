@@ -115,8 +115,10 @@ class Peripherals:
             return self.now % (word(0x4000002C) + 1)
         if address == 0x40004400:  # SR of USART2: TC and TXE
             return 0xC0
-        if address == 0x40020410:  # IDR of GPIOB
-            return self.contacts << 12
+        if address in (0x40020010, 0x40020410, 0x40020810):  # IDR of GPIOA, GPIOB and GPIOC: nothing drives pins with a pull-up but the contacts
+            pulls = word(address - 4)
+            pulled_up = sum(1 << pin for pin in range(16) if pulls >> 2 * pin & 3 == 1)
+            return pulled_up & ~((15 & ~self.contacts) << 12) if address == 0x40020410 else pulled_up
         if address == 0x40012000:  # SR of ADC1: JEOC, STRT
             return 0x14
         if address in (0x4001203C, 0x40012040):  # JDR1: middle of the potentiometer, JDR2: about 25 degrees Celsius

@@ -155,7 +155,7 @@ module.pimg
             lines[name] = self.run_image("info", "module.pimg").stdout
         self.assertIn("\n  board             1 (reference), all hardware revisions\n", lines["all"])
         self.assertIn("\n  commit            not known\n", lines["all"])
-        self.assertIn("\n  board             1, hardware revision 7\n", lines["one"])
+        self.assertIn("\n  board             1 (reference), hardware revision 7\n", lines["one"])
         # Bits that 'proleg image make' never writes, or only together with others.
         flagged = changed(image, 25, b"\x01")
         self.write("flagged.pimg", flagged)

@@ -30,7 +30,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   static constexpr Microseconds erase_time_us = 1'000'000;
   static constexpr Microseconds word_time_us = 16;
   /// Typical time from a reset to the start of the program: the checksum of the image at 16 MHz.
-  static constexpr Microseconds start_time_us = 92'500;
+  static constexpr Microseconds start_time_us = 96'500;
 
   /// Slot A holds a confirmed image of the native program, without a body to speak of. port: for the bootloader.
   /// settings: the log of board records. Both must outlive the object.

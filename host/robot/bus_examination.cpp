@@ -229,6 +229,7 @@ void BusExamination::search(Microseconds now) {
     return;
   }
   std::vector<std::uint32_t> products;
+  products.reserve(image::board_names.size());
   for (const image::BoardName& board : image::board_names) {
     products.push_back(board.id);
   }

@@ -32,6 +32,7 @@ constexpr Microseconds longest_search = 60 * second;
 /// Begins to search for modules that are not among the known ones.
 void start(BusAccess& bus, host::SilentModules& search, std::span<const FlashCandidate> known) {
   std::vector<std::uint32_t> products;
+  products.reserve(image::board_names.size() + known.size());
   for (const image::BoardName& board : image::board_names) {
     products.push_back(board.id);
   }

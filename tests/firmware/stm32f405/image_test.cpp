@@ -184,7 +184,8 @@ TEST_P(ImageTest, TheCodeInRamCallsAndReadsNothingOutsideRam) {
     EXPECT_TRUE((first & 0xFF00U) != 0x4700U || first == 0x4770U) << "BX or BLX at offset " << offset;
     if (offset % 4 == 0) {
       const std::uint32_t word = word_at(segment->bytes, offset);
-      EXPECT_FALSE(word >= flash_start && word < flash_start + 1024 * 1024) << "an address in flash at offset " << offset;
+      EXPECT_FALSE(word >= flash_start && word < flash_start + 1024 * 1024)
+          << "an address in flash at offset " << offset;
     }
   }
 }

@@ -30,7 +30,7 @@ using SignedBytes = std::array<std::uint8_t, layout::header_crc_at>;
 [[nodiscard]] SignedBytes signed_bytes(std::span<const std::uint8_t> header);
 
 /// Whether an image is trusted: `not_signed` to `unusable_key`, or `none`. header: the bytes of the header of an image
-/// that is right. It takes long: about 20 million instructions of the chip if the image names the right key.
+/// that is right. It takes long, up to 0.3 s of the chip, if the image names the right key.
 [[nodiscard]] Error check_trust(const Trust& trust, std::span<const std::uint8_t> header);
 
 /// Whether a header says something about later images: a lowest version or a key.

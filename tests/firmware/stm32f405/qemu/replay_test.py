@@ -185,6 +185,7 @@ class QemuReplay(unittest.TestCase):
         syncs = [position for position, frame in enumerate(self.log) if frame[1] == SYNC]
         removed = syncs[len(syncs) // 4]
         sent, _ = self.replay(self.log[:removed] + self.log[removed + 1:syncs[len(syncs) // 2]])
+        self.assertIn(STATE, {frame[0] for frame in sent})
         self.assertNotEqual(sent, self.expected()[:len(sent)])
 
 

@@ -123,7 +123,7 @@ image::Signature SigningKey::sign(std::span<const std::uint8_t> message) const {
 }
 
 void write_private_key(const std::string& file, const SigningKey& key, bool replaces) {
-  // The text goes into a new file, so that nobody who has opened the old one can read it.
+  // The text goes into a new file, so that a program that has opened the old one cannot read it.
   const std::string temporary = file + ".new";
   unlink(temporary.c_str());
   const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);

@@ -4,7 +4,7 @@
 //
 // The signature of an image is one of Ed25519 (ed25519.hpp) of the first 508 bytes of its header, all but the CRC, with
 // the 64 bytes of the signature as 0. The header contains the SHA-256 of the body, so the signature covers the body,
-// too: whoever checks a signature checks the image first (image::check_image()).
+// too: the image is checked before its signature (image::check_image()).
 
 #include <optional>
 

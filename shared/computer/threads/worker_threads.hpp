@@ -12,9 +12,9 @@
 namespace proleg {
 
 /// Each part has a thread that takes it first, so that its data stay in the cache of a core. A thread that has none
-/// left takes those of others: on a busy computer a thread that does not run delays nobody. The thread that calls run()
-/// takes part, so a computer with two cores needs one more thread. Between two pieces of work the threads look for the
-/// next one for some microseconds, then they sleep.
+/// left takes those of others: on a busy computer a thread that does not run delays no other. The thread that calls
+/// run() takes part, so a computer with two cores needs one more thread. Between two pieces of work the threads look
+/// for the next one for some microseconds, then they sleep.
 class WorkerThreads {
  public:
   /// threads: with the thread that calls run(), at least 1. parts: largest number of a part, plus 1. Throws

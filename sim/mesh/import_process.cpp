@@ -57,6 +57,8 @@ constexpr int failed = 102;
 constexpr std::size_t longest_name = 4096;       // bytes, of a path
 constexpr std::size_t longest_line = 1U << 16U;  // bytes, of a message
 constexpr std::chrono::milliseconds tick{20};
+constexpr int sleeping_ticks = 50;  // of a child that works: a wait for the disk is another state
+constexpr int attempts = 4;
 
 // Stream has read(void*, std::size_t) and write(const void*, std::size_t), for all bytes.
 
@@ -135,6 +137,15 @@ Memory memory_of(const std::string& process) {
   return {pages.reserved * page, pages.used * page};
 }
 
+/// Whether a process waits for a signal, another process or a lock: state S of proc(5).
+bool is_asleep(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  const std::size_t name_end = line.rfind(')');
+  return name_end != std::string::npos && line.substr(name_end).starts_with(") S");
+}
+
 void lower_limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   rlimit limit{};
   getrlimit(resource, &limit);
@@ -195,12 +206,17 @@ template <typename Import>
   _exit(0);
 }
 
-/// The child, as its parent sees it. All functions throw MeshError if the child ends or exceeds a limit.
+/// The error for a child that another child can replace: it sleeps for sleeping_ticks and asked for nothing.
+struct ChildSleeps {};
+
+/// The child, as its parent sees it. All functions throw MeshError if the child ends or exceeds a limit, and
+/// ChildSleeps if `is_last` is false.
 class ImportProcess {
  public:
   template <typename Import>
-  ImportProcess(const std::string& name, const ImportLimits& limits, const Import& import)
-      : name_(name), limits_(limits), before_(memory_of("self")), deadline_(Clock::now() + limits.wall) {
+  ImportProcess(const std::string& name, const ImportLimits& limits, Clock::time_point deadline, bool is_last,
+                const Import& import)
+      : name_(name), limits_(limits), before_(memory_of("self")), deadline_(deadline), is_last_(is_last) {
     std::array<int, 2> ends{};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
       throw no_process(errno);
@@ -235,8 +251,13 @@ class ImportProcess {
       if (count > 0) {
         next += count;
         size -= static_cast<std::size_t>(count);
+        sleeps_ = 0;
       } else {
         wait_unless_ended(count == 0 || is_broken(errno), POLLIN);
+        sleeps_ = is_running_ && is_asleep(process_) ? sleeps_ + 1 : 0;
+        if (sleeps_ > sleeping_ticks && !is_last_) {
+          throw ChildSleeps();
+        }
       }
     }
   }
@@ -330,6 +351,8 @@ class ImportProcess {
   const ImportLimits& limits_;
   Memory before_;
   Clock::time_point deadline_;
+  bool is_last_;
+  int sleeps_ = 0;  ///< ticks of the present read() in which the child slept
   pid_t process_ = -1;
   bool is_running_ = true;
   std::optional<int> status_;
@@ -382,12 +405,7 @@ TriangleMesh received_mesh(ImportProcess& process) {
   return mesh;
 }
 
-}  // namespace
-
-TriangleMesh import_in_child(const std::string& name, const MeshCompanion& companion,
-                             const std::function<TriangleMesh(const MeshCompanion& companion)>& import,
-                             const ImportLimits& limits) {
-  ImportProcess process(name, limits, import);
+TriangleMesh mesh_of(ImportProcess& process, const MeshCompanion& companion, const ImportLimits& limits) {
   for (std::size_t companions = 0;;) {
     switch (receive_value<std::uint8_t>(process)) {
       case asks_companion:
@@ -402,6 +420,22 @@ TriangleMesh import_in_child(const std::string& name, const MeshCompanion& compa
         throw received_refusal(process);
       default:
         throw process.damage();
+    }
+  }
+}
+
+}  // namespace
+
+TriangleMesh import_in_child(const std::string& name, const MeshCompanion& companion,
+                             const std::function<TriangleMesh(const MeshCompanion& companion)>& import,
+                             const ImportLimits& limits) {
+  const Clock::time_point deadline = Clock::now() + limits.wall;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      ImportProcess process(name, limits, deadline, attempt == attempts, import);
+      return mesh_of(process, companion, limits);
+    } catch (const ChildSleeps&) {
+      // Another thread held a lock at the fork().
     }
   }
 }

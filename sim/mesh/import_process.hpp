@@ -24,14 +24,17 @@ using MeshCompanion = std::function<std::optional<std::string>(const std::string
 
 /// What the import of one file may use.
 struct ImportLimits {
-  std::size_t memory_gib = 2;              ///< beyond what this process has
-  std::chrono::seconds processor{30};      ///< time of the processor
-  std::chrono::milliseconds wall{60'000};  ///< a lock that another thread holds at the fork() stays locked in the child
-  std::size_t companions = 1000;           ///< files beside the mesh
+  std::size_t memory_gib = 2;          ///< beyond what this process has
+  std::chrono::seconds processor{30};  ///< time of the processor
+  std::chrono::milliseconds wall{60'000};
+  std::size_t companions = 1000;  ///< files beside the mesh
 };
 
 /// Calls `import` in a child of this process, and returns its mesh. The child's stderr is not seen, except under
 /// AddressSanitizer. No child and no open file is left, also after an exception.
+///
+/// A lock that another thread holds at the fork() stays locked in the child. A child that sleeps for about a second is
+/// therefore ended and replaced, up to three times: `companion` may be called again for the same files.
 ///
 /// name: of the file, for messages. companion: is called in this process, each time that `import` calls the function
 /// that it gets; an exception of it ends the child and reaches the caller.

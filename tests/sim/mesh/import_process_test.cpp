@@ -1,12 +1,17 @@
 #include "sim/mesh/import_process.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
+#include <future>
+#include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -134,6 +139,46 @@ TEST_F(ImportProcess, AChildThatTakesTooLongIsEnded) {
                 },
                 limits),
             "a file that takes longer than 1 s, 'a.dae'");
+}
+
+TEST_F(ImportProcess, AChildThatWaitsForALockOfAnotherThreadIsReplaced) {
+  // Shared with the children: the number of those that began.
+  void* const memory =
+      mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  auto& children = *new (memory) std::atomic<int>(0);
+  std::mutex mutex;
+  std::promise<void> is_held;
+  std::promise<void> is_forked;
+  std::thread holder([&] {
+    const std::scoped_lock lock(mutex);
+    is_held.set_value();
+    is_forked.get_future().wait();
+  });
+  is_held.get_future().wait();
+  ImportLimits limits;
+  limits.wall = std::chrono::hours(1);
+  std::vector<std::string> asked;
+  const auto companion = [&](const std::string& name) -> std::optional<std::string> {
+    asked.push_back(name);
+    return std::nullopt;
+  };
+  const TriangleMesh mesh = import_in_child(
+      "a.obj", companion,
+      [&](const MeshCompanion& beside) {
+        static_cast<void>(beside("a.mtl"));
+        if (++children < 4) {
+          const std::scoped_lock lock(mutex);
+        }
+        return box_mesh({0.1, 0.2, 0.3});
+      },
+      limits);
+  is_forked.set_value();
+  holder.join();
+  EXPECT_EQ(children, 4);
+  EXPECT_EQ(mesh.triangles.size(), 12);
+  EXPECT_EQ(asked, std::vector<std::string>(4, "a.mtl"));
+  munmap(memory, sizeof children);
 }
 
 TEST_F(ImportProcess, AChildThatAsksForTooManyFilesIsEnded) {

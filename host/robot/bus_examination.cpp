@@ -205,6 +205,7 @@ void BusExamination::read_details(Microseconds now) {
     });
     readings_.read(scanned.node, object::capabilities.address, [&node](const SdoResult& result) {
       node.has_brown_out_reset = !result.is_good() || (result.number() & canopen::has_brown_out_reset) != 0;
+      node.has_current_sensor = !result.is_good() || (result.number() & canopen::has_no_current_sensor) == 0;
     });
     readings_.read(scanned.node, object::error_count.address, [this, &node](const SdoResult& result) {
       const std::uint32_t count = result.is_good() ? result.number() : 0;

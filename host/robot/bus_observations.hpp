@@ -27,6 +27,7 @@ struct ObservedNode {
   std::optional<ScannedNode> answers;  ///< answers to the scan; nothing: the node has answered no request
   // The members below are for a joint module that answers.
   bool produces_sync = false;                       ///< whether the module produces SYNC, as 0x1005 says
+  bool has_current_sensor = true;                   ///< false: 0x2000:5 says that nothing measures the servo's current
   bool has_brown_out_reset = true;                  ///< false: 0x2000:5 was read, and does not have this bit
   std::vector<canopen::EmergencyCode> past_errors;  ///< errors in 0x1003, the newest first
 };

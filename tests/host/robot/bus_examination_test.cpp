@@ -89,6 +89,21 @@ TEST_F(BusFaults, AreNoneOnABusOfModulesThatWait) {
   }
 }
 
+TEST_F(BusFaults, ABoardWithoutACurrentSensorIsNoneAndIsSeen) {
+  sim::LiveRobotOptions options;
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
+    identity.capabilities |= joint == 1 ? canopen::has_no_current_sensor : 0;
+  };
+  ExaminedBus bus(scenario_, options);
+  bus.run_for(100'000);
+  const BusObservations seen = bus.examine();
+  EXPECT_EQ(text_of(findings_of(seen)), "no fault found");
+  ASSERT_EQ(seen.nodes.size(), joints);
+  for (unsigned joint = 0; joint < joints; ++joint) {
+    EXPECT_EQ(seen.nodes[joint].has_current_sensor, joint != 1);
+  }
+}
+
 TEST_F(BusFaults, AreNoneWhileTheModulesAreSwitchedOn) {
   ExaminedBus bus(scenario_);
   const BusObservations seen = bus.examine();

@@ -88,6 +88,17 @@ class Doctor(unittest.TestCase):
             self.assertEqual(drive.returncode, 0)
             self.assertEqual(result["differences"], 0, "the examination has not disturbed the robot")
 
+    def test_a_board_without_a_current_sensor_is_named_and_is_no_fault(self):
+        image = table.SOURCE / "build/stm32f405/bin/weact-stm32f405/proleg_stm32f405.elf"
+        with Bus("--modules", "2=mcu", "--image", image) as bus:
+            status, report = examine(bus.pty)
+            # The chip has the option bytes of the factory.
+            self.assertEqual((status, codes(report)), (1, ["no_brown_out_reset"]), report)
+            self.assertEqual([node["current_sensor"] for node in report["observations"]["nodes"]],
+                             [True, False, True, True, True])
+            text = proleg("doctor", "--bus", bus.pty)
+            self.assertIn("Without a current sensor: node 2.", text.stdout)
+
     def test_a_module_without_a_node_id_and_a_robot_whose_host_died(self):
         with Bus("--fresh", "3") as bus:
             status, report = examine(bus.tcp)

@@ -143,6 +143,7 @@ Json json_of(const host::ObservedNode& node) {
           {"drive", is_module ? Json(host::drive_text(answers->statusword)) : Json()},
           {"error_register", is_module ? Json(unsigned{answers->error_register}) : Json()},
           {"images", is_module && answers->update_key ? Json(host::image_key_text(*answers->update_key)) : Json()},
+          {"current_sensor", is_module ? Json(node.has_current_sensor) : Json()},
           {"core_fingerprint", is_module ? Json(answers->core_fingerprint) : Json()},
           {"produces_sync", node.produces_sync},
           {"emergencies", json_of(node.emergencies)},
@@ -220,6 +221,20 @@ void print_keys(const BusObservations& seen) {
   }
 }
 
+/// The modules that cannot detect over-current: their boards have no sensor, which is no fault of theirs.
+void print_missing_sensors(const BusObservations& seen) {
+  std::vector<std::uint8_t> nodes;
+  for (const host::ObservedNode& node : seen.nodes) {
+    if (!node.has_current_sensor) {
+      nodes.push_back(node.node);
+    }
+  }
+  if (!nodes.empty()) {
+    std::cout << "Without a current sensor: " << host::nodes_text(nodes)
+              << ". A servo that is blocked there is not switched off.\n";
+  }
+}
+
 void print(const Report& report) {
   std::cout << report.bus << '\n';
   unsigned number = 0;
@@ -232,6 +247,7 @@ void print(const Report& report) {
   if (report.observations && !report.observations->nodes.empty()) {
     std::cout << (report.findings.empty() ? "" : "\n") << "Examined: " << summary(*report.observations) << '\n';
     print_keys(*report.observations);
+    print_missing_sensors(*report.observations);
   }
 }
 

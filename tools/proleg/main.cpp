@@ -26,6 +26,7 @@ struct Subcommand {
 
 constexpr std::array subcommands{
     Subcommand{"algorithms", "list the algorithms that move a robot, and their parameters"},
+    Subcommand{"scenarios", "list the robots and gaits that ship with Proleg"},
     Subcommand{"new", "write the files of a new robot, or of an algorithm of your own"},
     Subcommand{"verify", "prove that an algorithm of your own computes the same bits everywhere"},
     Subcommand{"simulate", "run a scenario in the physics simulation"},

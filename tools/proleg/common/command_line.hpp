@@ -64,6 +64,9 @@ class CommandLine {
   Option add_option(const std::string& name, std::optional<std::string>& variable, const std::string& help);
   Option add_option(const std::string& name, std::optional<double>& variable, const std::string& help);
   Option add_option(const std::string& name, std::vector<std::string>& variable, const std::string& help);
+  /// Adds the positional argument FILE for a scenario. It becomes the name of its file before the body runs: the user
+  /// may name a scenario that ships with Proleg (scenario_file() of shipped_scenarios.hpp).
+  Option add_scenario(std::string& file, const std::string& help);
   /// Adds an option without a value.
   Option add_flag(const std::string& name, bool& variable, const std::string& help);
 
@@ -82,6 +85,7 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   std::vector<std::string> algorithms_;
+  std::string* scenario_ = nullptr;
 };
 
 inline constexpr std::uint32_t max_workers = 1024;

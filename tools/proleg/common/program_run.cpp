@@ -17,15 +17,10 @@
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 
 namespace proleg::tools {
 namespace {
-
-bool is_source_tree(const std::filesystem::path& folder) {
-  std::error_code error;
-  return std::filesystem::exists(folder / "tools/cmake/user_algorithm.cmake", error) &&
-         std::filesystem::exists(folder / "shared/gait/registry.cpp", error);
-}
 
 /// Actions of a child before it becomes the program.
 class SpawnActions {
@@ -73,6 +68,12 @@ int wait_for_end(pid_t process) {
 
 }  // namespace
 
+bool is_source_tree(const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::exists(folder / "tools/cmake/user_algorithm.cmake", error) &&
+         std::filesystem::exists(folder / "shared/gait/registry.cpp", error);
+}
+
 std::filesystem::path source_tree(const std::string& given) {
   if (!given.empty()) {
     const std::filesystem::path folder = std::filesystem::absolute(given).lexically_normal();
@@ -82,8 +83,7 @@ std::filesystem::path source_tree(const std::string& given) {
     return folder;
   }
   // A program is in build/PRESET/bin of its checkout.
-  std::error_code error;
-  std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  std::filesystem::path folder = program_folder();
   while (!folder.empty() && !is_source_tree(folder)) {
     if (folder == folder.parent_path()) {
       throw BadInput("found no checkout of Proleg around this program, expected one; --source FOLDER names it");
@@ -91,28 +91,6 @@ std::filesystem::path source_tree(const std::string& given) {
     folder = folder.parent_path();
   }
   return folder;
-}
-
-bool is_shipped(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::weakly_canonical(file, error);
-  for (std::filesystem::path folder = real.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
-    if (folder.filename() == "scenarios" && folder.parent_path().filename() == "sim" &&
-        is_source_tree(folder.parent_path().parent_path())) {
-      return true;
-    }
-  }
-  return false;
-}
-
-std::filesystem::path built_page(const std::string& folder, const std::string& file) {
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path path = (self.parent_path() / "../.." / folder).lexically_normal();
-  if (!std::filesystem::exists(path / file, error)) {
-    throw BadInput("found no " + folder + " in " + path.string() + ", expected one that tools/page has built");
-  }
-  return path;
 }
 
 std::string shell_argument(const std::string& argument) {

@@ -10,12 +10,8 @@ namespace proleg::tools {
 /// BadInput, which names the option --source, if no checkout is found.
 [[nodiscard]] std::filesystem::path source_tree(const std::string& given);
 
-/// Whether a file is one of the scenarios that ship with Proleg (sim/scenarios of a checkout). The programs do not
-/// write them: the figures of the tests and of the documents hold for them as they are.
-[[nodiscard]] bool is_shipped(const std::filesystem::path& file);
-
-/// A folder with a page beside the build of this program, which tools/page makes. Throws BadInput if it lacks the file.
-[[nodiscard]] std::filesystem::path built_page(const std::string& folder, const std::string& file);
+/// Whether a folder is such a checkout.
+[[nodiscard]] bool is_source_tree(const std::filesystem::path& folder);
 
 /// An argument of a command that is printed for the user to repeat: in quotes for a shell, if it needs them.
 [[nodiscard]] std::string shell_argument(const std::string& argument);

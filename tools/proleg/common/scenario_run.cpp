@@ -44,7 +44,7 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
 }  // namespace
 
 void add_start_options(CommandLine& command_line, ScenarioOptions& options) {
-  command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
+  command_line.add_scenario(options.file, "scenario").required();
   command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
   add_override_options(command_line, options);
 }

@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
       .add_flag("--dbc", dbc, "print a DBC file for CAN tools: the frames of the robot of FILE, or of any robot")
       .excludes("--eds")
       .excludes("--markdown");
-  command_line.add_option("FILE", scenario, "for --dbc: scenario, a *.simulation.xml file");
+  command_line.add_scenario(scenario, "for --dbc: scenario");
   command_line.add_option("--nodes", nodes, "for --dbc without FILE: node ids 1 to this; 5 by default")
       .value_name("N")
       .excludes("FILE");

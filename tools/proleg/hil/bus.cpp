@@ -339,7 +339,7 @@ int main(int argc, char** argv) {
       "other "
       "subcommands, and with any CAN tool. Its modules are switched on and wait for a host. Ends with Ctrl-C.");
   ServerOptions options;
-  command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file").required();
+  command_line.add_scenario(options.scenario.file, "scenario").required();
   command_line.add_option("--can", options.can, "a CAN interface of this computer, such as vcan0. May be repeated.")
       .value_name("INTERFACE");
   command_line.add_flag("--pty", options.pty, "slcan on a new pseudo terminal, whose name is printed");

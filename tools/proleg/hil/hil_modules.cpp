@@ -17,6 +17,7 @@
 #include "sim/mcu/chip/stm32f405.hpp"
 #include "sim/mcu/debug/gdb_server.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 
 namespace proleg::tools {
@@ -27,12 +28,7 @@ using DebugEvent = sim::Stm32f405::DebugEvent;
 
 constexpr const char* trace_title = "node\ttick\tto_state_frame\twhole_tick\n";
 
-/// The image that the preset stm32f405 builds, found from the path of this program.
-fs::path default_image() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path().parent_path() / "stm32f405" / "bin" / "proleg_stm32f405.elf";
-}
+fs::path default_image() { return image_folder() / "proleg_stm32f405.elf"; }
 
 fs::path bootloader_beside(const fs::path& image) {
   fs::path file = image.parent_path() / "proleg_boot_stm32f405.elf";

@@ -382,7 +382,7 @@ int main(int argc, char** argv) {
       "Then one joint after the other moves by a few degrees, and you answer which one it is. At the end the modules "
       "store their new node ids. It resets all modules first.");
   AssignOptions options;
-  command_line.add_option("FILE", options.file, "a scenario (*.simulation.xml) with the robot").required();
+  command_line.add_scenario(options.file, "a scenario with the robot").required();
   add_bus_option(command_line, options.bus);
   command_line
       .add_option(

@@ -25,6 +25,7 @@
 #include "sim/record/tsv.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/result_folder.hpp"
@@ -214,7 +215,7 @@ Export data_file_of(const sim::Recording& recording, const std::filesystem::path
 
 /// Reads and checks all inputs of the page before a file is written.
 Export page_of(const sim::Recording& recording, const std::filesystem::path& file) {
-  const auto player = std::make_shared<const PlayerPage>(built_page("player", "player.html") / "player.html");
+  const auto player = std::make_shared<const PlayerPage>(folder_of_page("player", "player.html") / "player.html");
   const auto scenario = std::make_shared<const sim::Scenario>(scenario_of(recording));
   return {file,
           {"--out", file, "page of a recording", starts_with(PlayerPage::first_text)},

@@ -277,7 +277,7 @@ int main(int argc, char** argv) {
     CommandLine command_line("proleg receipt check",
                              "Repeats the run of a receipt and compares it, bit for bit.\n"
                              "Without RECEIPT, the receipt is read from standard input.");
-    command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
+    command_line.add_scenario(options.file, "scenario").required();
     command_line.add_option("RECEIPT", options.receipt, "the line that 'proleg receipt FILE' printed").takes_several();
     command_line.add_flag("--json", options.json, "print one JSON object");
     command_line.add_algorithms_option();

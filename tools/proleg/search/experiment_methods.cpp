@@ -16,6 +16,7 @@
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/search/optimisation.hpp"
 #include "tools/proleg/search/search_result.hpp"
@@ -234,10 +235,8 @@ fs::path find_experiment_files(const optimize::ThesisExperiment& thesis, const s
     candidates.emplace_back(*given);
   } else {
     candidates.push_back(inside);
-    std::error_code error;
-    for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); folder.has_relative_path();
-         folder = folder.parent_path()) {
-      candidates.push_back(folder / inside);
+    if (const std::optional<fs::path> shipped = shipped_folder()) {
+      candidates.push_back(*shipped / name);
     }
   }
   for (const fs::path& folder : candidates) {

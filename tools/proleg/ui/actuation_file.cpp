@@ -9,6 +9,7 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 #include "tools/proleg/ui/session_base.hpp"

@@ -11,6 +11,7 @@
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/algorithm_document.hpp"
 #include "tools/proleg/ui/compiler_messages.hpp"
@@ -22,10 +23,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::chrono::milliseconds look_period{50};
-std::filesystem::path program_beside_this(const std::string& name) {
-  std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
-}
 
 }  // namespace
 
@@ -145,7 +142,7 @@ json AlgorithmSession::build(const host::OperationRequest& request) {
 json AlgorithmSession::check(const host::OperationRequest& request) {
   const AlgorithmFolder algorithm = folder_of(request.arguments);
   const std::filesystem::path verifier =
-      options_.verifier.empty() ? program_beside_this("proleg-verify") : options_.verifier;
+      options_.verifier.empty() ? program_folder() / "proleg-verify" : options_.verifier;
   begin(Work::proof, {algorithm}, {{verifier.string(), "--json", algorithm.path.string()}});
   return json::object();
 }

@@ -15,11 +15,12 @@
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/ui/class_files.hpp"
 #include "tools/proleg/ui/class_room.hpp"
 #include "tools/proleg/ui/class_session.hpp"
 #include "tools/proleg/ui/project_files.hpp"
-#include "tools/proleg/ui/shipped_scenarios.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -38,7 +39,7 @@ ClassRoomOptions room_options(const ClassOptions& options) {
   ClassRoomOptions room;
   room.most_robots = robots_in(options.learners);
   room.folder = options.folder;
-  room.command = {host::program_folder() + "proleg-ui", "--seat", "--no-browser", "--recordings", "."};
+  room.command = {(program_folder() / "proleg-ui").string(), "--seat", "--no-browser", "--recordings", "."};
   for (const std::string& library : loaded_libraries()) {
     room.command.insert(room.command.end(), {"--algorithms", std::filesystem::absolute(library).string()});
   }

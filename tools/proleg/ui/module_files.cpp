@@ -10,6 +10,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/ui/folder_walk.hpp"
 
 namespace proleg::tools {
@@ -20,11 +21,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_files = 200;
 
-/// The image that the preset stm32f405 has built beside this program.
-fs::path built_image() {
-  return fs::path(host::program_folder()).parent_path().parent_path().parent_path() / "stm32f405" / "bin" /
-         "proleg_stm32f405.pimg";
-}
+fs::path built_image() { return image_folder() / "proleg_stm32f405.pimg"; }
 
 json image_json(const std::string& name, const fs::path& path) {
   json object{{"file", name},     {"version", nullptr}, {"commit", nullptr},

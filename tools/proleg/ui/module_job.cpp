@@ -11,6 +11,7 @@
 
 #include "host/transport/open_transport.hpp"
 #include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_start.hpp"
 #include "tools/proleg/ui/command_sequence.hpp"
 #include "tools/proleg/ui/session_base.hpp"
@@ -69,7 +70,7 @@ ModuleJob::~ModuleJob() {
 }
 
 void ModuleJob::start() {
-  std::vector<std::string> command{host::program_folder() + "proleg-" + plan_.words.front(), "--bus",
+  std::vector<std::string> command{(program_folder() / ("proleg-" + plan_.words.front())).string(), "--bus",
                                    plan_.opens_bus ? address_ : inherited_bus()};
   command.insert(command.end(), plan_.words.begin() + 1, plan_.words.end());
   std::array<host::Descriptor, 2> ends;

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/ui/folder_walk.hpp"
-#include "tools/proleg/ui/shipped_scenarios.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -17,6 +17,7 @@
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/experiment_json.hpp"
 #include "tools/proleg/ui/fast_simulation.hpp"
@@ -124,8 +125,7 @@ SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& f
               SearchFolder::failure_of, has_evaluations, options_.longest_start},
              output) {
   if (options_.programs.empty()) {
-    std::error_code error;
-    options_.programs = fs::read_symlink("/proc/self/exe", error).parent_path();
+    options_.programs = program_folder();
   }
   publish("search_methods", search_methods_json());
   begin_thread();

@@ -13,6 +13,7 @@
 #include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/optimize/experiment/trials.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gait_motion.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
@@ -143,8 +144,7 @@ SweepSession::SweepSession(SweepSessionOptions options, const PresentDraft& draf
               options_.longest_start},
              output) {
   if (options_.programs.empty()) {
-    std::error_code error;
-    options_.programs = fs::read_symlink("/proc/self/exe", error).parent_path();
+    options_.programs = program_folder();
   }
   begin_thread();
 }

@@ -27,8 +27,10 @@
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
@@ -48,7 +50,6 @@
 #include "tools/proleg/ui/remote_session.hpp"
 #include "tools/proleg/ui/search_session.hpp"
 #include "tools/proleg/ui/seat_input.hpp"
-#include "tools/proleg/ui/shipped_scenarios.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 #include "tools/proleg/ui/sweep_session.hpp"
 
@@ -274,7 +275,7 @@ AlgorithmSessionOptions code_options(const UiOptions& options, const std::filesy
 
 /// The folder of the page: the one that was built, or another one.
 std::filesystem::path page_folder(const UiOptions& options) {
-  return options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
+  return options.page ? std::filesystem::path(*options.page) : folder_of_page("page", "index.html");
 }
 
 /// Options that belong to one robot have no meaning for a class.
@@ -491,8 +492,7 @@ int main(int argc, char** argv) {
       "grow; the page Make opens the scenarios of the folder. "
       "Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
   UiOptions options;
-  command_line.add_option("FILE", options.scenario.file,
-                          "scenario, a *.simulation.xml file; or a recording, or the folder of a project");
+  command_line.add_scenario(options.scenario.file, "a recording, the folder of a project, or a scenario");
   add_override_options(command_line, options.scenario);
   add_move_option(command_line, options.scenario);
   command_line

@@ -12,7 +12,8 @@
 
 #include "tests/support/files.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tools/proleg/ui/shipped_scenarios.hpp"
+#include "tools/proleg/common/installation.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 
 namespace proleg::tools {
 namespace {

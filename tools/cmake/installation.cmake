@@ -1,0 +1,35 @@
+# What `cmake --install build/host --prefix P` makes below P. Programs find their data from their own place
+# (tools/proleg/common/installation.hpp), so that the prefix may be moved.
+#   bin/proleg            the one program that users start, a link
+#   lib/proleg/bin        all programs
+#   lib/proleg/lib        plug-ins
+#   share/proleg          scenarios, page, player, images
+#   share/doc/proleg      documents
+
+set(PROLEG_INSTALLED_PROGRAMS lib/proleg/bin)
+
+if(CMAKE_CROSSCOMPILING)
+  return()
+endif()
+
+# The page and the images are built by other commands.
+install(CODE "
+  foreach(needed \"build/page/index.html;tools/page\" \"build/player/player.html;tools/page\"
+                 \"build/stm32f405/bin/proleg_stm32f405.pimg;cmake --preset stm32f405 && cmake --build --preset stm32f405\")
+    list(GET needed 0 file)
+    list(GET needed 1 command)
+    if(NOT EXISTS \"${CMAKE_SOURCE_DIR}/\${file}\")
+      message(FATAL_ERROR \"found no \${file}, expected it before an installation; this makes it: \${command}\")
+    endif()
+  endforeach()
+  file(MAKE_DIRECTORY \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin\")
+  file(CREATE_LINK ../lib/proleg/bin/proleg \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin/proleg\" SYMBOLIC)
+")
+
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/sim/scenarios DESTINATION share/proleg)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/page ${CMAKE_SOURCE_DIR}/build/player DESTINATION share/proleg)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/stm32f405/bin/ DESTINATION share/proleg/images
+  FILES_MATCHING PATTERN "proleg_*.pimg" PATTERN "proleg_*.elf" PATTERN "proleg_boot_*.bin")
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION share/doc/proleg)
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE
+  DESTINATION share/doc/proleg)

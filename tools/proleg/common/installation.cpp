@@ -1,0 +1,78 @@
+#include "tools/proleg/common/installation.hpp"
+
+#include <system_error>
+
+#include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/program_run.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The checkout or the prefix.
+fs::path top() { return program_folder().parent_path().parent_path().parent_path(); }
+
+/// share/proleg of an installation; nothing in a checkout.
+std::optional<fs::path> installed_data() {
+  std::error_code error;
+  fs::path data = top() / "share/proleg";
+  return !is_source_tree(top()) && fs::is_directory(data, error) ? std::optional(std::move(data)) : std::nullopt;
+}
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  const fs::path way = file.lexically_relative(folder);
+  return !way.empty() && *way.begin() != "..";
+}
+
+}  // namespace
+
+fs::path program_folder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+std::optional<fs::path> shipped_folder() {
+  if (const auto data = installed_data()) {
+    return *data / "scenarios";
+  }
+  try {
+    return source_tree("") / "sim/scenarios";
+  } catch (const BadInput&) {
+    return std::nullopt;
+  }
+}
+
+bool is_shipped(const fs::path& file) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(file, error);
+  if (const auto data = installed_data(); data && is_below(real, fs::weakly_canonical(*data, error))) {
+    return true;
+  }
+  for (fs::path folder = real.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+    if (folder.filename() == "scenarios" && folder.parent_path().filename() == "sim" &&
+        is_source_tree(folder.parent_path().parent_path())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+fs::path folder_of_page(const std::string& folder, const std::string& file) {
+  std::error_code error;
+  const std::optional<fs::path> data = installed_data();
+  const fs::path path = data ? *data / folder : (program_folder() / "../.." / folder).lexically_normal();
+  if (!fs::exists(path / file, error)) {
+    throw BadInput("found no " + folder + " in " + path.string() +
+                   (data ? ", expected the one that is installed with this program; install Proleg again"
+                         : ", expected one that tools/page has built"));
+  }
+  return path;
+}
+
+fs::path image_folder() {
+  const std::optional<fs::path> data = installed_data();
+  return data ? *data / "images" : program_folder().parent_path().parent_path() / "stm32f405/bin";
+}
+
+}  // namespace proleg::tools

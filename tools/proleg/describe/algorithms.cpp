@@ -90,8 +90,9 @@ void print_text(std::ostream& out, const Declaration& declaration) {
 }
 
 int print_all_markdown(std::ostream& out) {
-  out << "# Algorithms\n\nWritten by `proleg algorithms --markdown` from the declarations in `shared/gait`; a test "
-         "keeps "
+  out << "# Algorithms\n\n"
+         "After this page you can choose an algorithm, and set its parameters within their ranges.\n\n"
+         "Written by `proleg algorithms --markdown` from the declarations in `shared/gait`; a test keeps "
          "the two the same.\n\"Object\" is the index in the object dictionary; the sub-index is the slot, 1 to 4.\n";
   for (std::size_t i = 0; i < algorithm_count(); ++i) {
     out << '\n';

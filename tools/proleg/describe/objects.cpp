@@ -139,8 +139,9 @@ void print_markdown(std::ostream& out) {
     }
     out << "|\n";
   };
-  out << "# Object dictionary\n\nWritten by `proleg objects --markdown` from the declarations in `shared/canopen`; a "
-         "test "
+  out << "# Object dictionary\n\n"
+         "After this page you can find every object of a module that can be read and set over the bus.\n\n"
+         "Written by `proleg objects --markdown` from the declarations in `shared/canopen`; a test "
          "keeps the two the same. For\nCANopen tools there is `proleg.eds` (`proleg objects --eds`). j is a joint, 0 "
          "to "
          "63. Sub-index 0 of an object with sub-indices is\nthe highest of them. \"ro, PDO\": SDO reads, a PDO "

@@ -1,5 +1,5 @@
-# Names of the Debian packages, and functions that install the missing ones. tools/demo, tools/check, tools/page and
-# CMake (tools/cmake/configuration.cmake) read it.
+# Names of the Debian packages, and functions that install the missing ones. tools/demo, tools/check, tools/page,
+# tools/docs and CMake (tools/cmake/configuration.cmake) read it.
 
 # What CMake needs for the programs for this computer.
 build_packages=(
@@ -52,6 +52,9 @@ kicad_packages=(kicad kicad-symbols kicad-footprints xvfb xdotool)
 # The web page: tools/page. Only where there is no other node and npm.
 page_packages=(nodejs npm)
 browser_packages=(chromium)  # its tests
+
+# The documentation as a site: tools/docs.
+docs_packages=(mkdocs mkdocs-material doxygen python3)
 
 # missing_packages NAME...: prints those that are not installed, each on a line.
 missing_packages() {

@@ -60,6 +60,7 @@ def main():
     source, programs, output = map(Path, sys.argv[1:4])
     pages = output / "pages"
     shutil.copytree(source / "docs", pages, ignore=shutil.ignore_patterns("*.md", "mkdocs.yml"))
+    shutil.copy(source / "LICENSE", pages)
     shutil.copytree(source / "tools/docs.d/theme", output / "theme")
     names = [*RENAMED, *(f"docs/{path.name}" for path in sorted(source.glob("docs/*.md")))]
     texts = {}

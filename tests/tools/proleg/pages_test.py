@@ -1,4 +1,4 @@
-"""Runs the commands of the README and of the tutorial in their order, each page in a new folder.
+"""Runs the commands of the README and the first steps, and of the tutorial, in their order, each in a new folder.
 
 They find the programs that the target 'programs' builds and no others, as after tools/demo. Every command must succeed. Lines that the
 tutorial says a command prints must occur in the output of the commands above it. Numbers may differ by 30 %: the physics gives other digits
@@ -46,7 +46,7 @@ def occurs(line, output):
     return False
 
 
-# What is other in a test than for a reader: a pattern in a command of the README, and its replacement.
+# What is other in a test than for a reader: a pattern in a command, and its replacement.
 IN_THE_TEST = (
     # The page stays open until it is closed. Its own tests are in tests/host/page.
     (r"^(?:build/host/bin/)?proleg ui\b.*", "proleg ui --help >/dev/null"),
@@ -60,7 +60,7 @@ IN_THE_TEST = (
 )
 
 
-def readme_commands(page):
+def commands_of(page):
     """The commands of the page's indented blocks, without the two that build and check, and without files that it shows."""
     blocks = re.findall(r"(?:^    .*\n)+", page, flags=re.MULTILINE)
     commands = []
@@ -112,8 +112,8 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(sorted({"proleg"} | {f"proleg-{name}" for name in subcommands}),
                          sorted(name for name in self.names if not name.endswith("-mpi")))
 
-    def test_the_commands_of_the_readme(self):
-        commands = readme_commands((self.source / "README.md").read_text())
+    def test_the_commands_of_the_readme_and_the_first_steps(self):
+        commands = [command for page in ("README.md", "docs/first-steps.md") for command in commands_of((self.source / page).read_text())]
         self.assertGreater(len(commands), 30)
         changed = []
         for pattern, replacement in IN_THE_TEST:

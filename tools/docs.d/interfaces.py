@@ -131,7 +131,7 @@ def class_text(compound):
 def head_comment(text):
     """The comment above the first include of a header: what the file is."""
     match = re.search(r"#pragma once\n+((?://(?!/).*\n)+)", text)
-    return re.sub(r"([<>*_])", r"\\\1", " ".join(line.lstrip("/ ") for line in match.group(1).splitlines())) if match else ""
+    return re.sub(r"([<>*_])", r"\\\1", re.sub(r"^// ?", "", match.group(1), flags=re.MULTILINE)).strip() if match else ""
 
 
 def read_compounds(xml):
@@ -169,7 +169,8 @@ def write_pages(source, xml, folder):
     for room, headers in rooms.items():
         texts = [header_text(source, path, sorted(classes.get(str(path), []), key=line_of), members.get(str(path), [])) for path in headers]
         file = f"{str(room).replace('/', '_')}.md"
-        (folder / file).write_text(f"# {room}\n\nYou can use what the headers of `{room}` declare.\n\n" + "\n\n".join(texts) + "\n")
+        (folder / file).write_text(f"# {room}\n\nWhat the headers of `{room}` declare. [How Proleg is built](../architecture.md) "
+                                   "says what the room is for, and which other rooms may use it.\n\n" + "\n\n".join(texts) + "\n")
         rows += f"| [`{room}`]({file}) | {', '.join(f'`{path.name}`' for path in headers)} |\n"
         files.append(file)
     (folder / "plugin.md").write_text(

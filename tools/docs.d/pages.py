@@ -4,6 +4,7 @@ command and the interfaces of the core.
 usage: pages.py SOURCE_FOLDER PROGRAM_FOLDER OUTPUT_FOLDER: writes pages/, theme/ and mkdocs.yml into the last one
 """
 
+import html
 import re
 import shutil
 import sys
@@ -16,7 +17,9 @@ from navigation import RENAMED
 CODE = re.compile(r"^```.*?^```$|^    .*?$", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
 LINK = re.compile(r"(\]\()([^)\s#:]+)((?:#[^)\s]*)?\))")
-NAMED = re.compile(r"(?<!\[)`((?:docs/)?[A-Za-z][\w-]*\.(?:md|eds|dbc))`")
+# The name of a page: all of a piece of code, or a word of the text. Other code is taken as a whole, so that no name in it is a word.
+NAMED = re.compile(r"(?<!\[)`((?:docs/)?[A-Za-z][\w-]*\.(?:md|eds|dbc))`|`[^`\n]+`|(?<![\w/(\[])\(?(docs/[\w-]+\.md)\b")
+CODE_WITH_BAR = re.compile(r"`([^`\n]*\\\|[^`\n]*)`")
 
 
 def title_of(text):
@@ -41,12 +44,13 @@ def for_site(source, page, text):
     """A page of the tree with the addresses of the site. Pictures open by a click, names of pages are links."""
 
     def named(match):
-        path = match.group(1)
-        if not (source / path).is_file():
+        path = match.group(1) or match.group(2)
+        if not path or not (source / path).is_file():
             return match.group()
         target = RENAMED.get(path, path.removeprefix("docs/"))
         words = title_of((source / path).read_text()) if path.endswith(".md") else f"`{Path(path).name}`"
-        return f"[{words}]({target})"
+        start = "(" if match.group().startswith("(") else ""
+        return f"{start}[{words}]({target})"
 
     def change(part):
         part = LINK.sub(lambda match: match.group(1) + in_site(source, page, match.group(2)) + match.group(3), part)
@@ -54,6 +58,15 @@ def for_site(source, page, text):
         return "\n".join(line if line.startswith("#") else NAMED.sub(named, line) for line in part.split("\n"))
 
     return changed_outside_of_code(text, change)
+
+
+def bars_in_tables(text):
+    """Code with a bar in a table: mkdocs shows the stroke before the bar, code hosts do not."""
+
+    def as_html(match):
+        return f"<code>{html.escape(match.group(1).replace(chr(92) + '|', '|'), quote=False).replace('|', '&#124;')}</code>"
+
+    return "\n".join(CODE_WITH_BAR.sub(as_html, line) if line.startswith("|") else line for line in text.split("\n"))
 
 
 def main():
@@ -71,6 +84,8 @@ def main():
 
     generated = {"commands": commands.write_manuals(programs, texts, pages / "commands"),
                  "interfaces": interfaces.write_pages(source, output / "xml", pages / "interfaces")}
+    for page in pages.rglob("*.md"):
+        page.write_text(bars_in_tables(page.read_text()))
     config = (source / "docs/mkdocs.yml").read_text()
     for folder, files in generated.items():
         config = config.replace(f"{folder}/*", ", ".join(f"{folder}/{file}" for file in files))

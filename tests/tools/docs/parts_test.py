@@ -57,8 +57,14 @@ class Pages(unittest.TestCase):
 
     def test_pictures_open_and_names_of_pages_are_links_but_not_in_code(self):
         self.assertEqual(pages.for_site(SOURCE, "docs/page.md", "![two\nwords](page.png)"), "[![two\nwords](page.png)](page.png)")
+        self.assertEqual(pages.for_site(SOURCE, "docs/page.md", "a (docs/sweep.md, b), `c docs/sweep.md`, docs/none.md"),
+                         "a ([Sweeps](sweep.md), b), `c docs/sweep.md`, docs/none.md")
         self.assertEqual(pages.for_site(SOURCE, "docs/page.md", "See `docs/sweep.md`.\n\n    `docs/sweep.md`\n\n# `docs/sweep.md`\n"),
                          "See [Sweeps](sweep.md).\n\n    `docs/sweep.md`\n\n# `docs/sweep.md`\n")
+
+
+    def test_code_in_a_table_keeps_its_bars_without_strokes(self):
+        self.assertEqual(pages.bars_in_tables("| `a\\|<b>` | `c` |\n`d\\|e`"), "| <code>a&#124;&lt;b&gt;</code> | `c` |\n`d\\|e`")
 
 
 class Manuals(unittest.TestCase):

@@ -57,7 +57,7 @@ def code(element):
     text = re.sub(r"< | >", lambda match: match.group().strip(), text)
     text = re.sub(r" ([&*]+)(?=[\w.])", r"\1 ", text)
     text = re.sub(r" (?=[&*]+(?:$|[,)>]))", "", text)
-    return re.sub(r"(?<=[\w)])=(?=[\w{])", " = ", text).strip()
+    return re.sub(r" ?(?<![=!<>])=(?=[\w{])", " = ", text).strip()
 
 
 def template_of(member):

@@ -1,4 +1,4 @@
-"""The parts of tools/docs: links of the site, addresses of pages, manuals.
+"""The parts of tools/docs: links of the site, addresses of pages, manuals, interfaces.
 
 usage: parts_test.py SOURCE_FOLDER
 """
@@ -7,6 +7,7 @@ import os
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 SOURCE = Path(sys.argv.pop(1)).resolve() if __name__ == "__main__" else Path()
@@ -14,6 +15,7 @@ sys.path.insert(0, str(SOURCE / "tools/docs.d"))
 sys.dont_write_bytecode = True
 import commands  # noqa: E402
 import finish  # noqa: E402
+import interfaces  # noqa: E402
 import pages  # noqa: E402
 
 HELP = """Counts.
@@ -87,6 +89,32 @@ class Manuals(unittest.TestCase):
             program.write_text("#!/bin/sh\nif [ \"$2\" = up ]; then echo 'Usage: up'; else cat <<'END'\n" + HELP + "END\nfi\n")
             os.chmod(program, 0o755)
             self.assertEqual(commands.actions_with_help(Path(folder), "count", HELP.rstrip()), {"up": "Usage: up"})
+
+
+def function(name, line, about="", arguments="()"):
+    """A function, as doxygen describes it."""
+    return ElementTree.fromstring(
+        f'<memberdef kind="function" prot="public" static="no"><type>const <ref>Frame</ref> &amp;</type><name>{name}</name>'
+        f"<argsstring>{arguments}</argsstring><briefdescription><para>{about}</para></briefdescription>"
+        f'<location file="a.hpp" line="{line}"/></memberdef>')
+
+
+class Interfaces(unittest.TestCase):
+    def test_a_declaration_has_the_spaces_of_the_project(self):
+        self.assertEqual(interfaces.declaration(function("f", 1, arguments="(std::span&lt; const int &gt; a, char *b, int c=2) const =0")),
+                         "const Frame& f(std::span<const int> a, char* b, int c = 2) const = 0;")
+
+    def test_words_stand_below_the_declarations_to_which_they_belong(self):
+        text = interfaces.members_text([function("second", 3), function("first", 2, "Words &lt;here&gt;."), function("other", 6)])
+        self.assertEqual(text, "```cpp\nconst Frame& first();\nconst Frame& second();\n```\n\nWords \\<here\\>.\n\n"
+                               "```cpp\nconst Frame& other();\n```")
+
+    def test_what_a_class_deletes_is_not_part_of_its_interface(self):
+        self.assertEqual(interfaces.members_text([function("f", 1, arguments="(int)=delete")]), "")
+
+    def test_a_header_begins_with_its_comment(self):
+        self.assertEqual(interfaces.head_comment("#pragma once\n\n// One.\n//\n// a_b.\n\n#include <c>\n"), "One.\n\na\\_b.")
+        self.assertEqual(interfaces.head_comment("#pragma once\n\n/// Of a class.\n"), "")
 
 
 if __name__ == "__main__":

@@ -2,35 +2,8 @@
 
 import html
 import re
-import subprocess
 
-ENTRY = re.compile(r"^  (\S(?:.*?\S)??)(?:\s{2,}(\S.*))?$")
-# Commands whose first argument is a word that has its own help.
-ACTIONS = ("ACTION", "WHAT")
-
-
-def help_of(programs, *words):
-    result = subprocess.run([programs / "proleg", *words, "--help"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
-    if result.returncode != 0:
-        raise SystemExit(f"tools/docs: 'proleg {' '.join(words)} --help' failed: {result.stderr.strip()}")
-    return result.stdout.rstrip()
-
-
-def sections(text):
-    """The text above 'Usage:', the usage, and the entries of each section: (name, [(argument, meaning)])."""
-    about, _, rest = text.partition("Usage: ")
-    usage, *blocks = re.split(r"\n+(?=\S.*:$)", rest, flags=re.MULTILINE)
-    found = []
-    for block in blocks:
-        name, *lines = block.splitlines()
-        entries = []
-        for line in lines:
-            if re.match(r" {12}", line):  # the meaning of a long argument is on the next line
-                entries[-1][1] = f"{entries[-1][1]} {line.strip()}".strip()
-            elif line.strip():
-                entries.append([part or "" for part in ENTRY.match(line).groups()])
-        found.append((name.rstrip(":"), entries))
-    return about.strip(), usage.strip(), found
+from help_texts import actions_with_help, help_of, listed_commands, sections
 
 
 def as_markdown(text, pages):
@@ -51,22 +24,6 @@ def manual(text, pages, level):
     return "\n\n".join(parts)
 
 
-def actions_with_help(programs, command, text):
-    """The words for which `proleg COMMAND WORD --help` prints other text than `proleg COMMAND --help`."""
-    about, _, found = sections(text)
-    places = [about, *(meaning for name, entries in found if name == "Positionals" for argument, meaning in entries
-                       if argument.startswith(ACTIONS))]
-    if len(places) == 1:
-        return {}
-    actions = {}
-    for word in dict.fromkeys(re.findall(r"\b[a-z][a-z-]+\b", " ".join(places))):
-        result = subprocess.run([programs / "proleg", command, word, "--help"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                text=True, timeout=60)
-        if result.returncode == 0 and result.stdout.rstrip() != text:
-            actions[word] = result.stdout.rstrip()
-    return actions
-
-
 def pages_about(command, pages):
     """The pages that use a command, those first that use it most."""
     uses = {name: len(re.findall(rf"\bproleg {command}\b", text)) for name, text in pages.items() if name != "changelog.md"}
@@ -76,8 +33,7 @@ def pages_about(command, pages):
 def write_manuals(programs, pages, folder):
     """Writes a page for each command and returns the names of the files. pages: the texts of the site's other pages."""
     folder.mkdir()
-    overview = help_of(programs)
-    listed = re.findall(r"^  ([a-z]+) +(\S.*)", overview, flags=re.MULTILINE)
+    listed = listed_commands(help_of(programs))
     files = ["index.md"]
     rows = "".join(f"| [`proleg {command}`]({command}.md) | {as_markdown(summary, pages)} |\n" for command, summary in listed)
     (folder / "index.md").write_text(

@@ -55,6 +55,8 @@ browser_packages=(chromium)  # its tests
 
 # The documentation as a site: tools/docs.
 docs_packages=(mkdocs mkdocs-material doxygen python3)
+# What reads the manual pages and completions of tools/docs --shell, in its slow test.
+shell_packages=(zsh fish man-db mandoc)
 
 # missing_packages NAME...: prints those that are not installed, each on a line.
 missing_packages() {

@@ -12,13 +12,15 @@ namespace proleg::bootloader {
 
 enum class HandoverAction : std::uint32_t {
   none = 0,
-  stay = 0xB007'0001,      ///< the bootloader stays on the bus, though there is a program that may run
-  start = 0xB007'0002,     ///< the bootloader starts the program in slot A; a start on trial has been counted
-  pin_seen = 0xB007'0003,  ///< the reset pin was used a moment ago
-  started = 0xB007'0004,   ///< the program was started several times in a row (the argument), and has not reported a
-                           ///< good start
-  runs = 0xB007'0005,      ///< the program has started well
-  install = 0xB007'0006,   ///< an image waits in RAM; the argument is ImageInRam
+  stay = 0xB007'0001,         ///< the bootloader stays on the bus, though there is a program that may run
+  start = 0xB007'0002,        ///< the bootloader starts the program in slot A; a start on trial has been counted
+  pin_seen = 0xB007'0003,     ///< the reset pin was used a moment ago
+  started = 0xB007'0004,      ///< the program was started several times in a row (the argument), and has not reported a
+                              ///< good start
+  runs = 0xB007'0005,         ///< the program has started well
+  install = 0xB007'0006,      ///< an image waits in RAM; the argument is ImageInRam
+  window_over = 0xB007'0007,  ///< nobody has asked for the bootloader in the window after power on; the argument is
+                              ///< WindowEnd
 };
 
 struct Handover {
@@ -52,6 +54,23 @@ struct ImageInRam {
   static constexpr std::uint32_t key_bit = 1U << 22U;
 };
 
+/// The argument of HandoverAction::window_over. After the window the chip is reset, so that the program starts with the
+/// chip as it is after a reset.
+struct WindowEnd {
+  /// Starts of the program in a row without a good one, before power on: RAM keeps its contents when the supply is low
+  /// for a short time.
+  std::uint32_t bad_starts = 0;
+  bool starts_program = false;  ///< next_step() was NextStep::start_program: the checksum is right
+
+  [[nodiscard]] constexpr std::uint32_t argument() const { return bad_starts | (starts_program ? starts_bit : 0); }
+  [[nodiscard]] static constexpr WindowEnd of(std::uint32_t argument) {
+    return {argument & ~starts_bit, (argument & starts_bit) != 0};
+  }
+
+ private:
+  static constexpr std::uint32_t starts_bit = 1U << 31U;
+};
+
 /// Number of starts without the report of a good start after which the program is not started any more: the bootloader
 /// stays.
 inline constexpr std::uint32_t max_bad_starts = 5;
@@ -63,6 +82,18 @@ enum class NextStep : std::uint8_t {
                   ///< the program starts after a reset, with Handover `start`
   serve_bus,
 };
+
+/// What is left for the start after the window. left: by the start before power on.
+[[nodiscard]] constexpr Handover left_by_window(const Handover& left, bool starts_program) {
+  const std::uint32_t bad_starts = left.action == HandoverAction::started ? left.argument : 0;
+  return {HandoverAction::window_over, WindowEnd{bad_starts, starts_program}.argument()};
+}
+
+/// What counts after the window: what was left before power on.
+[[nodiscard]] constexpr Handover left_before_window(const Handover& left) {
+  const std::uint32_t bad_starts = WindowEnd::of(left.argument).bad_starts;
+  return bad_starts != 0 ? Handover{HandoverAction::started, bad_starts} : Handover{};
+}
 
 /// What must be left for the next start when the program is started.
 [[nodiscard]] constexpr Handover started_after(const Handover& left) {

@@ -21,6 +21,14 @@ namespace proleg::stm32f405 {
   return (csr & rcc::csr_sftrstf) != 0 ? ResetCause::software : ResetCause::pin;
 }
 
+/// Whether the supply has just come, or come back. Power on clears all flags but its own; they stay until the program
+/// clears them (RM0090, section 7.3.21). So the flag of another cause shows a later reset. A reset by the pin adds no
+/// flag: before the program has cleared them it counts as power on. The manual does not say whether a brown-out clears
+/// the others: if it does not, one before the program has cleared them does not count.
+[[nodiscard]] constexpr bool has_just_got_power(std::uint32_t csr) {
+  return (csr & (rcc::csr_porrstf | rcc::csr_borrstf)) != 0 && (csr & (rcc::csr_sftrstf | rcc::csr_iwdgrstf)) == 0;
+}
+
 /// Resets the chip as its reset pin does, except that RCC_CSR names software as the cause. RAM keeps its contents.
 [[noreturn]] void reset_chip();
 

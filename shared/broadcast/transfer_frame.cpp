@@ -78,6 +78,10 @@ CanFrame header_frame(std::uint32_t serial, std::uint8_t word) { return request_
 
 CanFrame enter_frame(std::uint32_t serial) { return request_to(serial, Code::enter); }
 
+bool is_enter_request(const CanFrame& frame, std::uint32_t serial) {
+  return frame == enter_frame(serial) || frame == enter_frame(every_serial);
+}
+
 CanFrame answer_frame(Code code, std::uint32_t serial, const StatusAnswer& status) {
   CanFrame frame = answer(code, serial);
   frame.data[detail_at] = static_cast<std::uint8_t>(status.state);

@@ -14,6 +14,7 @@
 //   leave     2 bytes   7, u8 session: start the program
 //   header    6 bytes   8, u8 word, u32 serial number                                              answer: header
 //   enter     5 bytes   9, u32 serial number: restart, and stay in the bootloader                  answer: status
+//                       (0: all modules whose bootloader listens after power on)                   no answer
 //   check     7 bytes   10, u8 session, u8 block, u32 CRC-32 of the block's bytes, after `block`
 //
 // Answers have 8 bytes and begin with the code of the request and the low 16 bits of the serial number:
@@ -30,6 +31,7 @@
 
 #include "shared/broadcast/block_decoder.hpp"
 #include "shared/can/can_frame.hpp"
+#include "shared/can/can_port.hpp"
 #include "shared/fixed/little_endian.hpp"
 
 namespace proleg::broadcast {
@@ -43,6 +45,16 @@ inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in 
 inline constexpr std::uint8_t no_block = 0xFF;
 /// Bit of the number of a block in a report: repair symbols cannot complete the block.
 inline constexpr std::uint8_t needs_symbols = 0x80;
+
+/// Serial number in `enter` that names every module whose bootloader listens after power on. Modules whose program runs
+/// ignore it.
+inline constexpr std::uint32_t every_serial = 0;
+/// Time after power on in which the bootloader listens for `enter` before it starts the program: eight requests of a
+/// host that repeats them, so that some may be lost. The checksum of the program is computed meanwhile, with the full
+/// clock. With the clock after a reset it takes as long as the window, so a start is no later than one without.
+inline constexpr Microseconds start_window_us = 87'000;
+/// Period of the requests of a host that holds modules in their bootloaders: 1 % of the bus.
+inline constexpr Microseconds hold_period_us = 10'000;
 
 enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave, header, enter, check };
 
@@ -168,6 +180,9 @@ template <typename Byte>
 [[nodiscard]] CanFrame leave_frame(std::uint8_t session);
 [[nodiscard]] CanFrame header_frame(std::uint32_t serial, std::uint8_t word);
 [[nodiscard]] CanFrame enter_frame(std::uint32_t serial);
+
+/// Whether a frame is an `enter` for every module, or for the one with this serial number.
+[[nodiscard]] bool is_enter_request(const CanFrame& frame, std::uint32_t serial);
 
 [[nodiscard]] CanFrame answer_frame(Code code, std::uint32_t serial, const StatusAnswer& status);
 [[nodiscard]] CanFrame answer_frame(std::uint32_t serial, const ReportAnswer& report);

@@ -2,8 +2,8 @@
 // bus to receive another one (docs/flashing.md).
 //
 // A confirmed image is started at once: after its checksum, with the chip as it is after a reset but for the servo's
-// pin. Everything else, a start on trial or the return to the backup, needs clocks and flash operations. It ends with a
-// reset of the chip, after which the program is started in the same way.
+// pin. Everything else needs clocks: the window after power on, a start on trial, the return to the backup. It ends
+// with a reset of the chip, after which the program is started in the same way.
 
 #include <algorithm>
 #include <optional>
@@ -39,11 +39,13 @@ namespace {
 /// its own time.
 constexpr std::uint32_t watchdog_ms = 1'000;
 
+using bootloader::FlashSlot;
 using bootloader::Handover;
 using bootloader::HandoverAction;
 using bootloader::NextStep;
 using bootloader::Slots;
 using bootloader::StartResult;
+using bootloader::WindowEnd;
 
 /// Waits in a loop, so that no peripheral is changed before the program starts.
 void wait(std::uint32_t milliseconds) {
@@ -162,25 +164,53 @@ void sleep_until(Microseconds deadline) {
   asm volatile("cpsie i" : : : "memory");
 }
 
-/// Serves the bus until the chip must be reset. The clocks and TIM5 run. left: by the start before.
-[[noreturn]] void serve_bus(const Handover& left) {
-  the_can.emplace();
-  if (!is_pll_locked() || !the_can->start()) {
-    reset_chip();
-  }
+/// The serial number of this module.
+std::uint32_t own_serial() {
   firmware::ModuleIdentity identity;
   identity.unique_id = factory::unique_id();
-  the_bootloader.emplace(
-      image_place(), serial_number(identity),
-      bootloader::Ports{*the_can, the_slot_memory, the_settings, {image_buffer_start, image_buffer_end}});
-  constexpr std::array broadcast{broadcast::host_identifier};
-  the_can->listen(broadcast);
-  the_bootloader->power_on(the_clock.now(), the_settings.node(), left);
+  return serial_number(identity);
+}
+
+/// Takes part in the bus. The clocks and TIM5 run. False if the chip must be reset.
+bool join_bus() {
+  the_can.emplace();
+  if (!is_pll_locked() || !the_can->start()) {
+    return false;
+  }
   enable_detector_interrupt();
   for (const Interrupt interrupt :
        {Interrupt::pvd, Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce, Interrupt::timer_5}) {
     nvic::enable(interrupt);
   }
+  return true;
+}
+
+/// Whether a host asks for the bootloader before a time. The controller acknowledges frames and sends none: without
+/// acknowledgement a host that is alone on the bus would repeat its first frame.
+bool is_wanted_until(Microseconds end) {
+  const std::uint32_t serial = own_serial();
+  for (Microseconds now = the_clock.now(); now < end; now = the_clock.now()) {
+    feed_watchdog();
+    if (const Can::Event* const event = the_can->next_event()) {
+      const bool is_request = broadcast::is_enter_request(event->frame, serial);
+      the_can->drop_event();
+      if (is_request) {
+        return true;
+      }
+    }
+    sleep_until(end);
+  }
+  return false;
+}
+
+/// Serves the bus until the chip must be reset. The module has joined the bus. left: by the start before.
+[[noreturn]] void serve_bus(const Handover& left) {
+  the_bootloader.emplace(
+      image_place(), own_serial(),
+      bootloader::Ports{*the_can, the_slot_memory, the_settings, {image_buffer_start, image_buffer_end}});
+  constexpr std::array broadcast{broadcast::host_identifier};
+  the_can->listen(broadcast);
+  the_bootloader->power_on(the_clock.now(), the_settings.node(), left);
   BusRecovery recovery;
   for (;;) {
     feed_watchdog();
@@ -198,6 +228,40 @@ void sleep_until(Microseconds deadline) {
   }
 }
 
+/// Starts what the bootloader needs itself, not the program. False: there is no CAN.
+bool start_hardware() {
+  static_cast<void>(start_watchdog(watchdog_ms));  // if it fails, the watchdog has 512 ms, which is enough
+  start_pins();
+  if (start_clocks() != ClockResult::ok) {
+    return false;
+  }
+  MicrosecondClock().start();
+  return true;
+}
+
+/// After power on: listens if there is a confirmed program, and serves the bus if a host asks for it. Then it resets
+/// the chip, and the program starts; if none may run, it serves the bus. Without CAN there is no window.
+[[noreturn]] void listen_first(Slots& slots, const Handover& left) {
+  bool starts_program = false;
+  if (start_hardware() && join_bus()) {
+    const Microseconds end = the_clock.now() + broadcast::start_window_us;
+    const NextStep step = next_step(slots, left);  // its checksum takes a part of the window
+    const bool listens = step != NextStep::serve_bus && slots.is_confirmed(FlashSlot::a);
+    if (listens && is_wanted_until(end)) {
+      serve_bus({HandoverAction::stay, 0});
+    }
+    if (step == NextStep::prepare) {
+      prepare_program(slots);
+    }
+    if (step != NextStep::start_program) {
+      serve_bus(left);
+    }
+    starts_program = true;
+  }
+  leave_handover(left_by_window(left, starts_program));
+  reset_chip();
+}
+
 }  // namespace
 }  // namespace proleg::stm32f405
 
@@ -207,8 +271,9 @@ using proleg::firmware::ResetCause;
 extern "C" {
 
 void run_program() {
+  const std::uint32_t csr = rcc::csr.read();
   Handover left = take_handover();
-  if (reset_cause_of(rcc::csr.read()) == ResetCause::pin) {
+  if (reset_cause_of(csr) == ResetCause::pin) {
     left = {is_second_press(left) ? HandoverAction::stay : HandoverAction::none, 0};
   }
   if (is_recover_button_held()) {
@@ -216,7 +281,15 @@ void run_program() {
   }
   SlotMemory memory;
   Slots slots(memory, image_place());
-  const NextStep step = next_step(slots, left);
+  if (has_just_got_power(csr) && left.action != HandoverAction::stay) {
+    listen_first(slots, left);
+  }
+  bool starts_program = false;
+  if (left.action == HandoverAction::window_over) {
+    starts_program = WindowEnd::of(left.argument).starts_program;
+    left = left_before_window(left);
+  }
+  const NextStep step = starts_program ? NextStep::start_program : next_step(slots, left);
   if (step == NextStep::start_program) {
     leave_handover(started_after(left));
     // The watchdog is started now and not before, because the checksum of the image takes long at the clock after a
@@ -224,18 +297,18 @@ void run_program() {
     static_cast<void>(start_watchdog(watchdog_ms));
     start_program();
   }
-  static_cast<void>(start_watchdog(watchdog_ms));  // if it fails, the watchdog has 512 ms, which is enough
-  start_pins();
-  if (start_clocks() != ClockResult::ok) {
+  if (!start_hardware()) {
     // There is no CAN without the crystal, and no program would start. The watchdog resets the chip: crystal and supply
     // may be good then.
     for (;;) {
       asm volatile("wfi");
     }
   }
-  MicrosecondClock().start();
   if (step == NextStep::prepare) {
     prepare_program(slots);
+  }
+  if (!join_bus()) {
+    reset_chip();
   }
   serve_bus(left);
 }

@@ -46,6 +46,19 @@ TEST(Handover, AProgramThatStopsFiveTimesInARowBeforeItRunsWellIsGivenUp) {
   EXPECT_EQ(started_after({HandoverAction::runs, 0}).argument, 1U) << "it has run well meanwhile";
 }
 
+TEST(Handover, TheWindowAfterPowerOnKeepsTheDecisionAndTheCountOfBadStarts) {
+  for (const std::uint32_t bad_starts : {0U, 1U, max_bad_starts}) {
+    for (const bool starts_program : {false, true}) {
+      const Handover left = left_by_window({HandoverAction::started, bad_starts}, starts_program);
+      EXPECT_EQ(left.action, HandoverAction::window_over);
+      EXPECT_EQ(WindowEnd::of(left.argument).starts_program, starts_program);
+      EXPECT_EQ(started_after(left_before_window(left)).argument, bad_starts + 1);
+    }
+  }
+  const Handover left = left_by_window({HandoverAction::runs, 7}, true);
+  EXPECT_EQ(started_after(left_before_window(left)).argument, 1U) << "it has run well before";
+}
+
 TEST(Handover, AnImageInRamKeepsItsSizeItsSessionAndWhereItsHostIs) {
   for (const ImageInRam image : {ImageInRam{0, 0, false}, ImageInRam{65'536, 255, true}, ImageInRam{90'112, 1, false},
                                  ImageInRam{40, 7, false, true}, ImageInRam{0x3F'FFFF, 128, true, true}}) {

@@ -60,6 +60,9 @@ class Diagnosis {
       add(ModuleFaultKind::never_confirmed,
           program_name() + (runs ? " runs on trial, and has not confirmed itself" : " has never started well"),
           start_or_another_program());
+    } else if (!runs && means_.was_silent) {
+      add(ModuleFaultKind::silent_program,
+          program_name() + " has answered nothing until the supply was switched off and on", another_program());
     } else if (!runs) {
       add(ModuleFaultKind::in_bootloader, "is in its bootloader, and does not run " + program_name(),
           start_or_another_program());
@@ -167,6 +170,8 @@ std::string_view code_of(ModuleFaultKind kind) {
       return "no_program";
     case ModuleFaultKind::starts_badly:
       return "starts_badly";
+    case ModuleFaultKind::silent_program:
+      return "silent_program";
     case ModuleFaultKind::never_confirmed:
       return "never_confirmed";
     case ModuleFaultKind::in_bootloader:

@@ -18,6 +18,7 @@ enum class ModuleFaultKind : std::uint8_t {
   no_bootloader,
   no_program,
   starts_badly,     ///< the bootloader does not start the program any more
+  silent_program,   ///< the program answers nothing, though it runs
   never_confirmed,  ///< the program has not started successfully yet
   in_bootloader,    ///< the bootloader runs, though the program has started successfully once
   no_node_id,
@@ -48,6 +49,7 @@ struct RecoveryMeans {
   const image::Header* image = nullptr;  ///< image to flash; null: none was given
   bool resets_settings = false;
   bool has_tried_start = false;  ///< the program was started before, and the present report is the result
+  bool was_silent = false;       ///< no answer of the module was received before its supply was switched off and on
 };
 
 /// The faults of a module that answers any request, the most important one first; empty if it has none. all: the

@@ -16,6 +16,10 @@ constexpr std::uint32_t runs_from_mv = 2'600;
 constexpr std::uint32_t low_below_mv = 2'930;
 constexpr std::uint32_t good_from_mv = 3'030;
 
+constexpr BusTime ns_per_us = 1'000;
+/// A program that is deaf does nothing for this time, again and again.
+constexpr Microseconds deaf_time_us = 1'000'000;
+
 }  // namespace
 
 bool NativeModule::Flash::erase(unsigned sector) {
@@ -132,6 +136,7 @@ void NativeModule::power_on(BusTime now) {
   line_.reset();
   next_event_ = never_on_bus;
   pause_end_ = 0;
+  window_end_ = 0;
   after_pause_ = AfterPause::goes_on;
   program_.lose_ram();
   if (has_power_) {
@@ -141,16 +146,31 @@ void NativeModule::power_on(BusTime now) {
       start(now);
     } else {
       pause(now, time, AfterPause::starts);
+      open_window(now);
     }
+  }
+}
+
+/// The bootloader acknowledges frames in the window, and sends none.
+void NativeModule::open_window(BusTime now) {
+  if (start_time_us_ >= broadcast::start_window_us && program_.bootloader() == nullptr) {
+    window_end_ = now + broadcast::start_window_us * ns_per_us;
+    controller_.switch_on();
   }
 }
 
 /// Program or bootloader, whichever the reset has chosen.
 void NativeModule::start(BusTime now) {
+  if (std::exchange(window_end_, 0) != 0) {
+    controller_.switch_off();
+  }
   if (program_.bootloader() != nullptr) {
     controller_.switch_on();
     program_.start_bootloader(crystal_.at(now));
-  } else if (const ProgramHealth health = program_.health(); health != ProgramHealth::good) {
+  } else if (const ProgramHealth health = program_.health(); health == ProgramHealth::deaf) {
+    pause(now, deaf_time_us, AfterPause::stays_deaf);
+    return;
+  } else if (health != ProgramHealth::good) {
     constexpr Microseconds watchdog_us = 1'000'000;
     constexpr Microseconds fault_us = 1'000;
     pause(now, health == ProgramHealth::hangs ? watchdog_us : fault_us, AfterPause::resets);
@@ -176,7 +196,6 @@ void NativeModule::reset(BusTime now) {
 }
 
 void NativeModule::pause(BusTime now, Microseconds time, AfterPause after) {
-  constexpr BusTime ns_per_us = 1'000;
   after_pause_ = after;
   pause_end_ = now + time * ns_per_us;
   next_event_ = pause_end_;
@@ -193,6 +212,9 @@ void NativeModule::end_pause(BusTime now) {
       break;
     case AfterPause::resets:
       reset(now);
+      break;
+    case AfterPause::stays_deaf:
+      pause(now, deaf_time_us, AfterPause::stays_deaf);
       break;
   }
 }
@@ -264,6 +286,9 @@ void NativeModule::update_deadline() {
 
 void NativeModule::received(BusTime time, const CanFrame& frame) {
   if (pause_end_ != 0) {
+    if (time <= window_end_ && program_.is_held_by(frame)) {
+      pause(time, 1, AfterPause::starts);
+    }
     return;
   }
   if (bootloader::Bootloader* const bootloader = program_.bootloader()) {
@@ -287,7 +312,11 @@ void NativeModule::transmitted(BusTime time, const CanFrame& frame) {
   }
 }
 
-void NativeModule::error_seen(BusTime /*time*/, bool /*was_sending*/) { port_.note_error(); }
+void NativeModule::error_seen(BusTime /*time*/, bool /*was_sending*/) {
+  if (window_end_ == 0) {
+    port_.note_error();  // else the program has not started
+  }
+}
 
 void NativeModule::error_state_changed(BusTime time) {
   if (!runs_program()) {

@@ -69,7 +69,8 @@ class NativeModule final : public JointModule,
   /// or about to start.
   void write_settings(std::uint8_t schema);
 
-  /// Sets the time from power on to the start of the program; it is 0 without this call.
+  /// Sets the time from power on to the start of the program, in which the bootloader listens; it is 0 without this
+  /// call.
   void set_start_time(Microseconds time) { start_time_us_ = time; }
 
   void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
@@ -132,8 +133,9 @@ class NativeModule final : public JointModule,
   void off() override { pulse_.reset(); }
   [[nodiscard]] std::uint8_t read_contacts() override { return sensors_(); }
   /// What follows when the chip has written its flash, has computed a checksum, or has hung long enough.
-  enum class AfterPause : std::uint8_t { goes_on, starts, resets };
+  enum class AfterPause : std::uint8_t { goes_on, starts, resets, stays_deaf };
 
+  void open_window(BusTime now);
   void start(BusTime now);
   void reset(BusTime now);
   void pause(BusTime now, Microseconds time, AfterPause after);
@@ -164,6 +166,8 @@ class NativeModule final : public JointModule,
   BusTime deadline_time_ = never_on_bus;
   BusTime pause_end_ = 0;  ///< end of the pause in which the module does nothing; 0: there is no pause
   AfterPause after_pause_ = AfterPause::goes_on;
+  /// The bootloader listens before it starts the program, until this time; 0: it does not listen.
+  BusTime window_end_ = 0;
   BusTime next_event_ = never_on_bus;
 };
 

@@ -81,8 +81,18 @@ void NativeProgram::reset() {
   if (step == NextStep::start_program) {
     handover_ = started_after(left_);
   } else {
-    bootloader_.emplace(place_, serial_, bootloader::Ports{port_, *this, *this, buffer_});
+    make_bootloader();
   }
+}
+
+bool NativeProgram::is_held_by(const CanFrame& frame) {
+  if (bootloader_ || !broadcast::is_enter_request(frame, serial_)) {
+    return false;
+  }
+  handover_ = {};
+  left_ = {HandoverAction::stay, 0};
+  make_bootloader();
+  return true;
 }
 
 void NativeProgram::start_bootloader(Microseconds now) {

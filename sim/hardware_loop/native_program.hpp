@@ -22,6 +22,7 @@ enum class ProgramHealth : std::uint8_t {
   good,
   hangs,   ///< until the watchdog resets the chip
   faults,  ///< resets the chip at once
+  deaf,    ///< feeds the watchdog, and never takes part in the bus
 };
 
 class NativeProgram final : public firmware::ProgramPort, private bootloader::SlotFlash, private canopen::LssStorage {
@@ -29,7 +30,8 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   // Typical times of the data sheet (STM32F405, table 41, words of 32 bits).
   static constexpr Microseconds erase_time_us = 1'000'000;
   static constexpr Microseconds word_time_us = 16;
-  /// Typical time from a reset to the start of the program: the checksum of the image at 16 MHz.
+  /// Typical time from a reset to the start of the program: the checksum of the image at 16 MHz. After power on it is
+  /// the window in which the bootloader listens, and takes as long.
   static constexpr Microseconds start_time_us = 96'500;
 
   /// Slot A holds a confirmed image of the native program, without a body to speak of. port: for the bootloader.
@@ -47,6 +49,8 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   void lose_ram() { handover_ = {}; }
   /// A reset of the chip. Then either bootloader() serves the bus, or the program runs.
   void reset();
+  /// The program is to start. Whether this frame asks for the bootloader instead, which then serves the bus.
+  [[nodiscard]] bool is_held_by(const CanFrame& frame);
   /// The bootloader while it runs; null while the program runs, or should.
   [[nodiscard]] bootloader::Bootloader* bootloader() { return bootloader_ ? &*bootloader_ : nullptr; }
   /// The bootloader, if it serves the bus, takes part in it from now on.
@@ -84,6 +88,7 @@ class NativeProgram final : public firmware::ProgramPort, private bootloader::Sl
   [[nodiscard]] std::span<const std::uint8_t> contents(bootloader::FlashSlot slot) const override;
 
   [[nodiscard]] Result store_node(std::uint8_t node) override;
+  void make_bootloader() { bootloader_.emplace(place_, serial_, bootloader::Ports{port_, *this, *this, buffer_}); }
 
   CanPort& port_;
   firmware::FlashPort& settings_;

@@ -105,6 +105,16 @@ TEST_F(ModuleFaultTest, AProgramThatMayStartIsStartedBeforeAnythingIsFlashed) {
   }
 }
 
+TEST_F(ModuleFaultTest, AProgramThatWasSilentIsReplacedAndNotStarted) {
+  means.was_silent = true;
+  const FlashCandidate held = module_with(flag::has_bootloader | flag::has_image | flag::is_confirmed);
+  expect(held, ModuleFaultKind::silent_program, Remedy::by_hand);
+  means.image = &image;
+  expect(held, ModuleFaultKind::silent_program, Remedy::flash);
+  EXPECT_TRUE(find({module_with(good_flags)}).empty()) << "it answers now";
+  expect(module_with(flag::has_bootloader | flag::has_image), ModuleFaultKind::never_confirmed, Remedy::start);
+}
+
 TEST_F(ModuleFaultTest, AProgramOnTrialThatRunsGetsTimeToConfirmItself) {
   expect(module_with(flag::has_bootloader | flag::has_image | flag::runs_program), ModuleFaultKind::never_confirmed,
          Remedy::start);

@@ -83,6 +83,7 @@ class Recover(unittest.TestCase):
             self.assertEqual(text.stdout.count("gets the program 0.2.0"), 4, text.stdout)
             self.assertEqual(text.stdout.count("well; it was flashed"), 4, text.stdout)
             self.assertEqual(len(text.stderr.splitlines()), 1, "it says that it waits")
+            self.assertIn("switch the robot's supply off and on", text.stderr)
 
             status, report = recover(bus.tcp, "--wait", "0")
             self.assertEqual((status, codes(report, "found")), (0, [[]] * 5), report)

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
 
 #include "flashed_robot.hpp"
 #include "live_transport.hpp"
@@ -40,8 +42,9 @@ class Traffic final : public host::BusUser {
     using broadcast::Code;
     using canopen::lss::Service;
     const std::uint8_t first = frame.data[0];
+    // Modules whose program runs ignore the request for every module.
     const bool is_transfer =
-        frame.identifier == broadcast::host_identifier &&
+        frame.identifier == broadcast::host_identifier && frame != broadcast::enter_frame(broadcast::every_serial) &&
         (frame.length == CanFrame::max_length || first == static_cast<std::uint8_t>(Code::select) ||
          first == static_cast<std::uint8_t>(Code::install) || first == static_cast<std::uint8_t>(Code::enter));
     const bool is_numbering = frame.identifier == canopen::identifier::lss_request &&
@@ -61,6 +64,31 @@ class Traffic final : public host::BusUser {
   LiveBus& bus_;
 };
 
+/// A person switches the supply of the robot off or on at this time.
+class SupplySwitch final : public host::BusUser {
+ public:
+  SupplySwitch(FlashedRobot& robot, Microseconds at, bool on) : robot_(robot), at_(at), on_(on) {
+    robot_.bus.attach(*this);
+  }
+  ~SupplySwitch() { robot_.bus.detach(*this); }
+  SupplySwitch(const SupplySwitch&) = delete;
+  SupplySwitch& operator=(const SupplySwitch&) = delete;
+
+  void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
+  void poll(Microseconds /*now*/) override {
+    at_ = never;
+    for (unsigned joint = 0; joint < robot_.size(); ++joint) {
+      robot_.module(joint).set_supply(robot_.bus.robot().bus().now(), on_ ? 3'300 : 0);
+    }
+  }
+  [[nodiscard]] Microseconds next_deadline() const override { return at_; }
+
+ private:
+  FlashedRobot& robot_;
+  Microseconds at_;
+  bool on_;
+};
+
 /// Joint j has the node id j + 1, unless it is given.
 class SickRobot : public FlashedRobot {
  public:
@@ -77,6 +105,14 @@ class SickRobot : public FlashedRobot {
       return header.version.minor == 1 ? health : sim::ProgramHealth::good;
     });
     power_cycle(joint);
+  }
+  /// All modules listen after power on. The program 0.1.0 of one is deaf from its next start on.
+  void make_deaf(unsigned joint) {
+    for (unsigned one = 0; one < joints; ++one) {
+      module(one).set_start_time(sim::NativeProgram::start_time_us);
+    }
+    spoil(joint, sim::ProgramHealth::deaf);
+    bus.run_for(second);
   }
   void take_program(unsigned joint) {
     program(joint).write_image({}, false);
@@ -238,6 +274,59 @@ TEST(RecoveryTest, ModulesStayInTheirBootloadersUntilItIsTheirTurn) {
   settings.wait_us = 60 * second;
   Recovered(robot, settings).expect_well();
   EXPECT_EQ(starts, bootloader::max_bad_starts) << "not once more in a minute";
+}
+
+TEST(RecoveryTest, AProgramThatIsDeafIsReplacedWhenAPersonSwitchesTheSupplyOffAndOn) {
+  for (const Microseconds off_for : {second / 10, 3 * second}) {
+    SickRobot robot;
+    robot.make_deaf(1);
+    RecoverySettings settings = with_image();
+    settings.wait_us = 10 * second;
+    std::optional<SupplySwitch> off;
+    std::optional<SupplySwitch> on;
+    settings.on_wait = [&] {
+      off.emplace(robot, robot.bus.now() + second, false);
+      on.emplace(robot, robot.bus.now() + second + off_for, true);
+    };
+    const Recovered recovered(robot, settings);
+    ASSERT_EQ(recovered.of(1).first_faults.size(), 1U);
+    EXPECT_EQ(recovered.of(1).first_faults[0].kind, ModuleFaultKind::silent_program);
+    recovered.expect_well();
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      EXPECT_EQ(robot.minor_version(joint), joint == 1 ? 2U : 1U) << "the others only start again";
+      EXPECT_TRUE(robot.runs(joint));
+    }
+  }
+}
+
+TEST(RecoveryTest, WithoutAPersonADeafProgramIsOutOfReachAndItsModuleIsMissing) {
+  SickRobot robot;
+  robot.make_deaf(1);
+  RecoverySettings settings = with_image();
+  settings.serials = {robot.serials[1]};
+  const Recovered recovered(robot, settings);
+  EXPECT_EQ(recovered.recovery.missing(), settings.serials);
+  EXPECT_EQ(robot.minor_version(1), 1U);
+}
+
+TEST(RecoveryTest, ARobotWhoseSupplyComesOnlyThenKeepsItsProgramsUnlessAModuleIsNamed) {
+  for (const bool names : {false, true}) {
+    SickRobot robot;
+    robot.make_deaf(1);
+    RecoverySettings settings = with_image();
+    settings.wait_us = 10 * second;
+    const SupplySwitch off(robot, robot.bus.now(), false);
+    std::optional<SupplySwitch> on;
+    settings.on_wait = [&] { on.emplace(robot, robot.bus.now() + second, true); };
+    if (names) {
+      settings.serials = {robot.serials[1]};
+    }
+    const Recovered recovered(robot, settings);
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      EXPECT_EQ(robot.minor_version(joint), names && joint == 1 ? 2U : 1U);
+    }
+    EXPECT_EQ(recovered.recovery.are_all_well(), names);
+  }
 }
 
 TEST(RecoveryTest, AModuleThatNothingHelpsIsKnownInTheEndToo) {

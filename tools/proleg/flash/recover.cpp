@@ -85,7 +85,11 @@ void print_plan(const Recovery& recovery) {
 std::vector<std::string> state_lines(const RecoveredModule& module) {
   std::vector<std::string> lines;
   if (!module.is_present) {
-    lines.emplace_back("has answered, and answers no more: run 'proleg recover' again");
+    lines.push_back(module.tries.contains(Remedy::start)
+                        ? "its program was started, and answers nothing: run 'proleg recover --serial " +
+                              hexadecimal(module.now.program.serial, 8) +
+                              " IMAGE.pimg', and switch the robot's supply off and on when it waits"
+                        : "has answered, and answers no more: run 'proleg recover' again");
   }
   for (const ModuleFault& fault : module.faults) {
     lines.push_back(fault.text + (module.tries.contains(fault.remedy) ? "" : ": " + fault.to_do));
@@ -172,12 +176,10 @@ Json result_json(const RecoverOptions& options, BusAccess& bus, const Recovery& 
 
 void report_wait(const ProgramReport& report, const RecoverySettings& settings) {
   const double seconds = static_cast<double>(settings.wait_us) / 1e6;
-  if (settings.wait_us == 0) {
-    return;
-  }
   if (!report.has_events()) {
     std::cerr << "proleg recover: waits up to " << number_text(seconds)
-              << " s for modules whose program does not start: they are silent most of the time\n";
+              << " s for modules whose program does not start: they are silent most of the time; if one answers "
+                 "nothing at all, switch the robot's supply off and on now\n";
   }
   report.print_event("waits", {{"seconds", seconds}});
 }
@@ -196,12 +198,12 @@ void report_found(const ProgramReport& report, const Recovery& recovery) {
 }
 
 int run(const RecoverOptions& options) {
-  const RecoverySettings settings = parse(options);
+  RecoverySettings settings = parse(options);
+  settings.on_wait = [&] { report_wait(options.report, settings); };
   BusAccess bus(options);
   catch_interrupts();
   options.report.begin();
   require_no_host(bus);
-  report_wait(options.report, settings);
   Recovery recovery(bus, settings);
   recovery.examine();
   report_found(options.report, recovery);

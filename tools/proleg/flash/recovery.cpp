@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "host/flash/start_hold.hpp"
 #include "host/robot/node_plan.hpp"
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
@@ -84,11 +85,36 @@ void Recovery::examine() {
   }
 }
 
+/// A module that was missing at the first look, while others were there, did not answer: its supply was on, too. If
+/// none was there, the supply of all may have been off; then only the modules that a person has named are known to be
+/// silent.
+void Recovery::add(const FlashCandidate& found) {
+  const bool is_named = std::ranges::find(settings_.serials, found.program.serial) != settings_.serials.end();
+  const bool was_silent = has_looked_ && (has_seen_any_ || is_named);
+  modules_.push_back({found, found, true, was_silent, {}, {}, {}, {}, {}});
+}
+
+/// A person may switch the supply off and on meanwhile: that is the way to a module whose program is silent.
 void Recovery::wait() {
-  // On a bus that loses frames a look takes longer than such a module stays on the bus.
-  look();
+  constexpr Microseconds time_to_be_heard = second / 4;
+  host::StartHold start_hold(bus_.connection());
+  const host::BusAttachment attachment(bus_.connection(), start_hold);
+  const auto is_heard = [&] {
+    return start_hold.is_heard() || interrupted() || !bus_.connection().state().is_connected;
+  };
+  bus_.connection().run_until(bus_.connection().now() + time_to_be_heard, is_heard);
+  if (is_heard()) {
+    // On a bus that loses frames a look takes longer than such a module stays on the bus.
+    look();
+  }
+  has_looked_ = true;
+  has_seen_any_ = !modules_.empty();
+  if (settings_.on_wait && settings_.wait_us != 0) {
+    settings_.on_wait();
+  }
   const Microseconds begin = bus_.connection().now();
   const Microseconds end = begin + settings_.wait_us;
+  bus_.connection().run_until(end, is_heard);  // no look ends on a bus on which nobody acknowledges
   TerminalLine line(std::chrono::milliseconds(0));
   for (Microseconds now = bus_.connection().now(); now < end; now = bus_.connection().now()) {
     if (!settings_.report.has_events() && line.is_due()) {
@@ -97,7 +123,7 @@ void Recovery::wait() {
                 " modules were seen");
     }
     for (const FlashCandidate& found : find_silent_modules(bus_, candidates_of(modules_))) {
-      modules_.push_back({found, found, true, {}, {}, {}, {}, {}});
+      add(found);
     }
     hold();
     if (!settings_.serials.empty() && ask(settings_.serials)) {
@@ -151,7 +177,7 @@ void Recovery::look() {
       module->now = one;
       module->is_present = true;
     } else {
-      modules_.push_back({one, one, true, {}, {}, {}, {}, {}});
+      add(one);
     }
   }
   await_absent();
@@ -213,7 +239,7 @@ void Recovery::diagnose(RecoveredModule& module) {
     }
   }
   const host::RecoveryMeans means{settings_.image ? &settings_.image->header : nullptr, settings_.resets_settings,
-                                  module.tries.contains(Remedy::start)};
+                                  module.tries.contains(Remedy::start), module.was_silent};
   module.faults = module.is_present ? find_module_faults(module.now, present, means) : std::vector<host::ModuleFault>();
 }
 

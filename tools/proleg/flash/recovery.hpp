@@ -3,6 +3,7 @@
 // Finds modules that are of no use as they are, and brings them back (host/flash/module_fault.hpp).
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,12 +24,15 @@ struct RecoverySettings {
   std::optional<host::ImageFile> image;
   bool resets_settings = false;
   ProgramReport report;  ///< of what takes long
+  /// Called when the wait begins: from now on a person may switch the supply off and on.
+  std::function<void()> on_wait;
 };
 
 struct RecoveredModule {
   host::FlashCandidate before;
   host::FlashCandidate now;
-  bool is_present = true;  ///< else it has answered before
+  bool is_present = true;   ///< else it has answered before
+  bool was_silent = false;  ///< RecoveryMeans
   std::vector<host::ModuleFault> first_faults;
   std::vector<host::ModuleFault> faults;  ///< now
   std::map<host::Remedy, unsigned> tries;
@@ -60,6 +64,7 @@ class Recovery {
 
  private:
   void wait();
+  void add(const host::FlashCandidate& found);
   /// Asks these modules for their programs. Whether all have answered.
   bool ask(const std::vector<std::uint32_t>& serials);
   /// Asks all modules that run no program: their bootloaders stay on the bus for ten seconds then.
@@ -91,6 +96,8 @@ class Recovery {
   HostPresence presence_;
   std::vector<RecoveredModule> modules_;
   std::vector<std::uint32_t> missing_;
+  bool has_looked_ = false;
+  bool has_seen_any_ = false;  ///< at the first look
   std::vector<std::uint8_t> silent_;
   std::vector<std::uint8_t> others_;  ///< node ids of nodes that are no modules
 };

@@ -46,7 +46,7 @@ struct BoardProfile {
   std::optional<Pin> console_transmit;
   std::optional<Pin> console_receive;
   std::optional<Switch> led;             ///< shows the state (docs/first-board.md)
-  std::optional<Switch> recover_button;  ///< held during a reset, it keeps the chip in the bootloader
+  std::optional<Switch> recover_button;  ///< held during a reset (not by software): the bootloader stays
 };
 
 // Clocks in Hz (RM0090, section 7.2). All boards have the same ones behind the PLL. The limits are those of the data

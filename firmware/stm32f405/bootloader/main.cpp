@@ -276,7 +276,10 @@ void run_program() {
   if (reset_cause_of(csr) == ResetCause::pin) {
     left = {is_second_press(left) ? HandoverAction::stay : HandoverAction::none, 0};
   }
-  if (is_recover_button_held()) {
+  // Not after a reset by software: it would end nothing if the button is stuck. The bootloader resets the chip so when
+  // no host has asked for anything.
+  const bool is_by_software = (csr & rcc::csr_sftrstf) != 0;
+  if (!is_by_software && is_recover_button_held()) {
     left = {HandoverAction::stay, 0};
   }
   SlotMemory memory;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "chip_bootloader.hpp"
+#include "shared/canopen/messages.hpp"
 #include "tests/support/from_environment.hpp"
 
 namespace proleg::sim {
@@ -132,6 +133,41 @@ TEST_F(ChipBootloader, OneResetByThePinStartsTheProgramHoweverItBouncesAndWhenev
     ASSERT_TRUE(starts_program(s)) << press;
     EXPECT_NE(rig->board.console.find("started by reset pin"), std::string::npos) << rig->board.console;
   }
+}
+
+TEST_F(ChipBootloader, TheButtonIsAWayInAtEachResetButThoseBySoftware) {
+  write_slot(slot_a, program(), true);
+  rig->board.holds_recover = true;
+  rig->power_on();
+  ASSERT_TRUE(sends_boot_up());
+  EXPECT_FALSE(is_program());
+  rig->board.holds_recover = false;
+  ASSERT_TRUE(starts_program(11 * s));
+  rig->run_for(100 * ms);
+  rig->board.holds_recover = true;
+  rig->chip.pull_reset_pin();
+  ASSERT_TRUE(sends_boot_up(s));
+  EXPECT_FALSE(is_program());
+}
+
+TEST_F(ChipBootloader, AButtonThatIsStuckDelaysTheProgramByTenSecondsAtMost) {
+  write_slot(slot_a, program(), true);
+  rig->board.holds_recover = true;
+  start_bootloader();
+  ASSERT_TRUE(starts_program(11 * s)) << "the bootloader is within reach meanwhile";
+  rig->host.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 0}));
+  EXPECT_TRUE(starts_program()) << "at once";
+}
+
+TEST_F(ChipBootloader, AButtonThatIsStuckDoesNotKeepAnImageFromBeingInstalled) {
+  write_slot(slot_a, program(), true);
+  rig->board.holds_recover = true;
+  start_bootloader();
+  ASSERT_TRUE(starts_program(11 * s));
+  EXPECT_EQ(flash(newer_program()), ReceiverState::installed);
+  leave_bootloader();
+  EXPECT_TRUE(starts_program());
+  EXPECT_TRUE(holds(slot_a, newer_program()));
 }
 
 TEST_F(ChipBootloader, WithoutACrystalNoStartOnTrialIsUsedUp) {

@@ -40,6 +40,7 @@ struct TestBoard final : BoardSignals {
   void serial_output(unsigned usart, std::uint8_t byte) override;
 
   bool servo_pulls_up = false;      ///< the servo has a pull-up at its signal, as many have
+  bool holds_recover = false;       ///< the button at PC13
   std::uint16_t low_pins_of_b = 0;  ///< switches to ground on port B that are closed
   std::array<std::uint32_t, 16> uv{};
   std::function<std::uint32_t(unsigned channel)> voltage;  ///< in microvolts, now; instead of `uv`

@@ -5,6 +5,8 @@
 #   lib/proleg/lib        plug-ins
 #   share/proleg          scenarios, page, player, images
 #   share/doc/proleg      documents
+#   share/man, share/bash-completion, share/zsh, share/fish
+#                         manual pages and completions, made of the help texts of the programs
 
 set(PROLEG_INSTALLED_PROGRAMS lib/proleg/bin)
 
@@ -23,6 +25,10 @@ install(CODE "
     endif()
   endforeach()
   file(MAKE_DIRECTORY \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin\")
+  execute_process(
+    COMMAND python3 -B \"${CMAKE_SOURCE_DIR}/tools/docs.d/shell_files.py\" \"${CMAKE_RUNTIME_OUTPUT_DIRECTORY}\"
+            \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\"
+    COMMAND_ERROR_IS_FATAL ANY)
   file(CREATE_LINK ../lib/proleg/bin/proleg \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin/proleg\" SYMBOLIC)
 ")
 

@@ -30,6 +30,7 @@
 #include "tests/identity/verify/user_builds.hpp"
 #include "tools/proleg/common/child_program.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_run.hpp"
 
 namespace {

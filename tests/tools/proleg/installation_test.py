@@ -49,6 +49,8 @@ class Installation(unittest.TestCase):
         self.assertGreater(len(names), 30)
         for name in names:
             self.assertTrue((self.prefix / "lib/proleg/bin" / f"proleg-{name}").exists(), name)
+            self.assertTrue((self.prefix / "share/man/man1" / f"proleg-{name}.1").exists(), name)
+        self.assertTrue((self.prefix / "share/bash-completion/completions/proleg").exists())
 
     def test_the_shipped_scenarios_are_those_of_the_installation_and_have_names(self):
         shipped = json.loads(self.proleg("scenarios", "--json").stdout)["scenarios"]

@@ -18,7 +18,6 @@
 #include "shared/computer/algorithm_library/program_end.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/common/shipped_scenarios.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -147,11 +146,6 @@ CommandLine::Option CommandLine::add_option(const std::string& name, std::vector
   return Option(app_->add_option(name, variable, help)->allow_extra_args(false));
 }
 
-CommandLine::Option CommandLine::add_scenario(std::string& file, const std::string& help) {
-  scenario_ = &file;
-  return add_option("FILE", file, help + ": a *.simulation.xml file, or a name that 'proleg scenarios' lists");
-}
-
 CommandLine::Option CommandLine::add_flag(const std::string& name, bool& variable, const std::string& help) {
   return Option(app_->add_flag(name, variable, help));
 }
@@ -188,7 +182,7 @@ int CommandLine::run_body(int argc, char** argv, const std::function<int()>& bod
   } catch (const CLI::Success& request) {  // --help
     app_->exit(request);
     algorithms_.clear();
-    scenario_ = nullptr;
+    prepare_ = [] {};
     action = [] { return exit_success; };
   } catch (const CLI::ParseError& error) {
     const ParseFailure failure = describe(*app_, error);
@@ -197,9 +191,7 @@ int CommandLine::run_body(int argc, char** argv, const std::function<int()>& bod
     return exit_bad_input;
   }
   try {
-    if (scenario_ != nullptr) {
-      *scenario_ = scenario_file(*scenario_);
-    }
+    prepare_();
     load_algorithms(algorithms_);
     const int status = action();
     if (!std::cout.flush()) {

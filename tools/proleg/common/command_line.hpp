@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -64,15 +65,14 @@ class CommandLine {
   Option add_option(const std::string& name, std::optional<std::string>& variable, const std::string& help);
   Option add_option(const std::string& name, std::optional<double>& variable, const std::string& help);
   Option add_option(const std::string& name, std::vector<std::string>& variable, const std::string& help);
-  /// Adds the positional argument FILE for a scenario. It becomes the name of its file before the body runs: the user
-  /// may name a scenario that ships with Proleg (scenario_file() of shipped_scenarios.hpp).
-  Option add_scenario(std::string& file, const std::string& help);
   /// Adds an option without a value.
   Option add_flag(const std::string& name, bool& variable, const std::string& help);
 
   /// Adds --algorithms, for programs that read scenarios or name parameters. run() loads the libraries before the body.
   void add_algorithms_option();
 
+  /// run() calls this before the body, after the variables have their values. An exception is as one of the body.
+  void prepare_with(std::function<void()> prepare) { prepare_ = std::move(prepare); }
   [[nodiscard]] std::string name() const;
 
   /// Parses the arguments and runs the body; returns the exit status. An error is one line on standard error: bad
@@ -85,7 +85,7 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   std::vector<std::string> algorithms_;
-  std::string* scenario_ = nullptr;
+  std::function<void()> prepare_ = [] {};
 };
 
 inline constexpr std::uint32_t max_workers = 1024;

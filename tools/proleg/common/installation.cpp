@@ -3,7 +3,6 @@
 #include <system_error>
 
 #include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/program_run.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -30,6 +29,31 @@ bool is_below(const fs::path& file, const fs::path& folder) {
 fs::path program_folder() {
   std::error_code error;
   return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+bool is_source_tree(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "tools/cmake/user_algorithm.cmake", error) &&
+         fs::exists(folder / "shared/gait/registry.cpp", error);
+}
+
+fs::path source_tree(const std::string& given) {
+  if (!given.empty()) {
+    const fs::path folder = fs::absolute(given).lexically_normal();
+    if (!is_source_tree(folder)) {
+      throw BadInput("--source: found " + folder.string() + " without the sources of Proleg, expected a checkout");
+    }
+    return folder;
+  }
+  // A program is in build/PRESET/bin of its checkout.
+  fs::path folder = program_folder();
+  while (!folder.empty() && !is_source_tree(folder)) {
+    if (folder == folder.parent_path()) {
+      throw BadInput("found no checkout of Proleg around this program, expected one; --source FOLDER names it");
+    }
+    folder = folder.parent_path();
+  }
+  return folder;
 }
 
 std::optional<fs::path> shipped_folder() {

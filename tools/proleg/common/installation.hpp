@@ -12,6 +12,13 @@ namespace proleg::tools {
 /// The folder of this program; empty if the kernel does not name it.
 [[nodiscard]] std::filesystem::path program_folder();
 
+/// The checkout of Proleg's sources: `given`, or if that is empty, the checkout in which this program was built. Throws
+/// BadInput, which names the option --source, if no checkout is found.
+[[nodiscard]] std::filesystem::path source_tree(const std::string& given);
+
+/// Whether a folder is such a checkout.
+[[nodiscard]] bool is_source_tree(const std::filesystem::path& folder);
+
 /// The scenarios that ship with Proleg: sim/scenarios of the checkout, or share/proleg/scenarios. Nothing if there is
 /// no such folder.
 [[nodiscard]] std::optional<std::filesystem::path> shipped_folder();

@@ -10,14 +10,13 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
-#include "tools/proleg/common/command_line.hpp"
-#include "tools/proleg/common/installation.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -67,31 +66,6 @@ int wait_for_end(pid_t process) {
 }
 
 }  // namespace
-
-bool is_source_tree(const std::filesystem::path& folder) {
-  std::error_code error;
-  return std::filesystem::exists(folder / "tools/cmake/user_algorithm.cmake", error) &&
-         std::filesystem::exists(folder / "shared/gait/registry.cpp", error);
-}
-
-std::filesystem::path source_tree(const std::string& given) {
-  if (!given.empty()) {
-    const std::filesystem::path folder = std::filesystem::absolute(given).lexically_normal();
-    if (!is_source_tree(folder)) {
-      throw BadInput("--source: found " + folder.string() + " without the sources of Proleg, expected a checkout");
-    }
-    return folder;
-  }
-  // A program is in build/PRESET/bin of its checkout.
-  std::filesystem::path folder = program_folder();
-  while (!folder.empty() && !is_source_tree(folder)) {
-    if (folder == folder.parent_path()) {
-      throw BadInput("found no checkout of Proleg around this program, expected one; --source FOLDER names it");
-    }
-    folder = folder.parent_path();
-  }
-  return folder;
-}
 
 std::string shell_argument(const std::string& argument) {
   constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,@%+";

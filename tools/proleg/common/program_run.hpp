@@ -1,17 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace proleg::tools {
-
-/// The checkout of Proleg's sources: `given`, or if that is empty, the checkout in which this program was built. Throws
-/// BadInput, which names the option --source, if no checkout is found.
-[[nodiscard]] std::filesystem::path source_tree(const std::string& given);
-
-/// Whether a folder is such a checkout.
-[[nodiscard]] bool is_source_tree(const std::filesystem::path& folder);
 
 /// An argument of a command that is printed for the user to repeat: in quotes for a shell, if it needs them.
 [[nodiscard]] std::string shell_argument(const std::string& argument);

@@ -17,6 +17,7 @@
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -44,7 +45,7 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
 }  // namespace
 
 void add_start_options(CommandLine& command_line, ScenarioOptions& options) {
-  command_line.add_scenario(options.file, "scenario").required();
+  add_scenario(command_line, options.file, "scenario").required();
   command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
   add_override_options(command_line, options);
 }

@@ -94,4 +94,10 @@ std::string scenario_file(const std::string& word) {
                        (similar ? "; did you mean " + *similar + "?" : std::string()));
 }
 
+CommandLine::Option add_scenario(CommandLine& command_line, std::string& file, const std::string& help) {
+  command_line.prepare_with([&file] { file = scenario_file(file); });
+  return command_line.add_option("FILE", file,
+                                 help + ": a *.simulation.xml file, or a name that 'proleg scenarios' lists");
+}
+
 }  // namespace proleg::tools

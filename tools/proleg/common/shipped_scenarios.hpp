@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "tools/proleg/common/command_line.hpp"
+
 namespace proleg::tools {
 
 struct ShippedScenario {
@@ -23,5 +25,9 @@ struct ShippedScenario {
 /// the shipped scenario that has this name, or this place below shipped_folder(). Throws InputError for a word that is
 /// neither, unless it has the form of a path.
 [[nodiscard]] std::string scenario_file(const std::string& word);
+
+/// Adds the positional argument FILE for a scenario. `file` has the value of scenario_file() when the body of the
+/// program runs.
+CommandLine::Option add_scenario(CommandLine& command_line, std::string& file, const std::string& help);
 
 }  // namespace proleg::tools

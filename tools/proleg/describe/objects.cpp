@@ -15,6 +15,7 @@
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/describe/object_files.hpp"
 
 namespace {
@@ -232,7 +233,7 @@ int main(int argc, char** argv) {
       .add_flag("--dbc", dbc, "print a DBC file for CAN tools: the frames of the robot of FILE, or of any robot")
       .excludes("--eds")
       .excludes("--markdown");
-  command_line.add_scenario(scenario, "for --dbc: scenario");
+  add_scenario(command_line, scenario, "for --dbc: scenario");
   command_line.add_option("--nodes", nodes, "for --dbc without FILE: node ids 1 to this; 5 by default")
       .value_name("N")
       .excludes("FILE");

@@ -22,6 +22,7 @@
 #include "sim/live/live_robot.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/hil/broken_modules.hpp"
 #include "tools/proleg/hil/gateway_line.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
@@ -339,7 +340,7 @@ int main(int argc, char** argv) {
       "other "
       "subcommands, and with any CAN tool. Its modules are switched on and wait for a host. Ends with Ctrl-C.");
   ServerOptions options;
-  command_line.add_scenario(options.scenario.file, "scenario").required();
+  add_scenario(command_line, options.scenario.file, "scenario").required();
   command_line.add_option("--can", options.can, "a CAN interface of this computer, such as vcan0. May be repeated.")
       .value_name("INTERFACE");
   command_line.add_flag("--pty", options.pty, "slcan on a new pseudo terminal, whose name is printed");

@@ -11,6 +11,7 @@
 #include "sim/record/recording.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 
 namespace {
 
@@ -81,7 +82,7 @@ int main(int argc, char** argv) {
   CommandLine command_line("proleg faults",
                            "Lists what can be made to fail in a run of proleg hil --faults, or writes a schedule.");
   FaultsOptions options;
-  command_line.add_scenario(options.file, "the scenario whose robot a random schedule is for");
+  add_scenario(command_line, options.file, "the scenario whose robot a random schedule is for");
   command_line.add_option("--schedule", options.schedule,
                           "SEED: print the random schedule of 'proleg hil FILE --faults SEED', to keep or change it");
   command_line.add_option("--seconds", options.seconds, "length of the run instead of the scenario's");

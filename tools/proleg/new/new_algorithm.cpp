@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/declaration.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/new/algorithm_files.hpp"
 

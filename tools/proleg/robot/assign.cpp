@@ -17,6 +17,7 @@
 #include "tools/proleg/common/program_report.hpp"
 #include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/robot/assign_report.hpp"
 #include "tools/proleg/robot/assign_steps.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
@@ -382,7 +383,7 @@ int main(int argc, char** argv) {
       "Then one joint after the other moves by a few degrees, and you answer which one it is. At the end the modules "
       "store their new node ids. It resets all modules first.");
   AssignOptions options;
-  command_line.add_scenario(options.file, "a scenario with the robot").required();
+  add_scenario(command_line, options.file, "a scenario with the robot").required();
   add_bus_option(command_line, options.bus);
   command_line
       .add_option(

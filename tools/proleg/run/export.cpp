@@ -27,7 +27,6 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/installation.hpp"
 #include "tools/proleg/common/json_output.hpp"
-#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/document/recording_document.hpp"

@@ -22,6 +22,7 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/common/terminal.hpp"
 
 namespace {
@@ -277,7 +278,7 @@ int main(int argc, char** argv) {
     CommandLine command_line("proleg receipt check",
                              "Repeats the run of a receipt and compares it, bit for bit.\n"
                              "Without RECEIPT, the receipt is read from standard input.");
-    command_line.add_scenario(options.file, "scenario").required();
+    add_scenario(command_line, options.file, "scenario").required();
     command_line.add_option("RECEIPT", options.receipt, "the line that 'proleg receipt FILE' printed").takes_several();
     command_line.add_flag("--json", options.json, "print one JSON object");
     command_line.add_algorithms_option();

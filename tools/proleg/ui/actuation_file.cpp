@@ -10,7 +10,6 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/installation.hpp"
-#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 

@@ -12,7 +12,6 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/installation.hpp"
-#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/algorithm_document.hpp"
 #include "tools/proleg/ui/compiler_messages.hpp"
 #include "tools/proleg/ui/proof_output.hpp"

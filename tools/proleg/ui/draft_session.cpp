@@ -21,7 +21,6 @@
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/common/installation.hpp"
-#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/ui/algorithm_folders.hpp"
 #include "tools/proleg/ui/draft_arguments.hpp"

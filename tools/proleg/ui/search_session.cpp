@@ -18,7 +18,6 @@
 #include "sim/scenario/sources.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/installation.hpp"
-#include "tools/proleg/common/program_run.hpp"
 #include "tools/proleg/ui/experiment_json.hpp"
 #include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gait_motion.hpp"

@@ -492,7 +492,7 @@ int main(int argc, char** argv) {
       "grow; the page Make opens the scenarios of the folder. "
       "Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
   UiOptions options;
-  command_line.add_scenario(options.scenario.file, "a recording, the folder of a project, or a scenario");
+  add_scenario(command_line, options.scenario.file, "a recording, the folder of a project, or a scenario");
   add_override_options(command_line, options.scenario);
   add_move_option(command_line, options.scenario);
   command_line

@@ -9,6 +9,8 @@ from peripherals import IRQ_TIM5, Peripherals
 SP, LR, PC = 13, 14, 15
 REGISTER = {**{f"r{i}": i for i in range(13)}, "sl": 10, "fp": 11, "ip": 12, "sp": SP, "lr": LR, "pc": PC}
 MAX_ACCESSES = 1_000_000
+SLOT_A = 0x08020000  # the program; the bootloader is below
+RESET_VECTOR = 0x08000004
 
 
 class Instruction:
@@ -59,6 +61,8 @@ class Machine:
         self.loads = loads
         self.peripherals = Peripherals()
         self.accesses = 0
+        self.sleeps_at = None
+        self.reset_handler = emulator.read(RESET_VECTOR) & ~1
         self.sleeps = {address for address, instruction in code.items() if instruction.mnemonic == "wfi"}
         for address in self.sleeps | set(faults) | loads:
             emulator.break_at(address)
@@ -78,12 +82,15 @@ class Machine:
                 self.emulator.set_register(PC, at + self.code[at].size)
                 requests = self.peripherals.interrupts()
                 if not requests:
+                    self.sleeps_at = at
                     return True
                 self.emulator.raise_interrupt(requests[0])
             elif at in self.loads:
                 self.load(self.code[at], values)
             elif at in self.faults:
                 return self.learn(values)
+            elif at == self.reset_handler:  # after a reset by software QEMU stands still
+                self.peripherals.reset()
             else:
                 raise EmulatorError(f"QEMU stopped with '{stop.text}' at {at:#x}")
 
@@ -120,14 +127,17 @@ class Machine:
 
 
 def start(program, folder, flash, code, system_memory, faults):
-    """A machine whose program sleeps for the first time."""
+    """A machine whose program sleeps for the first time. Before that, the bootloader sleeps while it listens after power on."""
     loads = set()
     while True:
         emulator = Emulator(program, folder, flash)
         try:
             machine = Machine(emulator, code, system_memory, faults, loads)
-            if machine.run_to_sleep():
-                return machine
+            while machine.run_to_sleep():
+                if machine.sleeps_at >= SLOT_A:
+                    return machine
+                machine.peripherals.now = machine.peripherals.alarm()
+                machine.alarm_rings()
         except BaseException:
             emulator.close()
             raise

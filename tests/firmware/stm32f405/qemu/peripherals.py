@@ -97,6 +97,17 @@ class Peripherals:
         self.contacts = 15
         self.console = ""
 
+    def reset(self):
+        """A reset of the chip by software: time, switches and what the console has printed stay. RCC_CSR keeps its flags, and has SFTRSTF
+        and PINRSTF (section 7.3.21)."""
+        csr = 0x40023874
+        flags = self.words[csr] | 0x14000000
+        self.words.update({address: 0 for address in self.words})
+        self.words.update(RESET_VALUES)
+        self.words[csr] = flags
+        self.can = Can(self.words)
+        self.timer_5_starts = None
+
     def addresses(self):
         return self.words.keys()
 

@@ -4,7 +4,8 @@ import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playw
 import { longest } from './waiting.js';
 
 const screenshots = 'build/page_test';
-export const lostConnection = /WebSocket connection .* failed/;
+// A page may also read a part of itself ahead of its use, when the program has just ended.
+export const lostConnection = /WebSocket connection .* failed|Failed to load resource: net::ERR_CONNECTION_REFUSED/;
 
 export interface Look {
   name: string;

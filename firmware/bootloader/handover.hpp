@@ -19,7 +19,7 @@ enum class HandoverAction : std::uint32_t {
                               ///< good start
   runs = 0xB007'0005,         ///< the program has started well
   install = 0xB007'0006,      ///< an image waits in RAM; the argument is ImageInRam
-  window_over = 0xB007'0007,  ///< nobody has asked for the bootloader in the window after power on; the argument is
+  window_over = 0xB007'0007,  ///< no host has asked for the bootloader in the window after power on; the argument is
                               ///< WindowEnd
 };
 

@@ -23,7 +23,7 @@ class StartHold final : public BusUser {
   void transmitted(Microseconds /*now*/, const CanFrame& frame) override {
     is_heard_ = is_heard_ || broadcast::is_enter_request(frame, broadcast::every_serial);
   }
-  /// While no module has power nobody acknowledges a frame. Then the port has no room, and later requests follow the
+  /// While no module has power no node acknowledges a frame. Then the port has no room, and later requests follow the
   /// one that waits.
   void poll(Microseconds now) override {
     if (now >= next_) {

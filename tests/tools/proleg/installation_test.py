@@ -14,6 +14,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from urllib.request import urlopen
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 
@@ -95,11 +96,9 @@ class Installation(unittest.TestCase):
         self.assertIn("<html", (self.work / "run.html").read_text())
 
     def test_the_page_is_the_installed_one(self):
-        # A state folder of the test; HOME cannot be written.
         with subprocess.Popen([self.prefix / "bin/proleg", "ui", "caterpillar", "--paused", "--no-browser", "--recordings",
                                self.work], stdout=subprocess.PIPE, text=True, cwd=self.work) as program:
             address = re.search(r"http://\S+", program.stdout.readline()).group().split("#")[0]
-            from urllib.request import urlopen
             with urlopen(address, timeout=LONGEST) as answer:
                 self.assertEqual(answer.read(), (self.prefix / "share/proleg/page/index.html").read_bytes())
             program.send_signal(signal.SIGINT)

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view scenario_ending = ".simulation.xml";
-
 constexpr std::string_view gaits = "Gaits";
 constexpr std::string_view generators = "Gait generators";
 constexpr std::string_view worlds = "Worlds and robots";
@@ -79,7 +77,7 @@ std::string scenario_file(const std::string& word) {
   }
   std::vector<std::string> known;
   for (const ShippedScenario& scenario : scenarios) {
-    const std::string file = std::string(scenario.file) + std::string(scenario_ending);
+    const std::string file = std::string(scenario.file) + scenario_extension;
     if (word == scenario.name || word == scenario.file || word == file) {
       return (*folder / file).string();
     }

@@ -10,9 +10,12 @@
 
 namespace proleg::tools {
 
+/// How the names of scenario files end.
+inline constexpr const char* scenario_extension = ".simulation.xml";
+
 struct ShippedScenario {
   std::string_view name;   ///< on a command line; no other one has it
-  std::string_view file;   ///< below shipped_folder(), without ".simulation.xml"
+  std::string_view file;   ///< below shipped_folder(), without scenario_extension
   std::string_view group;  ///< the heading under which it stands
   std::string_view title;
   std::string_view text;  ///< a sentence; empty: the first comment of the file says it

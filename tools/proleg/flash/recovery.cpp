@@ -114,7 +114,7 @@ void Recovery::wait() {
   }
   const Microseconds begin = bus_.connection().now();
   const Microseconds end = begin + settings_.wait_us;
-  bus_.connection().run_until(end, is_heard);  // no look ends on a bus on which nobody acknowledges
+  bus_.connection().run_until(end, is_heard);  // no look ends on a bus on which no node acknowledges
   TerminalLine line(std::chrono::milliseconds(0));
   for (Microseconds now = bus_.connection().now(); now < end; now = bus_.connection().now()) {
     if (!settings_.report.has_events() && line.is_due()) {

@@ -6,6 +6,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/authoring/part_change.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/scenario_copy.hpp"
 

@@ -12,9 +12,7 @@
 
 namespace proleg::tools {
 
-/// The end of the names of scenarios.
-inline constexpr const char* scenario_extension = ".simulation.xml";
-/// And of experiments.
+/// How the names of experiment files end.
 inline constexpr const char* experiment_extension = ".optimise.xml";
 
 struct ProjectFile {

@@ -20,7 +20,7 @@ const ImageSigner& maker() {
   static const ImageSigner signer(1);
   return signer;
 }
-const ImageSigner& stranger() {
+const ImageSigner& other_maker() {
   static const ImageSigner signer(2);
   return signer;
 }
@@ -52,7 +52,7 @@ TEST_F(ChipWithKey, RefusesWhatIsNotSignedWithItAndErasesNothing) {
   std::vector<std::uint8_t> forged = signed_program(maker());
   forged[image::layout::signature_at] ^= 1;
   write_little_endian(forged, 508, 4, crc32(std::span<const std::uint8_t>(forged).first(508)));
-  const std::vector<std::uint8_t> images[]{newer_program(), signed_program(stranger()), forged};
+  const std::vector<std::uint8_t> images[]{newer_program(), signed_program(other_maker()), forged};
   std::vector<std::uint64_t> instructions;
   for (const std::vector<std::uint8_t>& image : images) {
     FlashingHost& host = host_with(image);
@@ -81,7 +81,7 @@ TEST_F(ChipWithKey, RunsWhatIsSignedWithItAndKeepsWhatItSaysOfLaterImages) {
   enter_bootloader();
   const std::vector<std::uint8_t> image = signed_program(maker(), [](image::Header& header) {
     header.minimum_version = header.version;
-    header.next_key = stranger().key;
+    header.next_key = other_maker().key;
   });
   ASSERT_EQ(flash(image), ReceiverState::installed);
   leave_bootloader();
@@ -96,7 +96,7 @@ TEST_F(ChipWithKey, RunsWhatIsSignedWithItAndKeepsWhatItSaysOfLaterImages) {
   const BusTime start = rig->bus.now();
   ASSERT_TRUE(starts_program(s));
   std::cout << "the start at which a new key is kept takes " << (rig->bus.now() - start) / ms << " ms\n";
-  EXPECT_EQ(trust(), (image::Trust{stranger().key, image::decode(image).header.version}));
+  EXPECT_EQ(trust(), (image::Trust{other_maker().key, image::decode(image).header.version}));
   EXPECT_TRUE(holds(slot_a, image));
   rig->power_on();
   ASSERT_TRUE(starts_program(200 * ms)) << "as fast as any";

@@ -227,7 +227,7 @@ constexpr ObjectAccessor accessors[] = {
         [](Parts& parts, const ObjectWrite& write) { return restore_parameters(parts, write.value); }),
     read_write(
         object::host_heartbeat.address, WritableIn::any_state, [](const Parts& parts) { return parts.host.expected(); },
-        [](Parts& parts, const ObjectWrite& write) { parts.host.set(write.value); }),
+        [](Parts& parts, const ObjectWrite& write) { parts.expect_heartbeat(write.value); }),
     read_write(
         object::heartbeat_period.address, WritableIn::any_state,
         [](const Parts& parts) { return parts.network.heartbeat_period_ms(); },

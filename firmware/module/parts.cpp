@@ -46,7 +46,7 @@ void Parts::reset_communication(Microseconds now) {
   recovery.reset();
   network.start(now);
   emergencies.reset_communication();
-  host.set(canopen::object::host_heartbeat.default_value);
+  expect_heartbeat(canopen::object::host_heartbeat.default_value);
   reported = {};
   settings.tick_period_us = canopen::object::tick_period.default_value;
   for (auto& channel : settings.nodes) {
@@ -63,6 +63,11 @@ void Parts::reset_communication(Microseconds now) {
     joint.restart();
   }
   drive.disable();
+}
+
+void Parts::expect_heartbeat(std::uint32_t value) {
+  host.set(value);
+  can.expect_heartbeat(host.node());
 }
 
 }  // namespace proleg::firmware

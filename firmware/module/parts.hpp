@@ -63,6 +63,8 @@ struct Parts {
   /// reset communication). The application remains as it is: the state of robot, gait and servo. A node id that
   /// LSS has configured takes effect.
   void reset_communication(Microseconds now);
+  /// Sets the value of 0x1016 (HostWatch::set), and has the controller pass the heartbeat that it names.
+  void expect_heartbeat(std::uint32_t value);
 
   ModuleIdentity identity;
   CanPort& can;

@@ -39,10 +39,14 @@ class HostWatch {
   }
   [[nodiscard]] std::uint32_t expected() const { return expected_; }
   [[nodiscard]] bool expects_heartbeat() const { return (expected_ & 0xFFFFU) != 0; }
+  /// The node whose heartbeat is expected; 0: none.
+  [[nodiscard]] std::uint8_t node() const {
+    return expects_heartbeat() ? static_cast<std::uint8_t>(expected_ >> 16U) : std::uint8_t{0};
+  }
 
-  /// Takes a heartbeat of any node. Returns whether it is the one that is expected.
-  bool receive_heartbeat(Microseconds now, std::uint8_t node) {
-    const bool is_expected = expects_heartbeat() && node == expected_ >> 16U;
+  /// Takes a heartbeat of any node, 1 to 127. Returns whether it is the one that is expected.
+  bool receive_heartbeat(Microseconds now, std::uint8_t sender) {
+    const bool is_expected = sender == node();
     if (is_expected) {
       start(now);
     }

@@ -35,16 +35,18 @@ constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mai
 
 // Filter banks, all in 16-bit scale and into FIFO 0. They pass data frames with 11-bit identifiers that concern the
 // module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
-constexpr unsigned node_bank = 0;    ///< masks that pass the module's own identifiers and all heartbeats
+constexpr unsigned node_bank = 0;    ///< masks that pass the module's own identifiers
 constexpr unsigned common_bank = 1;  ///< lists that pass messages for all nodes
-/// Lists that pass the identifiers of the LSS master, and of a host that sends an image.
+/// Lists that pass the identifiers of the LSS master, of a host that sends an image, and of the host's heartbeat.
 constexpr unsigned service_bank = 2;
 constexpr unsigned first_list_bank = 3;  ///< lists that pass state frames that the joint depends on, four in each bank
 /// Masks that pass all state frames, if the lists are too short.
 constexpr unsigned all_states_bank = can1::filter_banks - 1;
 /// Masks that pass every data frame, for the host of a gateway.
 constexpr unsigned every_frame_bank = all_states_bank - 1;
-constexpr unsigned list_banks = every_frame_bank - first_list_bank;
+/// A list that passes the heartbeat of a node that is not the host, and that the module expects.
+constexpr unsigned heartbeat_bank = every_frame_bank - 1;
+constexpr unsigned list_banks = heartbeat_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
 constexpr std::uint32_t banks_of_every_robot = 1U << node_bank | 1U << common_bank | 1U << service_bank;
 
@@ -65,7 +67,7 @@ void accept_frames_of(std::uint8_t node) {
   namespace identifier = canopen::identifier;
   const can1::FilterBank own(node_bank);
   own.first.write(masked(node, identifier::node_bits));
-  own.second.write(masked(identifier::heartbeat, function_bits));
+  own.second.write(masked(node, identifier::node_bits));
 }
 
 /// Sets the filters that are the same in every robot.
@@ -84,7 +86,8 @@ void accept_common_frames() {
   common.second.write(pair_of(identifier::commit, identifier::tick));
   const can1::FilterBank services(service_bank);
   services.first.write(pair_of(identifier::lss_request, broadcast::host_identifier));
-  services.second.write(pair_of(identifier::lss_request, broadcast::host_identifier));
+  constexpr std::uint32_t heartbeat_of_host = identifier::heartbeat + canopen::host_node;
+  services.second.write(pair_of(heartbeat_of_host, heartbeat_of_host));
   const can1::FilterBank all_states(all_states_bank);
   all_states.first.write(masked(identifier::state_frame, function_bits));
   all_states.second.write(masked(identifier::second_state, function_bits));
@@ -172,7 +175,7 @@ void Can::set_node(std::uint8_t node) {
 
 void Can::listen(std::span<const std::uint16_t> identifiers) {
   // A filter bank may be written while it is not in use.
-  std::uint32_t used = banks_of_every_robot | every_frame_bank_;
+  std::uint32_t used = banks_of_every_robot | other_banks_;
   can1::fa1r.write(used);
   if (identifiers.size() > list_banks * list_entries) {
     used |= 1U << all_states_bank;
@@ -192,9 +195,24 @@ void Can::listen(std::span<const std::uint16_t> identifiers) {
   can1::fa1r.write(used);
 }
 
+void Can::expect_heartbeat(std::uint8_t node) {
+  constexpr std::uint32_t bit = 1U << heartbeat_bank;
+  other_banks_ &= ~bit;
+  can1::fa1r.clear(bit);
+  if (node != 0 && node != canopen::host_node) {
+    const std::uint32_t identifier = std::uint32_t{canopen::identifier::heartbeat} + node;
+    const can1::FilterBank bank(heartbeat_bank);
+    bank.first.write(pair_of(identifier, identifier));
+    bank.second.write(pair_of(identifier, identifier));
+    other_banks_ |= bit;
+    can1::fa1r.set(bit);
+  }
+}
+
 void Can::receive_all(bool all) {
-  every_frame_bank_ = all ? 1U << every_frame_bank : 0U;
-  can1::fa1r.change(1U << every_frame_bank, every_frame_bank_);
+  constexpr std::uint32_t bit = 1U << every_frame_bank;
+  other_banks_ = all ? other_banks_ | bit : other_banks_ & ~bit;
+  can1::fa1r.change(bit, other_banks_);
 }
 
 #ifndef PROLEG_CAN_WITHOUT_ERROR_COUNTS

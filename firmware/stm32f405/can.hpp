@@ -39,6 +39,7 @@ class Can final : public CanPort {
   [[nodiscard]] bool send(const CanFrame& frame) override;
   void set_node(std::uint8_t node) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
+  void expect_heartbeat(std::uint8_t node) override;
   void receive_all(bool all) override;
 #ifndef PROLEG_CAN_WITHOUT_ERROR_COUNTS  // the bootloader does not use them, and has no room for them
   [[nodiscard]] CanStatus status() override;
@@ -83,8 +84,8 @@ class Can final : public CanPort {
   std::atomic<bool> is_bus_off_{false};                        ///< also set by CAN1_SCE, cleared by follow_recovery()
   std::atomic<std::uint32_t> lost_{0};
   Recovery recovery_ = Recovery::none;
-  /// Value in FA1R: 0, or the bit of the bank while all frames are to be received.
-  std::uint32_t every_frame_bank_ = 0;
+  /// Bits in FA1R of the banks that receive_all() and expect_heartbeat() use now.
+  std::uint32_t other_banks_ = 0;
 };
 
 }  // namespace proleg::stm32f405

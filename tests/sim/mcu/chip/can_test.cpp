@@ -76,7 +76,7 @@ TEST(ChipCan, SixtyFourRequestsBackToBackAreAllAnsweredInTheirOrder) {
 TEST(ChipCan, FramesThatDoNotMatterCostNoInstruction) {
   std::vector<CanFrame> foreign;
   for (const unsigned identifier : {0x001U, 0x081U, 0x084U, 0x100U, 0x182U, 0x184U, 0x204U, 0x284U, 0x304U, 0x384U,
-                                    0x404U, 0x584U, 0x604U, 0x682U, 0x691U, 0x6FFU, 0x784U, 0x7E4U}) {
+                                    0x404U, 0x584U, 0x604U, 0x682U, 0x691U, 0x6FFU, 0x704U, 0x77EU, 0x784U, 0x7E4U}) {
     foreign.push_back({static_cast<std::uint16_t>(identifier), 8, {1, 2, 3, 4, 5, 6, 7, 8}});
   }
   EXPECT_EQ(instructions(foreign, 300 * us), instructions({}, 0));
@@ -84,10 +84,36 @@ TEST(ChipCan, FramesThatDoNotMatterCostNoInstruction) {
 
 TEST(ChipCan, EachFrameThatMattersIsProcessed) {
   const std::uint64_t idle = instructions({}, 0);
-  for (const unsigned identifier : {0x000U, 0x080U, 0x203U, 0x603U, 0x680U, 0x681U, 0x690U, 0x704U, 0x77FU, 0x7E5U}) {
+  for (const unsigned identifier : {0x000U, 0x080U, 0x203U, 0x603U, 0x680U, 0x681U, 0x690U, 0x77FU, 0x7E5U}) {
     EXPECT_GT(instructions({{static_cast<std::uint16_t>(identifier), 0, {}}}, 300 * us), idle + 100)
         << std::hex << identifier;
   }
+}
+
+TEST(ChipCan, ReceivesTheHeartbeatOfTheNodeThatItExpectsAndOfTheHost) {
+  constexpr std::uint32_t never = 0xFFFF;  // ms: no timeout in this test
+  const auto cost = [](std::uint16_t identifier, std::uint32_t expected) {
+    const auto prepare = [expected](ChipRig& rig) {
+      rig.write(0x1016, 1, 4, 4U << 16U | never);
+      rig.write(0x1016, 1, 4, expected);
+    };
+    return instructions({{identifier, 1, {0x05}}}, 300 * us, prepare) - instructions({}, 0, prepare);
+  };
+  for (const std::uint32_t node : {5U, 126U}) {
+    EXPECT_GT(cost(static_cast<std::uint16_t>(0x700 + node), node << 16U | never), 100U);
+    EXPECT_EQ(cost(0x704, node << 16U | never), 0U) << "the node that was expected before";
+    EXPECT_GT(cost(0x77F, node << 16U | never), 100U) << "it has the lease";
+  }
+  for (const std::uint32_t none : {0U, 5U << 16U, never, 127U << 16U | never}) {
+    EXPECT_EQ(cost(0x705, none), 0U);
+    EXPECT_GT(cost(0x77F, none), 100U);
+  }
+  const auto reset = [](ChipRig& rig) {
+    rig.write(0x1016, 1, 4, 4U << 16U | never);
+    rig.host.send({0x000, 2, {0x82, ChipRig::node}});  // reset communication
+    rig.run_for(100 * ms);
+  };
+  EXPECT_EQ(instructions({{0x704, 1, {0x05}}}, 300 * us, reset), instructions({}, 0, reset));
 }
 
 TEST(ChipCan, ReceivesTheStateFramesOfItsNeighboursOnly) {

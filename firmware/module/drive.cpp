@@ -58,15 +58,30 @@ void Drive::update(Microseconds now, bool operational, bool synchronised, const 
   if (!synchronised && (servo_.is_moving() || (servo_.is_ramping_in() && !may_ramp_in))) {
     power_.quick_stop();
   }
-  const bool is_enabled = power_.state() == PowerState::operation_enabled;
+  const PowerState state = power_.state();
+  const bool is_enabled = state == PowerState::operation_enabled;
+  const bool needs_supply = is_enabled || state == PowerState::switched_on || state == PowerState::quick_stop_active;
+  if (needs_supply) {
+    switch_supply(true);
+  }
   if (operational && synchronised && is_enabled) {
     servo_.follow();
   } else if (may_ramp_in && !synchronised && is_enabled) {
     ramp_in(now, *start);
-  } else if (operational && power_.state() == PowerState::quick_stop_active) {
+  } else if (operational && state == PowerState::quick_stop_active) {
     servo_.quick_stop(now);
   } else {
     servo_.stop();
+  }
+  if (!needs_supply) {
+    switch_supply(false);
+  }
+}
+
+void Drive::switch_supply(bool is_on) {
+  if (is_on != has_supply_) {
+    has_supply_ = is_on;
+    port_.switch_supply(is_on);
   }
 }
 

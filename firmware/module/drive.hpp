@@ -14,7 +14,7 @@ namespace proleg::firmware {
 /// kernel computes the gait's set-point in every state of the drive.
 class Drive {
  public:
-  explicit Drive(ServoPort& port) : servo_(port) {}
+  explicit Drive(ServoPort& port) : port_(port), servo_(port) {}
 
   void reset();
   void configure(const ServoSchedule& schedule) { servo_.configure(schedule); }
@@ -59,9 +59,10 @@ class Drive {
     const Kernel& kernel;                  ///< the kernel, in state 0
     AngleLimits limits;
   };
-  /// Must be called after each event: switches the servo's pulses on or off. operational: NMT state; synchronised:
-  /// whether the set-point is that of the robot's tick; start: null unless the robot waits for SYNC 0. A servo that
-  /// moves and is no longer synchronised makes a quick stop, which only the host ends.
+  /// Must be called after each event: switches the servo's pulses on or off, and its supply, which it has from Switched
+  /// on to the end of Quick stop active (CiA 402-2, states in which the power is applied). operational: NMT state;
+  /// synchronised: whether the set-point is that of the robot's tick; start: null unless the robot waits for SYNC 0. A
+  /// servo that moves and is no longer synchronised makes a quick stop, which only the host ends.
   void update(Microseconds now, bool operational, bool synchronised, const StartPose* start = nullptr);
 
   void poll(Microseconds now) { servo_.poll(now); }
@@ -70,7 +71,9 @@ class Drive {
  private:
   [[nodiscard]] std::int32_t wanted_setpoint(const Kernel& kernel, const AngleLimits& limits) const;
   void ramp_in(Microseconds now, const StartPose& start);
+  void switch_supply(bool is_on);
 
+  ServoPort& port_;
   ServoDriver servo_;
   canopen::PowerControl power_;
   std::int8_t mode_ = canopen::mode_gait;
@@ -78,6 +81,7 @@ class Drive {
   std::int32_t target_ = 0;
   std::uint32_t ramp_in_speed_ = 0;
   std::int32_t setpoint_ = 0;  ///< the set-point that the servo approaches, in either mode
+  bool has_supply_ = false;
 };
 
 }  // namespace proleg::firmware

@@ -22,6 +22,8 @@ class ServoPort {
   virtual void pulse(std::int32_t width, std::uint32_t period_us) = 0;
   /// Stops the pulses: the servo has no torque. A pulse that has begun ends with its width.
   virtual void off() = 0;
+  /// Switches the servo's supply, on a board with a switch for it. It is off before the first call.
+  virtual void switch_supply(bool /*is_on*/) {}
 
  protected:
   ~ServoPort() = default;

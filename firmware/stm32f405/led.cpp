@@ -7,12 +7,7 @@ namespace proleg::stm32f405 {
 
 void show(LedPattern pattern, Microseconds now) {
   if constexpr (board::profile.led.has_value()) {
-    constexpr Switch led = board::profile.led.value_or(Switch{});
-    if (is_on(pattern, now) == (led.active == ActiveLevel::high)) {
-      set_high(led.pin);
-    } else {
-      set_low(led.pin);
-    }
+    switch_part(*board::profile.led, is_on(pattern, now));
   }
 }
 

@@ -34,6 +34,20 @@ void set_high(Pin pin) { GpioPort(pin.port).bsrr().write(1U << pin.number); }
 
 void set_low(Pin pin) { GpioPort(pin.port).bsrr().write(1U << (pin.number + 16U)); }
 
+void switch_part(const Switch& part, bool is_on) {
+  if (is_on == (part.active == ActiveLevel::high)) {
+    set_high(part.pin);
+  } else {
+    set_low(part.pin);
+  }
+}
+
+void switch_servo_supply(bool is_on) {
+  if constexpr (board::profile.servo_supply.has_value()) {
+    switch_part(*board::profile.servo_supply, is_on);
+  }
+}
+
 namespace {
 
 void enable_ports() {
@@ -51,6 +65,10 @@ void hold_servo_low() {
 
 void start_pins() {
   hold_servo_low();
+  if constexpr (board::profile.servo_supply.has_value()) {
+    switch_servo_supply(false);
+    set_mode(board::profile.servo_supply->pin, PinMode::output);
+  }
   for (const Pin pin : board::contacts) {
     set_pull(pin, Pull::up);
     set_mode(pin, PinMode::input);

@@ -64,6 +64,11 @@ void connect_function(Pin pin, unsigned function);
 void connect(Pin pin, unsigned function);
 void set_high(Pin pin);
 void set_low(Pin pin);
+/// Sets the level at which a part is on, or the other one.
+void switch_part(const Switch& part, bool is_on);
+/// Switches the servo's supply. Without a switch for it nothing happens. It may be called before start_pins(), which
+/// makes the pin an output and the supply off.
+void switch_servo_supply(bool is_on);
 
 /// Makes the servo's pin low, which floats from the reset on. Nothing else is needed before: it may be the first call.
 void hold_servo_low();

@@ -111,6 +111,8 @@ bool Servo::continue_with_internal_oscillator() const {
   return true;
 }
 
+void Servo::switch_supply(bool is_on) { switch_servo_supply(is_on); }
+
 void Servo::finish_last_pulse() const {
   // The output register holds 0 since start_pins(). Before that the port has no clock, and the pin is an input.
   if (!rcc::ahb1enr.has(rcc::ahb1enr_gpioa)) {
@@ -124,6 +126,7 @@ void Servo::finish_last_pulse() const {
     }
   }
   set_mode(board::servo, PinMode::output);
+  switch_servo_supply(false);
 }
 
 void Servo::off() {

@@ -18,6 +18,7 @@ class Servo final : public firmware::ServoPort {
   /// width: 1 or more.
   void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override;
+  void switch_supply(bool is_on) override;
   /// Ends the running pulse with the width that was requested, also if the crystal has stopped; then the pin stays low,
   /// because the program cannot continue. Takes as long as the rest of the pulse, 2.5 ms at most. It may be called at
   /// any priority, also before start(), and with any contents of the RAM: what cannot be a width ends the pulse at

@@ -22,6 +22,7 @@ FIRMWARE = {
     "contacts[1]": ("GPIO", None, "J4.3"),
     "contacts[2]": ("GPIO", None, "J4.4"),
     "contacts[3]": ("GPIO", None, "J4.5"),
+    "servo_supply": ("GPIO", None, "Q3.1"),
     "servo_current": ("ADC123_IN", None, "U4.1"),
     "feedback": ("ADC123_IN", None, "J5.2"),
     "console_transmit": ("USART2_TX", "console_function", "J6.2"),

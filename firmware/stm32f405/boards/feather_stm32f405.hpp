@@ -16,6 +16,7 @@ inline constexpr BoardProfile feather_stm32f405{
     .can_transmit = {'B', 9},
     .servo = {'A', 5},
     .contacts = {{{'B', 10}, {'B', 11}, {'B', 13}, {'B', 14}}},
+    .servo_supply = {},
     .servo_current = {},
     .feedback = Pin{'C', 4},
     .console_transmit = {},

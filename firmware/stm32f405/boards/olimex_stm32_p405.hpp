@@ -16,6 +16,7 @@ inline constexpr BoardProfile olimex_stm32_p405{
     .can_transmit = {'B', 9},
     .servo = {'A', 5},
     .contacts = {{{'C', 6}, {'C', 7}, {'C', 8}, {'C', 9}}},  // PB12 to PB15 are the SD card's
+    .servo_supply = {},
     .servo_current = {},
     .feedback = Pin{'C', 1},
     .console_transmit = Pin{'A', 2},

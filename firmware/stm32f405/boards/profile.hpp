@@ -21,10 +21,10 @@ struct Pin {
   friend constexpr bool operator==(const Pin&, const Pin&) = default;
 };
 
-/// The level at which an LED is on, or a button is pressed.
+/// The level at which an LED or a supply is on, or a button is pressed.
 enum class ActiveLevel : std::uint8_t { low, high };
 
-/// A pin to which an LED or a button is connected.
+/// A pin to which an LED, a button or the switch of a supply is connected.
 struct Switch {
   Pin pin;
   ActiveLevel active = ActiveLevel::high;
@@ -40,8 +40,9 @@ struct BoardProfile {
   /// Touch sensors: switches to ground, in the order of firmware::ContactPort: rear and front of the link behind the
   /// joint, rear and front of the link in front of it. All at one port, which is read at once.
   std::array<Pin, 4> contacts;
-  std::optional<Pin> servo_current;  ///< 1 V per A: PC0 to PC5; nothing: the board has no sensor
-  std::optional<Pin> feedback;       ///< slider of a potentiometer between ground and VDDA: PC0 to PC5
+  std::optional<Switch> servo_supply;  ///< switches the servo's supply; the board keeps it off while the pin floats
+  std::optional<Pin> servo_current;    ///< 1 V per A: PC0 to PC5; nothing: the board has no sensor
+  std::optional<Pin> feedback;         ///< slider of a potentiometer between ground and VDDA: PC0 to PC5
   /// USART2: PA2 and PA3; nothing: the board leads them nowhere. It has no console then, and is no gateway.
   std::optional<Pin> console_transmit;
   std::optional<Pin> console_receive;
@@ -109,7 +110,7 @@ namespace board_rules {
 }
 
 /// All pins that a profile uses; those that it does not use are without a port.
-[[nodiscard]] constexpr std::array<Pin, 13> pins_of(const BoardProfile& board) {
+[[nodiscard]] constexpr std::array<Pin, 14> pins_of(const BoardProfile& board) {
   const auto pin_of = [](const std::optional<Switch>& part) { return part ? part->pin : Pin{}; };
   return {board.can_receive,
           board.can_transmit,
@@ -118,6 +119,7 @@ namespace board_rules {
           board.contacts[1],
           board.contacts[2],
           board.contacts[3],
+          pin_of(board.servo_supply),
           board.servo_current.value_or(Pin{}),
           board.feedback.value_or(Pin{}),
           board.console_transmit.value_or(Pin{}),

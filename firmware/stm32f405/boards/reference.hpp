@@ -15,6 +15,7 @@ inline constexpr BoardProfile reference{
     .can_transmit = {'B', 9},
     .servo = {'A', 5},
     .contacts = {{{'B', 12}, {'B', 13}, {'B', 14}, {'B', 15}}},
+    .servo_supply = Switch{{'C', 7}, ActiveLevel::high},
     .servo_current = Pin{'C', 0},
     .feedback = Pin{'C', 1},
     .console_transmit = Pin{'A', 2},

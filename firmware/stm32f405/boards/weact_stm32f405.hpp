@@ -15,6 +15,7 @@ inline constexpr BoardProfile weact_stm32f405{
     .can_transmit = {'B', 9},
     .servo = {'A', 5},
     .contacts = {{{'B', 12}, {'B', 13}, {'B', 14}, {'B', 15}}},
+    .servo_supply = {},
     .servo_current = {},
     .feedback = Pin{'C', 1},
     .console_transmit = Pin{'A', 2},

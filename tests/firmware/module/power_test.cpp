@@ -191,6 +191,49 @@ TEST_F(Power, AQuickStopOfAServoWithoutPulsesStaysOff) {
   expect_no_pulses(2'000'000);
 }
 
+TEST_F(Power, TheServoHasItsSupplyFromSwitchedOnToTheEndOfAQuickStop) {
+  struct Step {
+    std::uint16_t controlword;
+    bool has_supply;
+  };
+  for (const Step step : std::to_array<Step>({{0x06, false},
+                                              {0x07, true},
+                                              {0x0F, true},
+                                              {0x07, true},
+                                              {0x06, false},
+                                              {0x0F, true},
+                                              {0x02, true},
+                                              {0x80, false},
+                                              {0x06, false},
+                                              {0x0F, true},
+                                              {0x00, false}})) {
+    robot.write_controlword(step.controlword);
+    EXPECT_EQ(robot.it().has_supply, step.has_supply) << step.controlword;
+  }
+  EXPECT_EQ(robot.it().supply_changes, 6U);
+}
+
+TEST_F(Power, TheServoLosesItsSupplyInAFault) {
+  move();
+  EXPECT_TRUE(robot.it().has_supply);
+  robot.it().supply_low(robot.bus.now());
+  EXPECT_EQ(robot.module().power(), PowerState::fault);
+  EXPECT_FALSE(robot.it().has_supply);
+}
+
+TEST_F(Power, TheServoLosesItsSupplyWithOperational) {
+  for (const NmtCommand command :
+       {NmtCommand::stop, NmtCommand::enter_pre_operational, NmtCommand::reset_node, NmtCommand::reset_communication}) {
+    test::TestModule other(robot.setup.kernel, servo_us);
+    other.set_up_and_start();
+    other.enable(0);
+    other.run(20);
+    ASSERT_TRUE(other.it().has_supply);
+    other.command(command);
+    EXPECT_FALSE(other.it().has_supply);
+  }
+}
+
 TEST(HostWatch, MissesNobodyBeforeTheFirstHeartbeatUnlessTheServoIsEnabled) {
   test::TestModule robot;
   robot.bus.host_is_alive = false;

@@ -117,6 +117,9 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     return count;
   }
   std::uint32_t pulse_period_us = 0;  ///< period of the last pulse
+  /// Whether the servo has its supply. It is an error if a pulse comes without.
+  bool has_supply = false;
+  unsigned supply_changes = 0;
   Meters meters;
   FlashMemory flash;
   ProgramPlace program;
@@ -145,7 +148,13 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     return true;
   }
   void recover() override { recoveries.push_back(now_); }
+  void switch_supply(bool is_on) override {
+    EXPECT_NE(is_on, has_supply) << "the port is called for changes only";
+    has_supply = is_on;
+    ++supply_changes;
+  }
   void pulse(std::int32_t width, std::uint32_t period_us) override {
+    EXPECT_TRUE(has_supply);
     pulses.push_back({now_, width});
     pulse_period_us = period_us;
   }

@@ -50,7 +50,7 @@ class Board(unittest.TestCase):
 
     def test_spare_pins_are_for_a_later_program(self):
         later = {pin.name: pin.net.name for pin in self.board.parts["U1"].pins if pin.program == "later"}
-        self.assertEqual(later, {"PC2": "SUPPLY_SENSE", "PC3": "SERVO_TEMPERATURE", "PC7": "SERVO_ON", "PC8": "REV0",
+        self.assertEqual(later, {"PC2": "SUPPLY_SENSE", "PC3": "SERVO_TEMPERATURE", "PC8": "REV0",
                                  "PC9": "REV1", "PA8": "MCO"})
 
     def test_current_is_1_v_per_a(self):

@@ -269,5 +269,61 @@ TEST_F(ServoPin, ItsFirstPulseIsWholeToAMicrosecond) {
   EXPECT_NEAR(static_cast<double>(pulses_[0].length), 1'500.0 * us, us);
 }
 
+/// PC7 of the reference board.
+class ServoSupply : public testing::Test {
+ protected:
+  ServoSupply() {
+    rig_.chip.set_pin_watch('C', 7, [this](BusTime time, bool high) {
+      is_on_ = high;
+      changed_ = time;
+    });
+  }
+  void move() {
+    rig_.start_robot(20'000);
+    EXPECT_FALSE(is_on_);
+    rig_.enable_servo(0);
+    rig_.run_for(100 * ms);
+    ASSERT_TRUE(is_on_);
+  }
+  ChipRig rig_;
+  bool is_on_ = false;
+  BusTime changed_ = 0;
+};
+
+TEST_F(ServoSupply, IsOnWhileTheServoHasPower) {
+  move();
+  rig_.write(0x6040, 0, 2, 0x02);
+  rig_.run_for(1'500 * ms);
+  EXPECT_TRUE(is_on_) << "the servo holds the safe pose";
+  rig_.write(0x6040, 0, 2, 0x80);
+  EXPECT_FALSE(is_on_);
+}
+
+TEST_F(ServoSupply, IsOffInAFault) {
+  move();
+  rig_.board.temperature = 120'000;
+  rig_.run_for(100 * ms);
+  EXPECT_FALSE(is_on_);
+}
+
+TEST_F(ServoSupply, IsOffWhenTheProgramHasAFaultAndAfterTheReset) {
+  move();
+  const BusTime start = rig_.bus.now();
+  rig_.break_program({0xDE00});  // udf: an undefined instruction
+  rig_.run_for(50 * ms);
+  EXPECT_FALSE(is_on_);
+  EXPECT_LT(changed_, start + 50 * ms);
+  EXPECT_GT(changed_, start);
+}
+
+TEST_F(ServoSupply, IsOffFromAResetByThePinOn) {
+  move();
+  const BusTime start = rig_.bus.now();
+  rig_.chip.pull_reset_pin();
+  rig_.run_for(200 * ms);
+  EXPECT_FALSE(is_on_);
+  EXPECT_LT(changed_, start + ms);
+}
+
 }  // namespace
 }  // namespace proleg::sim

@@ -245,6 +245,10 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
   if (const std::string reason = trust_refusal(image, program.trust); !reason.empty()) {
     return refuse(reason);
   }
+  if (module.board_id != image.board_id && program.trust.key_id != 0) {
+    return refuse("takes only signed images, and the signature holds for " + boards_text(image) +
+                  ": sign an image for " + board_text(module.board_id));
+  }
   if (!program.image) {
     return {FlashAction::install, "no program -> " + version_text(image)};
   }

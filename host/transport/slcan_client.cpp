@@ -27,6 +27,7 @@ void SlcanClient::start(Microseconds now) {
   has_confirmed_frames_ = false;
   has_received_ = false;
   start_deadline_ = now + settings_.start_timeout;
+  has_bus_trouble_ = false;
   lines_.reset();
   confirms_with_end_ = false;
   rubbish_.clear();
@@ -140,6 +141,7 @@ bool SlcanClient::handle_report(Microseconds now) {
       return true;
     }
     has_received_ = true;
+    rejected_since_ = never;
     if (frame->is_for_protocol()) {
       listener_.received(now, frame->can_frame());
     } else {
@@ -149,6 +151,7 @@ bool SlcanClient::handle_report(Microseconds now) {
   }
   if (const auto status = parse_slcan_status(line_)) {
     if (state_ == State::open || step_ == Step::open) {
+      has_bus_trouble_ = status->state != CanState::error_active;
       listener_.status_received(*status);
     }
     return true;
@@ -268,6 +271,7 @@ void SlcanClient::end_round(Microseconds now) {
 void SlcanClient::become_open(Microseconds now) {
   state_ = State::open;
   last_answer_ = now;
+  rejected_since_ = never;
 }
 
 void SlcanClient::poll(Microseconds now) {
@@ -421,7 +425,15 @@ void SlcanClient::handle_frame_answer(Microseconds now, Answer answer) {
   if (answer == Answer::rejected) {
     pending_.pop_front();
     ++statistics_.refused;
+    rejected_since_ = std::min(rejected_since_, now);
+    if (!has_bus_trouble_ && now - rejected_since_ >= settings_.rejection_timeout) {
+      fail("the adapter has rejected all frames for " +
+               number_text(static_cast<double>(settings_.rejection_timeout) / microseconds_per_second) +
+               " s: its channel is closed, as after a reset",
+           TransportProblem::other);
+    }
   } else {
+    rejected_since_ = never;
     confirm(now);
   }
 }

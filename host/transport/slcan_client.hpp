@@ -42,6 +42,9 @@ class SlcanClient {
     /// The same if frames have been confirmed or received, so that the bus carries frames: on a bad line confirmations
     /// are lost, and fill the window.
     Microseconds confirmation_timeout = 200'000;
+    /// The channel is lost after this duration in which the adapter rejects all frames and receives none, unless it
+    /// has reported that its controller is in trouble. An adapter that was reset has a closed channel.
+    Microseconds rejection_timeout = 500'000;
     std::size_t window = 32;
     std::size_t max_queue = 1'024;  ///< frames that wait for the window
     bool is_listen_only = false;
@@ -135,6 +138,8 @@ class SlcanClient {
   bool confirms_with_end_ = false;  ///< a frame was confirmed with CR, or with z and CR
   bool has_proof_ = false;          ///< something in this round shows that slcan is spoken
   unsigned refusals_ = 0;
+  Microseconds rejected_since_ = never;  ///< when the first one of the frames was rejected that all were
+  bool has_bus_trouble_ = false;         ///< the adapter has reported another state than error active
 };
 
 }  // namespace proleg::host

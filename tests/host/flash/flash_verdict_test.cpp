@@ -76,6 +76,17 @@ TEST(FlashVerdict, AnotherBoardNeedsAWord) {
   EXPECT_EQ(judge(header(2), other, {.other_board = true}).action, FlashAction::install);
 }
 
+TEST(FlashVerdict, ASignedImageIsForItsBoardOnlyBecauseTheSignatureCoversTheBoard) {
+  FlashCandidate other = module_with(header(1));
+  other.board_id = 2;
+  other.program.trust = {0x1A2B'3C4D, 0, 0, 0};
+  image::Header signed_image = header(2);
+  signed_image.key_id = 0x1A2B'3C4D;
+  const FlashVerdict verdict = judge(signed_image, other, {.other_board = true});
+  EXPECT_EQ(verdict.action, FlashAction::refuse);
+  EXPECT_NE(verdict.text.find("the signature holds for board 1 (reference)"), std::string::npos) << verdict.text;
+}
+
 TEST(FlashVerdict, NothingIsSentToAModuleThatMoves) {
   EXPECT_EQ(judge(header(2), module_with(header(1), well | flag::is_busy), {true, true}).action, FlashAction::refuse);
 }

@@ -232,6 +232,45 @@ TEST_F(SlcanClientTest, AFrameThatTheAdapterRefusesIsCounted) {
   EXPECT_EQ(client.statistics().refused, 1U);
 }
 
+TEST_F(SlcanClientTest, AnAdapterThatRejectsAllFramesForHalfASecondWasReset) {
+  open(lawicel);
+  for (unsigned number = 0; number < 6; ++number) {
+    ASSERT_EQ(client.state(), SlcanClient::State::open);
+    ASSERT_TRUE(client.send(frame(number)));
+    static_cast<void>(client.take(now, 100));
+    client.input(now, "\a");
+    now += 100'000;
+  }
+  EXPECT_EQ(client.state(), SlcanClient::State::failed);
+  EXPECT_NE(client.error().find("its channel is closed, as after a reset"), std::string::npos) << client.error();
+}
+
+TEST_F(SlcanClientTest, AnAdapterThatRejectsFramesBetweenOthersIsThere) {
+  for (const std::string other : {"z\r", "t0800\r"}) {  // a frame is confirmed, or received
+    open(lawicel);
+    for (unsigned number = 0; number < 20; ++number) {
+      ASSERT_TRUE(client.send(frame(number)));
+      ASSERT_TRUE(client.send(frame(number)));
+      static_cast<void>(client.take(now, 100));
+      client.input(now, "\a" + other + (other == "z\r" ? "" : "\a"));
+      now += 100'000;
+    }
+    EXPECT_EQ(client.state(), SlcanClient::State::open);
+  }
+}
+
+TEST_F(SlcanClientTest, AnAdapterWhoseControllerIsInTroubleMayRejectAllFrames) {
+  open(lawicel);
+  client.input(now, "sp128128\r");
+  for (unsigned number = 0; number < 20; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+    static_cast<void>(client.take(now, 100));
+    client.input(now, "\a");
+    now += 100'000;
+  }
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+}
+
 TEST_F(SlcanClientTest, ABurstOf2000FramesArrivesInEveryDialect) {
   for (const Script& dialect : {Script(lawicel), Script(canable)}) {
     open(dialect);

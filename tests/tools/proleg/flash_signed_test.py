@@ -113,6 +113,15 @@ class SignedFlash(unittest.TestCase):
             self.assertEqual(self.keys(bus.tcp), [f"key {other}"] * len(ALL))
             self.assert_all_run(self.flash(bus.tcp, self.sign("0.2.0", "other"), "--allow-downgrade"), "0.2.0")
 
+    def test_a_key_and_a_signed_image_reach_all_modules_through_the_serial_line_of_a_gateway(self):
+        one = self.key("one")
+        with Bus("--gateway", "3=0") as bus:
+            line = bus.find(r"--bus (\S+)$")
+            self.assertEqual(self.set_key(line, "one").count(f"signed with key {one}"), len(ALL))
+            self.assertEqual(self.keys(line), [f"key {one}"] * len(ALL))
+            self.assertIn("the image is not signed", self.reasons(self.flash(line, "0.2.0", status=1)))
+            self.assert_all_run(self.flash(line, self.sign("0.2.0", "one")), "0.2.0")
+
 
 if __name__ == "__main__":
     table.PROGRAMS = Path(sys.argv.pop()).resolve()

@@ -36,6 +36,46 @@ std::string refusal(const FlashCandidate& module, std::uint32_t id) {
   return "";
 }
 
+/// Gives these modules the key, all at once. through_its_line: the connection may end meanwhile.
+std::vector<broadcast::Target> give_key(BusAccess& bus, const image::PublicKey& key,
+                                        const std::vector<FlashCandidate*>& modules, bool through_its_line) {
+  std::vector<std::uint32_t> serials;
+  for (const FlashCandidate* const module : modules) {
+    serials.push_back(module->program.serial);
+  }
+  host::BusConnection& connection = bus.connection();
+  host::KeyUpdate update(connection, key, serials, new_session(bus));
+  {
+    const host::BusAttachment attachment(connection, update);
+    update.start(connection.now());
+    bus.wait_for("the modules that keep the key", 120 * second,
+                 [&] { return update.is_done() || (through_its_line && !connection.state().is_connected); });
+  }
+  connection.run_for(second);  // the programs start
+  return update.targets();
+}
+
+/// Whether the program of a gateway reports the key. The host may reach the bus through this gateway only: its line
+/// ends while its bootloader runs.
+bool comes_back_with_key(BusAccess& bus, const FlashCandidate& gateway, std::uint32_t id) {
+  host::BusConnection& connection = bus.connection();
+  const Microseconds end = connection.now() + 20 * second;
+  while (connection.now() < end && !interrupted()) {
+    host::ModuleQuery query(connection);
+    {
+      const host::BusAttachment attachment(connection, query);
+      query.start(connection.now(), {gateway.program.serial});
+      connection.run_until(end, [&] { return query.is_done() || interrupted() || !connection.state().is_connected; });
+    }
+    const host::ModuleProgram& program = query.modules().front();
+    if (query.is_done() && program.has_answered && program.is(flag::runs_program)) {
+      return program.trust.key_id == id;
+    }
+    connection.run_for(second / 4);
+  }
+  return false;
+}
+
 }  // namespace
 
 int run_flash_key(BusAccess& bus, const std::string& file, const std::optional<std::vector<std::uint8_t>>& nodes) {
@@ -43,26 +83,33 @@ int run_flash_key(BusAccess& bus, const std::string& file, const std::optional<s
   const std::uint32_t id = image::key_id(key);
   std::vector<FlashCandidate> modules = find_modules(bus, nodes).modules;
   std::vector<std::string> states;
-  std::vector<std::uint32_t> serials;
-  for (const FlashCandidate& module : modules) {
+  std::vector<FlashCandidate*> ordinary;
+  std::vector<FlashCandidate*> gateways;
+  for (FlashCandidate& module : modules) {
     states.push_back(refusal(module, id));
     if (states.back().empty() && module.program.trust.key_id == 0) {
-      serials.push_back(module.program.serial);
+      (module.program.is(flag::is_gateway) ? gateways : ordinary).push_back(&module);
     }
   }
-  if (!serials.empty()) {
-    host::KeyUpdate update(bus.connection(), key, serials, new_session(bus));
-    {
-      const host::BusAttachment attachment(bus.connection(), update);
-      update.start(bus.connection().now());
-      bus.wait_for("the modules that keep the key", 120 * second, [&update] { return update.is_done(); });
+  const auto state_of = [&](const FlashCandidate* module) -> std::string& {
+    return states[static_cast<std::size_t>(module - modules.data())];
+  };
+  if (!ordinary.empty()) {
+    const std::vector<broadcast::Target> targets = give_key(bus, key, ordinary, false);
+    for (std::size_t i = 0; i < ordinary.size(); ++i) {
+      state_of(ordinary[i]) = host::key_failure(targets[i]);
     }
-    for (const broadcast::Target& target : update.targets()) {
-      const auto module =
-          std::ranges::find(modules, target.serial, [](const FlashCandidate& each) { return each.program.serial; });
-      states[static_cast<std::size_t>(module - modules.begin())] = host::key_failure(target);
+  }
+  // Gateways come last, one after the other, as with an image.
+  for (FlashCandidate* const gateway : gateways) {
+    const broadcast::Target target = give_key(bus, key, {gateway}, true).front();
+    const bool has_result = target.status.state == broadcast::ReceiverState::refused ||
+                            target.status.state == broadcast::ReceiverState::failed;
+    if (has_result) {
+      state_of(gateway) = host::key_failure(target);
+    } else if (!comes_back_with_key(bus, *gateway, id)) {
+      state_of(gateway) = "has not come back with the key";
     }
-    bus.connection().run_for(second);  // the programs start
   }
   bool are_all_good = true;
   for (std::size_t i = 0; i < modules.size(); ++i) {

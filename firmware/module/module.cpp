@@ -17,10 +17,10 @@ Module::Module(const ModuleIdentity& identity, const Ports& ports) : parts_(iden
 
 void Module::power_on(Microseconds now) {
   parts_.load();
+  parts_.update.power_on(now);
   parts_.reset(now);
   objects_.reset();
   parts_.emergencies.power_on();
-  parts_.update.power_on(now);
   finish_event(now);
 }
 
@@ -234,7 +234,11 @@ void Module::poll_parts(Microseconds now) {
   poll_host(parts_, now);
   poll_sync(parts_, now);
   parts_.producer.poll(now);
+  const bool was_on_trial = parts_.update.is_on_trial();
   parts_.update.poll(now, may_write_flash(parts_) && !parts_.is_supply_low);
+  if (was_on_trial && !parts_.update.is_on_trial()) {
+    parts_.pass_heartbeats();
+  }
   objects_.poll(now);
   finish_event(now);
 }

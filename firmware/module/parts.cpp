@@ -67,7 +67,7 @@ void Parts::reset_communication(Microseconds now) {
 
 void Parts::expect_heartbeat(std::uint32_t value) {
   host.set(value);
-  can.expect_heartbeat(host.node());
+  pass_heartbeats();
 }
 
 }  // namespace proleg::firmware

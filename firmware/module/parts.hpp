@@ -65,6 +65,8 @@ struct Parts {
   void reset_communication(Microseconds now);
   /// Sets the value of 0x1016 (HostWatch::set), and has the controller pass the heartbeat that it names.
   void expect_heartbeat(std::uint32_t value);
+  /// Has the controller pass the heartbeats that the module needs now.
+  void pass_heartbeats() { can.expect_heartbeat(update.is_on_trial() ? CanPort::every_node : host.node()); }
 
   ModuleIdentity identity;
   CanPort& can;

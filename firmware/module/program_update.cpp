@@ -12,6 +12,7 @@ ProgramUpdate::ProgramUpdate(const ModuleIdentity& identity, const Ports& ports)
 void ProgramUpdate::power_on(Microseconds now) {
   has_sent_ = false;
   has_received_ = false;
+  is_on_trial_ = port_ != nullptr && port_->has_bootloader() && !port_->is_confirmed();
   confirm_at_ = port_ == nullptr ? never : now + trial_us;
   good_at_ = port_ == nullptr ? never : now + good_start_us;
   enter_at_ = never;
@@ -49,12 +50,11 @@ void ProgramUpdate::install(Microseconds now) {
 void ProgramUpdate::poll(Microseconds now, bool may_restart) {
   constexpr Microseconds next_look_us = 100'000;
   if (now >= confirm_at_) {
-    const bool is_on_trial = port_->has_bootloader() && !port_->is_confirmed();
-    const bool can_be_replaced = has_sent_ && has_received_;
-    if (is_on_trial && can_be_replaced) {
+    if (is_on_trial_ && has_sent_ && has_received_) {  // so it can be replaced
       port_->confirm();
+      is_on_trial_ = false;
     }
-    confirm_at_ = is_on_trial && !can_be_replaced ? now + next_look_us : never;
+    confirm_at_ = is_on_trial_ ? now + next_look_us : never;
   }
   if (now >= good_at_) {
     good_at_ = never;

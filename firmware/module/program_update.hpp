@@ -41,6 +41,8 @@ class ProgramUpdate final : private broadcast::ReceiverOwner {
   /// Must be called when frames were lost, any number.
   void bus_was_lost() { receiver_.bus_was_lost(); }
 
+  /// Whether the program has a bootloader that waits for its confirmation. Any frame that is received counts for it.
+  [[nodiscard]] bool is_on_trial() const { return is_on_trial_; }
   /// Id of the key with which images must be signed; 0: the module takes any image.
   [[nodiscard]] std::uint32_t key_id() const { return port_ == nullptr ? 0 : trust().key_id; }
 
@@ -60,6 +62,7 @@ class ProgramUpdate final : private broadcast::ReceiverOwner {
   Conditions conditions_;
   bool has_sent_ = false;
   bool has_received_ = false;
+  bool is_on_trial_ = false;
   Microseconds started_at_ = 0;
   Microseconds confirm_at_ = never;
   Microseconds good_at_ = never;

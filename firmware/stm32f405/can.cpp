@@ -44,7 +44,7 @@ constexpr unsigned first_list_bank = 3;  ///< lists that pass state frames that 
 constexpr unsigned all_states_bank = can1::filter_banks - 1;
 /// Masks that pass every data frame, for the host of a gateway.
 constexpr unsigned every_frame_bank = all_states_bank - 1;
-/// A list that passes the heartbeat of a node that is not the host, and that the module expects.
+/// Masks that pass the heartbeat of a node that is not the host, and that the module expects, or all heartbeats.
 constexpr unsigned heartbeat_bank = every_frame_bank - 1;
 constexpr unsigned list_banks = heartbeat_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
@@ -73,7 +73,8 @@ void accept_frames_of(std::uint8_t node) {
 /// Sets the filters that are the same in every robot.
 void accept_common_frames() {
   namespace identifier = canopen::identifier;
-  constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank | 1U << every_frame_bank;
+  constexpr std::uint32_t with_masks =
+      1U << node_bank | 1U << heartbeat_bank | 1U << all_states_bank | 1U << every_frame_bank;
   constexpr std::uint32_t all_banks = (1U << can1::filter_banks) - 1U;
   can1::fmr.change(can1::fmr_mask, can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
   can1::fa1r.write(0);
@@ -200,10 +201,12 @@ void Can::expect_heartbeat(std::uint8_t node) {
   other_banks_ &= ~bit;
   can1::fa1r.clear(bit);
   if (node != 0 && node != canopen::host_node) {
-    const std::uint32_t identifier = std::uint32_t{canopen::identifier::heartbeat} + node;
+    const std::uint32_t filter =
+        node == every_node ? masked(canopen::identifier::heartbeat, function_bits)
+                           : masked(canopen::identifier::heartbeat + std::uint32_t{node}, CanFrame::max_identifier);
     const can1::FilterBank bank(heartbeat_bank);
-    bank.first.write(pair_of(identifier, identifier));
-    bank.second.write(pair_of(identifier, identifier));
+    bank.first.write(filter);
+    bank.second.write(filter);
     other_banks_ |= bit;
     can1::fa1r.set(bit);
   }

@@ -71,9 +71,10 @@ class CanPort {
   /// Selects the state frames (0x181 to 0x1FF, 0x281 to 0x2FF) that the owner needs; before the first call it needs
   /// none. The controller may discard other state frames.
   virtual void listen(std::span<const std::uint16_t> /*identifiers*/) {}
-  /// Sets the node whose heartbeat the owner needs beside that of the host (0x77F); 0, as before the first call: none.
-  /// The controller may discard other heartbeats (0x701 to 0x77F).
+  /// Sets the node whose heartbeat the owner needs beside that of the host (0x77F); every_node: it needs all of them;
+  /// 0, as before the first call: no other. The controller may discard other heartbeats (0x701 to 0x77F).
   virtual void expect_heartbeat(std::uint8_t /*node*/) {}
+  static constexpr std::uint8_t every_node = 0xFF;
   /// Sets whether the owner needs all data frames with 11-bit identifiers, whatever set_node() and listen() say. Before
   /// the first call it does not. A gateway with a host on its line does.
   virtual void receive_all(bool /*all*/) {}

@@ -152,6 +152,7 @@ TEST(ProgramUpdate, AProgramThatNobodyHearsOrThatHearsNobodyIsNotConfirmed) {
   };
   run_for(10'000'000);
   EXPECT_EQ(alone.program.confirmations, 0U);
+  EXPECT_EQ(alone.expected_heartbeat, 0xFFU) << "the heartbeat of any other node ends the trial";
   EXPECT_EQ(alone.program.good_starts, 1U) << "it has not stopped";
   ASSERT_FALSE(alone.pending.empty());
   const CanFrame boot_up = alone.pending.front();
@@ -162,6 +163,16 @@ TEST(ProgramUpdate, AProgramThatNobodyHearsOrThatHearsNobodyIsNotConfirmed) {
   alone.receive(now, encode(canopen::Heartbeat{77, canopen::NmtState::operational}));
   run_for(1'000'000);
   EXPECT_EQ(alone.program.confirmations, 1U);
+}
+
+TEST_F(ProgramUpdateTest, AConfirmedProgramReceivesTheHeartbeatThatItExpectsOnly) {
+  robot.bus.run_for(trial);
+  ASSERT_EQ(program().confirmations, 1U);
+  EXPECT_EQ(robot.it().expected_heartbeat, 0U);
+  robot.write(canopen::object::host_heartbeat, 9U << 16U | 500U);
+  EXPECT_EQ(robot.it().expected_heartbeat, 9U);
+  robot.write(canopen::object::host_heartbeat, 9U << 16U);
+  EXPECT_EQ(robot.it().expected_heartbeat, 0U);
 }
 
 TEST(ProgramUpdate, WithoutABootloaderNothingIsInstalledOrConfirmed) {

@@ -104,6 +104,8 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   std::vector<CanFrame> pending;
   /// Identifiers of the state frames that the module listens to.
   std::vector<std::uint16_t> listened;
+  /// The node of which the module expects a heartbeat, or CanPort::every_node.
+  std::uint8_t expected_heartbeat = 0;
   /// Times at which the controller was asked to recover.
   std::vector<Microseconds> recoveries;
   /// Pulses and switches to off since the start, including those that change nothing.
@@ -138,6 +140,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   void listen(std::span<const std::uint16_t> identifiers) override {
     listened.assign(identifiers.begin(), identifiers.end());
   }
+  void expect_heartbeat(std::uint8_t other) override { expected_heartbeat = other; }
   [[nodiscard]] bool send(const CanFrame& frame) override {
     const bool is_twice = std::any_of(pending.begin(), pending.end(),
                                       [&](const CanFrame& other) { return other.identifier == frame.identifier; });

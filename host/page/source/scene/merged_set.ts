@@ -15,6 +15,8 @@ export class MergedSet implements DrawnSet {
   private readonly cornerStarts: number[] = []; // first corner of a triangle
   private readonly corners: Uint16Array | Uint32Array; // of all shapes; the index has those of the shown ones
   private readonly spheres: readonly THREE.Sphere[]; // around the shapes
+  private readonly unitVertices: Float32Array; // of the shapes at size 1: of a box -1 or 1
+  private cut = '';
   private shown: readonly boolean[];
   private readonly colours: THREE.BufferAttribute;
 
@@ -39,6 +41,7 @@ export class MergedSet implements DrawnSet {
     }
     const positions = new THREE.BufferAttribute(new Float32Array(3 * vertices), 3);
     const normals = new THREE.BufferAttribute(new Float32Array(3 * vertices), 3);
+    this.unitVertices = new Float32Array(3 * vertices);
     this.corners = vertices > 65535 ? new Uint32Array(corners) : new Uint16Array(corners);
     this.colours = new THREE.BufferAttribute(new Float32Array(3 * vertices), 3);
     const matrix = new THREE.Matrix4();
@@ -52,6 +55,7 @@ export class MergedSet implements DrawnSet {
       matrix.compose(new THREE.Vector3(...pose.position), new THREE.Quaternion(x, y, z, w), new THREE.Vector3(...scale));
       normalMatrix.getNormalMatrix(matrix);
       const from = { positions: unit.getAttribute('position'), normals: unit.getAttribute('normal') };
+      this.unitVertices.set(from.positions.array, 3 * start);
       for (let i = 0; i < from.positions.count; i += 1) {
         positions.setXYZ(start + i, ...vector.fromBufferAttribute(from.positions, i).applyMatrix4(matrix).toArray());
         normals.setXYZ(start + i, ...vector.fromBufferAttribute(from.normals, i).applyNormalMatrix(normalMatrix).toArray());
@@ -78,6 +82,38 @@ export class MergedSet implements DrawnSet {
       for (let i = this.starts[number] as number; i < end; i += 1) this.colours.setXYZ(i, r, g, b);
     });
     this.colours.needsUpdate = true;
+  }
+
+  // Draws of a box that is much larger, such as the ground, only what is within `reach` of a place, in metres: the depth of
+  // triangles of kilometres is inexact, so that they hide lines and feet on them.
+  cutAround(place: THREE.Vector3, reach: number): void {
+    const step = reach / 4; // the place moves so far before anything is done
+    const [x, y, z] = place.toArray().map((value) => Math.round(value / step) * step);
+    const key = [x, y, z, reach].join();
+    if (key === this.cut) {
+      return;
+    }
+    this.cut = key;
+    const positions = this.mesh.geometry.getAttribute('position') as THREE.BufferAttribute;
+    const vector = new THREE.Vector3();
+    this.shapes.forEach(({ kind, pose, scale }, number) => {
+      if (kind !== 'box' || Math.max(...scale) < 2 * reach) return;
+      const [qw, qx, qy, qz] = pose.orientation;
+      const turn = new THREE.Quaternion(qx, qy, qz, qw);
+      const origin = new THREE.Vector3(...pose.position);
+      const middle = new THREE.Vector3(x, y, z).sub(origin).applyQuaternion(turn.clone().invert()).toArray();
+      const end = (sign: number, axis: 0 | 1 | 2) => {
+        const bounds = [middle[axis] - reach, middle[axis] + reach].map((value) => Math.min(scale[axis], Math.max(-scale[axis], value)));
+        return bounds[sign < 0 ? 0 : 1] as number;
+      };
+      for (let i = this.starts[number] as number; i < (this.starts[number + 1] ?? positions.count); i += 1) {
+        vector.fromArray(this.unitVertices, 3 * i);
+        vector.set(end(vector.x, 0), end(vector.y, 1), end(vector.z, 2)).applyQuaternion(turn).add(origin);
+        positions.setXYZ(i, ...vector.toArray());
+      }
+      positions.needsUpdate = true;
+      this.mesh.geometry.boundingSphere = null; // of the rays: it is computed again
+    });
   }
 
   // Draws only the shapes that can be seen: in the frustum, and nearer than a distance along the view, in metres.

@@ -197,8 +197,9 @@ export class RobotModel {
     this.paint();
   }
 
-  // As MergedSet.showIn().
-  showIn(frustum: THREE.Frustum, farthest: number): void {
+  // As MergedSet.showIn() and cutAround(), around a place that is in view.
+  showIn(frustum: THREE.Frustum, farthest: number, place: THREE.Vector3): void {
+    this.still?.cutAround(place, 2 ** Math.ceil(Math.log2(2 * farthest))); // other numbers as the view zooms: seldom
     this.still?.showIn(frustum, farthest);
   }
 

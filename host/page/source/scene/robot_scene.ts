@@ -12,12 +12,44 @@ import type { DragWay, PlacedObject, ScenePose } from './scene_messages.js';
 
 const fieldOfView = 40; // degrees, vertical
 const gridCells = 60;
+const gridPiece = 2; // cells
 const farthestDrag = 5; // metres
 const longRobot = 1.5; // metres; for longer robots the cells of the grid are larger
+
+// A view that does not follow the robot, for a film.
+export interface Shot {
+  target: Vector; // metres
+  azimuth: number; // radians, as of OrbitCamera
+  elevation: number;
+  distance: number; // metres
+  ground: Ground;
+  farthest: number; // metres from the camera to where everything has faded
+}
+
+// The lines of the ground.
+export interface Ground {
+  cell: number; // metres between two of them
+  turn: number; // radians of their directions from the axes
+}
 
 function rayOf({ ray }: THREE.Raycaster): Ray {
   const { origin, direction } = ray;
   return { origin: [origin.x, origin.y, origin.z], direction: [direction.x, direction.y, direction.z] };
+}
+
+// Lines in two directions, in pieces: without a graphics processor Chromium leaves out a line that ends behind the camera.
+function groundLines(cell: number, colour: THREE.Color): THREE.LineSegments {
+  const ends: number[] = [];
+  const half = gridCells / 2;
+  for (let line = -half; line <= half; line += 1) {
+    for (let from = -half; from < half; from += gridPiece) {
+      const to = from + gridPiece;
+      ends.push(line, from, 0, line, to, 0, from, line, 0, to, line, 0);
+    }
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(ends.map((cells) => cells * cell), 3));
+  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: colour }));
 }
 
 export class RobotScene {
@@ -31,7 +63,7 @@ export class RobotScene {
   private readonly sun = new THREE.DirectionalLight(0xffffff, 2.2);
   private readonly sky = new THREE.HemisphereLight(0xffffff, 0x8090a0, 1.3);
   private readonly axes = new THREE.AxesHelper(0.1);
-  private grid: THREE.GridHelper | null = null;
+  private grid: THREE.LineSegments | null = null;
   private path: HeadPath | null = null;
   private model: RobotModel | null = null;
   private ghost: RobotModel | null = null;
@@ -45,7 +77,8 @@ export class RobotScene {
   private width = 1;
   private height = 1;
   private ratio = 1; // device pixels of the display for each CSS pixel
-  private gridCell = 0.1; // metres
+  private farthest: number | null = null; // of a shot
+  private ground: Ground = { cell: 0.1, turn: 0 };
   private readonly fog = new THREE.Fog(0, 1, 2);
   private isDirty = true;
   private grabbed: THREE.Vector3 | null = null; // place of the grabbed point of the robot when it was grabbed
@@ -119,6 +152,7 @@ export class RobotScene {
     const reach = this.model.length * 0.9 + 0.2;
     Object.assign(this.sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 8 * reach });
     this.sun.shadow.camera.updateProjectionMatrix();
+    this.ground = { cell: this.model.length > longRobot ? 0.5 : 0.1, turn: 0 };
     this.makeGrid();
     if (!isSameRobot) this.resetView();
   }
@@ -189,6 +223,25 @@ export class RobotScene {
     this.orbit.elevation = 0.42;
     this.orbit.distance = 0.25 + length * 1.15;
     this.setFollowing(true);
+  }
+
+  // Sets a view that stays until the next one.
+  setShot({ target, azimuth, elevation, distance, ground, farthest }: Shot): void {
+    Object.assign(this.orbit, { target, azimuth, elevation, distance });
+    Object.assign(this, { ground, farthest });
+    this.makeGrid();
+    this.axes.visible = false;
+    this.setFollowing(false);
+  }
+
+  // Metres from the first link to the last.
+  get robotLength(): number {
+    return this.model?.length ?? 1;
+  }
+
+  // The middle of the robot in its last pose.
+  get robotCentre(): Vector {
+    return this.model?.centre ?? [0, 0, 0];
   }
 
   setFollowing(isOn: boolean): void {
@@ -316,18 +369,19 @@ export class RobotScene {
     this.sun.position.set(x + reach, y + reach * 0.8, z + 2.2 * reach);
     this.sun.target.position.set(x, y, z);
     // The grid goes with the view in whole cells, so it looks endless and still shows that the robot moves.
-    this.grid?.position.set(
-      Math.round(x / this.gridCell) * this.gridCell,
-      Math.round(y / this.gridCell) * this.gridCell,
-      (this.model?.floorHeight ?? 0) + 0.0005,
-    );
+    const { cell, turn } = this.ground;
+    const [cosine, sine] = [Math.cos(turn), Math.sin(turn)];
+    const along = Math.round((x * cosine + y * sine) / cell) * cell;
+    const across = Math.round((y * cosine - x * sine) / cell) * cell;
+    const height = (this.model?.floorHeight ?? 0) + 0.0005;
+    this.grid?.position.set(along * cosine - across * sine, along * sine + across * cosine, height);
     // The edge of the grid fades before it ends.
-    this.fog.near = this.orbit.distance * 1.3;
-    this.fog.far = this.orbit.distance + this.gridCell * gridCells * 0.45;
+    this.fog.far = this.farthest ?? this.orbit.distance + cell * gridCells * 0.45;
+    this.fog.near = Math.min(this.orbit.distance * 1.3, this.fog.far / 2);
     this.camera.updateMatrixWorld();
     this.viewMatrix.multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
     // Behind the fog everything has the colour of the background.
-    this.model?.showIn(this.frustum.setFromProjectionMatrix(this.viewMatrix), this.fog.far);
+    this.model?.showIn(this.frustum.setFromProjectionMatrix(this.viewMatrix), this.fog.far, this.camera.position);
     this.renderer.render(this.scene, this.camera);
     return true;
   }
@@ -349,12 +403,13 @@ export class RobotScene {
   private makeGrid(): void {
     if (this.grid !== null) {
       this.scene.remove(this.grid);
-      this.grid.dispose();
+      this.grid.geometry.dispose();
+      (this.grid.material as THREE.Material).dispose();
     }
-    const colour = colours(this.isDark).grid;
-    this.gridCell = (this.model?.length ?? 0) > longRobot ? 0.5 : 0.1;
-    this.grid = new THREE.GridHelper(this.gridCell * gridCells, gridCells, colour, colour);
-    this.grid.rotation.x = Math.PI / 2;
+    const { grid, joint } = colours(this.isDark);
+    // In a film the lines are thin, because it is drawn larger than it is shown, and are compressed.
+    this.grid = groundLines(this.ground.cell, this.farthest === null ? grid : grid.clone().lerp(joint, 0.4));
+    this.grid.rotation.z = this.ground.turn;
     this.scene.add(this.grid);
   }
 }

@@ -95,4 +95,19 @@ describe('shapes that never move', () => {
     set.showIn(frustumAt(-5), 100);
     assert.deepEqual(shownBodies(set), [0, 1, 2, 3]);
   });
+
+  it('of kilometres are drawn around what can be seen, and no further than they reach', () => {
+    const ground = shape(0, { pose: { position: [0, 0, -0.1], orientation: upright }, scale: [1000, 1000, 0.1] });
+    const set = setOf(ground, shape(1));
+    set.cutAround(new THREE.Vector3(3, 0, 1), 16);
+    assert.deepEqual(sizeOf(set), [-12, -16, -0.25, 20, 16, 0.25], 'the place counts in steps of a quarter of 16 m');
+    set.cutAround(new THREE.Vector3(1003, 0, 1), 16);
+    assert.deepEqual(sizeOf(set), [-1, -16, -0.25, 1000, 16, 0.25]);
+    const [quarter, far] = [fromAxisAngle([0, 0, 1], Math.PI / 2), new THREE.Vector3(0, 400, 0)];
+    const turned = setOf(shape(0, { pose: { position: [0, 0, 0], orientation: quarter }, scale: [1000, 50, 1] }));
+    turned.cutAround(far, 16);
+    assert.deepEqual(sizeOf(turned), [-16, 384, -1, 16, 416, 1]);
+    const hit = new THREE.Raycaster(new THREE.Vector3(0, 400, 5), new THREE.Vector3(0, 0, -1)).intersectObject(turned.mesh)[0];
+    assert.equal(hit?.point.z, 1, 'rays find it there');
+  });
 });

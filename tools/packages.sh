@@ -52,6 +52,7 @@ kicad_packages=(kicad kicad-symbols kicad-footprints xvfb xdotool)
 # The web page: tools/page. Only where there is no other node and npm.
 page_packages=(nodejs npm)
 browser_packages=(chromium)  # its tests
+film_packages=(webp)         # tools/film, which needs the browser, too
 
 # The documentation as a site: tools/docs.
 docs_packages=(mkdocs mkdocs-material doxygen python3)

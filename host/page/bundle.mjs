@@ -4,6 +4,7 @@
 //   node bundle.mjs player FOLDER    player.html, into which proleg export --html writes a recording
 //   node bundle.mjs tests FOLDER     each *_test.ts of tests/host/page as one program for `node --test`
 //   node bundle.mjs figures FOLDER   the program of tools/page_figures
+//   node bundle.mjs film FOLDER      the program of tools/film, and film.js, which draws in a browser
 import { build } from 'esbuild';
 import { createHash } from 'node:crypto';
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -140,12 +141,23 @@ async function bundleTests(folder) {
     .filter((entry) => entry.isFile() && entry.name.endsWith('_test.ts'))
     .map((entry) => relative(tests, join(entry.path, entry.name)));
   await bundlePrograms(files, folder);
+  await bundleFilmPage(folder);
   return files.length > 0;
 }
 
 async function bundleFigures(folder) {
   await bundlePrograms(['figures/page_figures.ts'], folder);
   return true;
+}
+
+async function bundleFilm(folder) {
+  await bundlePrograms(['film/film.ts'], folder);
+  await bundleFilmPage(folder);
+  return true;
+}
+
+async function bundleFilmPage(folder) {
+  await build({ ...common, minify: true, pure: ['console.warn'], entryPoints: ['source/film/film.ts'], outdir: folder, format: 'iife' });
 }
 
 // Programs for Node.
@@ -203,6 +215,6 @@ async function bundlePlayer(folder) {
 }
 
 const [what, folder] = process.argv.slice(2);
-const bundles = { page: bundlePage, player: bundlePlayer, tests: bundleTests, figures: bundleFigures };
+const bundles = { page: bundlePage, player: bundlePlayer, tests: bundleTests, figures: bundleFigures, film: bundleFilm };
 const succeeded = await bundles[what](folder);
 process.exit(succeeded ? 0 : 1);

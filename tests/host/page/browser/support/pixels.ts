@@ -8,9 +8,12 @@ export interface Pixels {
   data: Uint8Array; // red, green, blue, alpha
 }
 
-// The browser decodes the PNG of the screenshot.
 export async function pixelsOf(page: Page, element: Locator): Promise<Pixels> {
-  const png = (await element.screenshot()).toString('base64');
+  return pixelsOfPicture(page, await element.screenshot());
+}
+
+// The browser decodes the PNG.
+export async function pixelsOfPicture(page: Page, picture: Buffer): Promise<Pixels> {
   const { width, height, encoded } = await page.evaluate(async (image) => {
     const bytes = Uint8Array.from(atob(image), (character) => character.charCodeAt(0));
     const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
@@ -24,7 +27,7 @@ export async function pixelsOf(page: Page, element: Locator): Promise<Pixels> {
       parts.push(String.fromCharCode(...data.subarray(start, start + 4096)));
     }
     return { width: bitmap.width, height: bitmap.height, encoded: btoa(parts.join('')) };
-  }, png);
+  }, picture.toString('base64'));
   return { width, height, data: new Uint8Array(Buffer.from(encoded, 'base64')) };
 }
 

@@ -48,7 +48,7 @@ std::span<const unsigned> serial_rates() { return rates; }
 std::string latency_advice(const std::string& device) {
   std::error_code error;
   const std::string port = std::filesystem::weakly_canonical(device, error).filename();
-  return "set the latency timer of the adapter to 1 ms (install host/udev/70-proleg.rules, or echo 1 > "
+  return "set the latency timer of the adapter to 1 ms (install 70-proleg.rules, docs/installing.md, or echo 1 > "
          "/sys/bus/usb-serial/devices/" +
          (port.starts_with("ttyUSB") ? port : "ttyUSB0") + "/latency_timer), or use a longer tick";
 }

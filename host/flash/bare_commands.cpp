@@ -176,7 +176,7 @@ struct Symptom {
   std::string_view meaning;
 };
 
-constexpr std::string_view udev_hint = "host/udev/70-proleg.rules gives them to you; the file says how to install it";
+constexpr std::string_view udev_hint = "the udev rules 70-proleg.rules (docs/installing.md) give them to you";
 
 constexpr std::string_view no_chip =
     "found a probe without a chip, expected an STM32F405 behind it: check SWDIO, SWCLK, ground, and the board's supply";

@@ -242,7 +242,7 @@ std::string EventDevices::try_device(const std::filesystem::path& path) {
     if (number == EACCES || number == EPERM) {
       return device +
              ": found no right to read it, expected one: `sudo usermod -aG input $USER` and a new login, or "
-             "host/udev/70-proleg.rules";
+             "the udev rules 70-proleg.rules (docs/installing.md)";
     }
     return device + ": " + system_text(number);
   }

@@ -32,15 +32,12 @@ Finding interface_down(const std::string& name, const std::optional<CanInterface
 Finding no_rights(const ConnectionFacts& facts, const std::string& name) {
   const std::string group = facts.serial ? facts.serial->group : "dialout";
   const bool is_member = facts.serial && facts.serial->is_user_in_group;
-  return {
-      "no_rights",
-      "This user may not use " + name + (facts.serial ? ", which belongs to the group " + group + "." : "."),
-      (is_member || group == "root" ? std::string("Install the rules of the project, and plug the adapter in again: ")
-                                    : "sudo usermod -aG " + group +
-                                          " $USER, and log in again. Or install the rules of the project, and plug "
-                                          "the adapter in again: ") +
-          "sudo cp host/udev/70-proleg.rules /etc/udev/rules.d/ && sudo udevadm control --reload",
-      {}};
+  return {"no_rights",
+          "This user may not use " + name + (facts.serial ? ", which belongs to the group " + group + "." : "."),
+          (is_member || group == "root" ? std::string("Install")
+                                        : "sudo usermod -aG " + group + " $USER, and log in again. Or install") +
+              " the udev rules 70-proleg.rules (docs/installing.md), and plug the adapter in again.",
+          {}};
 }
 
 Finding in_use(const ConnectionFacts& facts, const std::string& name) {
@@ -49,7 +46,8 @@ Finding in_use(const ConnectionFacts& facts, const std::string& name) {
       "device_in_use",
       name + " is in use by another program" + (is_known ? ": " + listed(facts.serial->programs) : std::string()) + ".",
       std::string("End that program") + (is_known ? "" : " (sudo fuser -v " + name + " shows which it is)") +
-          ". ModemManager opens new adapters by itself: host/udev/70-proleg.rules keeps it away.",
+          ". ModemManager opens new adapters by itself: the udev rules 70-proleg.rules (docs/installing.md) keep it "
+          "away.",
       {}};
 }
 

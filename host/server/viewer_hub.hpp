@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -58,6 +59,7 @@ class ViewerHub {
   void receive(ServerTime now, ClientId client, std::string_view text);
   void close(ClientId client, std::uint16_t code, const std::string& reason);
   void remove_viewer(ServerTime now, ClientId client);
+  [[nodiscard]] std::size_t viewers() const { return viewers_.size(); }
   [[nodiscard]] std::optional<OutgoingMessage> next_message(ServerTime now, ClientId client);
   /// The reason with which a viewer's connection has to end (Viewer::closing()).
   [[nodiscard]] std::optional<CloseReason> closing(ClientId client) const;

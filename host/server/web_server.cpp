@@ -198,6 +198,8 @@ WebServer::~WebServer() { stop(); }
 
 std::uint16_t WebServer::port() const { return sockets_->address().port; }
 
+std::size_t WebServer::viewers() const { return link_->hub.viewers(); }
+
 std::string WebServer::origin() const { return first_origin(sockets_->address()); }
 
 void WebServer::stop_robot(const std::string& by, std::function<void(unsigned, unsigned)> answered) {

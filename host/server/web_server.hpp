@@ -116,6 +116,8 @@ class WebServer final : public SessionOutput {
   void stopped(RequestId request, unsigned confirmed, unsigned of, double ms) override;
   void notice(NoticeLevel level, const std::string& text) override;
 
+  /// Pages that are connected now. For the thread that runs the io_context.
+  [[nodiscard]] std::size_t viewers() const;
   /// Stops the robot, as POST /stop does. answered: called in the server's thread with the modules that have confirmed
   /// it, and the number of all. May be called from any thread.
   void stop_robot(const std::string& by, std::function<void(unsigned confirmed, unsigned of)> answered);

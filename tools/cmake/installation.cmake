@@ -5,6 +5,9 @@
 #   lib/proleg/lib        plug-ins
 #   share/proleg          scenarios, page, player, images
 #   share/doc/proleg      documents
+#   share/applications, share/icons
+#                         the entry in the menu of a desktop
+#   lib/udev/rules.d      rights and names of adapters
 #   share/man, share/bash-completion, share/zsh, share/fish
 #                         manual pages and completions, made of the help texts of the programs
 
@@ -36,6 +39,9 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/sim/scenarios DESTINATION share/proleg)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/page ${CMAKE_SOURCE_DIR}/build/player DESTINATION share/proleg)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/stm32f405/bin/ DESTINATION share/proleg/images
   FILES_MATCHING PATTERN "proleg_*.pimg" PATTERN "proleg_*.elf" PATTERN "proleg_boot_*.bin")
+install(FILES ${CMAKE_SOURCE_DIR}/host/desktop/proleg.desktop DESTINATION share/applications)
+install(FILES ${CMAKE_SOURCE_DIR}/host/desktop/proleg.svg DESTINATION share/icons/hicolor/scalable/apps)
+install(FILES ${CMAKE_SOURCE_DIR}/host/udev/70-proleg.rules DESTINATION lib/udev/rules.d)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION share/doc/proleg)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE
   DESTINATION share/doc/proleg)

@@ -11,7 +11,7 @@ using test::ChainRig;
 using test::EmulatedServo;
 
 const std::string advice =
-    "set the latency timer of the adapter to 1 ms (install host/udev/70-proleg.rules, or echo 1 > "
+    "set the latency timer of the adapter to 1 ms (install 70-proleg.rules, docs/installing.md, or echo 1 > "
     "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer), or use a longer tick";
 
 void delay_all(ChainRig& rig, std::uint32_t delay_us) {

@@ -27,8 +27,8 @@ TEST(BareFailures, OfOpenocdAreExplained) {
       failure(BareProbe::stlink, "Info : clock speed 2000 kHz\nError: open failed\n\n"),
       "found no ST-LINK, expected one on USB: plug it in, 'lsusb -d 0483:' lists it; the command can be repeated");
   EXPECT_EQ(failure(BareProbe::stlink, "Error: libusb_open() failed with LIBUSB_ERROR_ACCESS\nError: open failed\n"),
-            "found a probe without the rights to open it, expected rights: host/udev/70-proleg.rules gives them to "
-            "you; the file says how to install it; the command can be repeated");
+            "found a probe without the rights to open it, expected rights: the udev rules 70-proleg.rules "
+            "(docs/installing.md) give them to you; the command can be repeated");
   EXPECT_EQ(failure(BareProbe::stlink, "Error: init mode failed (unable to connect to the target)\n"),
             "found a probe without a chip, expected an STM32F405 behind it: check SWDIO, SWCLK, ground, and the "
             "board's supply; the command can be repeated");

@@ -365,7 +365,7 @@ TEST(ConnectionFindings, OfASerialDevice) {
   const Finding rights = find_connection_faults(facts).front();
   EXPECT_EQ(rights.code, "no_rights");
   EXPECT_NE(rights.to_do.find("sudo usermod -aG dialout $USER"), std::string::npos);
-  EXPECT_NE(rights.to_do.find("host/udev/70-proleg.rules"), std::string::npos);
+  EXPECT_NE(rights.to_do.find("70-proleg.rules (docs/installing.md)"), std::string::npos);
   facts.serial->exists = false;
   EXPECT_EQ(first_code(facts), "no_device");
   facts.serial = SerialDevice{true, false, true, "root", false, {}};

@@ -178,7 +178,7 @@ class Doctor(unittest.TestCase):
             except PermissionError:
                 self.skipTest("the programs are in a folder of root")
             self.assertEqual((status, codes(report)), (1, ["no_rights"]))
-            self.assertIn("host/udev/70-proleg.rules", report["findings"][0]["to_do"])
+            self.assertIn("70-proleg.rules (docs/installing.md)", report["findings"][0]["to_do"])
 
 
 if __name__ == "__main__":

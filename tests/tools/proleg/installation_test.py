@@ -15,6 +15,7 @@ import tempfile
 import unittest
 from pathlib import Path
 from urllib.request import urlopen
+from xml.etree import ElementTree
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 
@@ -103,6 +104,24 @@ class Installation(unittest.TestCase):
                 self.assertEqual(answer.read(), (self.prefix / "share/proleg/page/index.html").read_bytes())
             program.send_signal(signal.SIGINT)
             self.assertEqual(program.wait(LONGEST), 0)
+
+    def test_the_menu_of_a_desktop_starts_the_page(self):
+        entry = self.prefix / "share/applications/proleg.desktop"
+        if shutil.which("desktop-file-validate"):
+            result = subprocess.run(["desktop-file-validate", entry], capture_output=True, text=True)
+            self.assertEqual((result.returncode, result.stdout), (0, ""))
+        values = dict(line.split("=", 1) for line in entry.read_text().splitlines()[1:])
+        program, command, *options = values["Exec"].split()
+        self.assertTrue((self.prefix / "bin" / program).exists())
+        self.assertEqual(values["Terminal"], "false")
+        for option in options:
+            self.assertIn(option, self.proleg(command, "--help").stdout)
+        icon = ElementTree.parse(self.prefix / f"share/icons/hicolor/scalable/apps/{values['Icon']}.svg").getroot()
+        self.assertEqual(icon.tag, "{http://www.w3.org/2000/svg}svg")
+
+    def test_udev_finds_its_rules(self):
+        rules = self.prefix / "lib/udev/rules.d/70-proleg.rules"
+        self.assertEqual(rules.read_bytes(), (SOURCE / "host/udev/70-proleg.rules").read_bytes())
 
     def test_an_installation_without_its_page_says_so(self):
         page = self.prefix / "share/proleg/page"

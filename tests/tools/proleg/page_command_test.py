@@ -132,6 +132,72 @@ class PageForOthers(PageTest):
         self.assertIn("none.pem: found No such file or directory, expected a certificate", self.refused("--lan", "--certificate", "none.pem"))
 
 
+class WithoutHelpOfADesktop(PageTest):
+    """No browser, no display, no place to write: the page is served all the same, and one line says what is missing."""
+
+    def said(self, *options, **environment):
+        """What the command writes to standard error until it serves the page and has been ended."""
+        kept = {name: value for name, value in os.environ.items()
+                if name not in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_STATE_HOME", "TMPDIR")}
+        home = self.folder / "home"
+        home.mkdir(exist_ok=True)
+        process = subprocess.Popen([PROLEG_UI, "--page", self.folder / "page", *options], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, env={**kept, "XDG_RUNTIME_DIR": str(self.folder), "HOME": str(home), **environment})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        url = re.fullmatch("page: (http://.*)/#.*\n", process.stdout.readline())
+        with urllib.request.urlopen(url[1] + "/", timeout=WAIT_S) as page:
+            self.assertIn(b"<title>page</title>", page.read())
+        first = "" if "--no-browser" in options else process.stderr.readline()  # it may come from a program that ends later
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=WAIT_S)
+        self.assertEqual(process.returncode, 0)
+        return first + errors
+
+    def program(self, text):
+        """A folder for $PATH with the program that opens pages, if there is one."""
+        folder = self.folder / "bin"
+        folder.mkdir()
+        if text:
+            (folder / "xdg-open").write_text("#!/bin/sh\n" + text)
+            (folder / "xdg-open").chmod(0o755)
+        return str(folder)
+
+    def test_no_display(self):
+        self.assertEqual(self.said(), "proleg ui: there is no desktop with a browser here; open the address yourself\n")
+
+    def test_a_display_and_nothing_that_opens_pages(self):
+        self.assertEqual(self.said(DISPLAY=":9", PATH=self.program("")),
+                         "proleg ui: there is no desktop with a browser here; open the address yourself\n")
+
+    def test_a_desktop_without_a_browser(self):
+        self.assertEqual(self.said(WAYLAND_DISPLAY="wayland-9", PATH=self.program("exit 3\n")),
+                         "proleg ui: the desktop found no browser; open the address yourself\n")
+
+    def test_no_folder_for_the_file_that_leads_to_the_page(self):
+        self.assertEqual(self.said(DISPLAY=":9", XDG_RUNTIME_DIR="/proc", TMPDIR="/proc"),
+                         "proleg ui: cannot write the file that leads a browser to the page; open the address yourself\n")
+
+    def test_a_home_that_is_read_only(self):
+        shutil.copytree(SCENARIOS / "travelling_wave", self.folder / "mine")
+        self.assertRegex(self.said("mine/uniform.simulation.xml", "--no-browser", HOME="/proc"),
+                         r"\Aproleg ui: warning: the list of what was opened cannot be kept: .*\n\Z")
+
+    def test_the_menu_of_a_desktop_has_a_folder_in_the_home(self):
+        self.assertEqual(self.said("--desktop", "--no-browser"), "")
+        self.assertTrue((self.folder / "home/Proleg").is_dir())
+        self.assertEqual(self.said("--desktop", "--no-browser"), "", "the folder is there")
+
+    def test_the_menu_of_a_desktop_and_a_home_that_is_read_only(self):
+        self.assertEqual(self.said("--desktop", "--no-browser", HOME="/proc", TMPDIR=str(self.folder)),
+                         "proleg ui: warning: cannot write in /proc/Proleg, the folder of robots and recordings; what you save goes to "
+                         f"{self.folder}\n")
+
+    def test_the_menu_starts_no_class_and_no_bus(self):
+        for options in (("--class", "3"), ("--bus", "can0")):
+            self.assertIn("--desktop: found an option of a class or a bus", self.refused("--desktop", *options))
+
+
 class BadInput(PageTest):
     """One line each, status 2, before anything listens."""
 

@@ -109,7 +109,7 @@ void check_rights(const std::string& port) {
   }
   if (access(port.c_str(), R_OK | W_OK) != 0) {
     throw InputError("--port", 0, "no rights to use " + port,
-                     "rights: host/udev/70-proleg.rules gives them to you; the file says how to install it");
+                     "rights: the udev rules 70-proleg.rules (docs/installing.md) give them to you");
   }
 }
 

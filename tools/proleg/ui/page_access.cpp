@@ -7,9 +7,12 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <iostream>
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "host/server/request_policy.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -17,13 +20,22 @@
 namespace proleg::tools {
 namespace {
 
-std::filesystem::path private_folder() {
+/// Folders for private files, the best first.
+std::vector<std::filesystem::path> private_folders() {
+  std::vector<std::filesystem::path> folders;
   const char* folder = std::getenv("XDG_RUNTIME_DIR");
   std::error_code error;
   if (folder != nullptr && std::filesystem::is_directory(folder, error)) {
-    return folder;
+    folders.emplace_back(folder);
   }
-  return std::filesystem::temp_directory_path();
+  if (std::filesystem::path temporary = std::filesystem::temp_directory_path(error); !error) {
+    folders.push_back(std::move(temporary));
+  }
+  return folders;
+}
+
+void ask_to_open(const std::string& reason) {
+  std::cerr << "proleg ui: " + reason + "; open the address yourself\n" << std::flush;
 }
 
 bool has_desktop() {
@@ -46,13 +58,19 @@ constexpr const char* missing_certificate =
 PageAddress::PageAddress(const std::string& origin, std::uint16_t port, const std::string& token)
     : url_(origin + "/#" + token) {
   const std::string name = "proleg-ui-" + std::to_string(port);
-  file_ = private_folder() / (name + ".url");
-  link_ = private_folder() / (name + ".html");
-  host::write_private_file(file_, url_ + '\n');
-  host::write_private_file(link_,
-                           "<!DOCTYPE html><meta charset=\"utf-8\"><title>Proleg</title><meta http-equiv=\"refresh\" "
-                           "content=\"0; url=" +
-                               url_ + "\"><a href=\"" + url_ + "\">Proleg</a>\n");
+  const std::string page =
+      "<!DOCTYPE html><meta charset=\"utf-8\"><title>Proleg</title><meta http-equiv=\"refresh\" content=\"0; url=" +
+      url_ + "\"><a href=\"" + url_ + "\">Proleg</a>\n";
+  for (const std::filesystem::path& folder : private_folders()) {
+    try {
+      host::write_private_file(folder / (name + ".url"), url_ + '\n');
+      file_ = folder / (name + ".url");
+      host::write_private_file(folder / (name + ".html"), page);
+      link_ = folder / (name + ".html");
+      return;
+    } catch (const FileError&) {  // a folder that is read-only, or full
+    }
+  }
 }
 
 PageAddress::~PageAddress() {
@@ -61,9 +79,13 @@ PageAddress::~PageAddress() {
   std::filesystem::remove(link_, ignored);
 }
 
-bool PageAddress::open() const {
+void PageAddress::open() const {
+  constexpr const char* no_desktop = "there is no desktop with a browser here";
+  if (link_.empty()) {
+    return ask_to_open("cannot write the file that leads a browser to the page");
+  }
   if (!has_desktop()) {
-    return false;
+    return ask_to_open(no_desktop);
   }
   std::string program = "xdg-open";
   std::string link = link_.string();
@@ -77,15 +99,18 @@ bool PageAddress::open() const {
   const int error = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
-    return false;
+    return ask_to_open(no_desktop);
   }
   // The program that opens the browser may end at once, or with the browser. It stays in the list of processes until
   // its parent has waited for it.
   std::thread([process] {
-    while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+    int status = 0;
+    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) != 0) {
+      ask_to_open("the desktop found no browser");
     }
   }).detach();
-  return true;
 }
 
 void add_lan_options(CommandLine& command_line, LanOptions& options) {

@@ -14,10 +14,10 @@
 namespace proleg::tools {
 
 /// Files that say where a page is, with its token: only their owner may read them, and they go with this object. They
-/// are in $XDG_RUNTIME_DIR, or else in the folder for temporary files.
+/// are in $XDG_RUNTIME_DIR, or else in the folder for temporary files; if neither can be written there are none.
 class PageAddress {
  public:
-  /// origin: of the server at this port, e.g. "http://127.0.0.1:8123". Throws FileError.
+  /// origin: of the server at this port, e.g. "http://127.0.0.1:8123".
   PageAddress(const std::string& origin, std::uint16_t port, const std::string& token);
   ~PageAddress();
   PageAddress(const PageAddress&) = delete;
@@ -25,12 +25,13 @@ class PageAddress {
 
   /// ORIGIN/#TOKEN
   [[nodiscard]] const std::string& url() const { return url_; }
-  /// Has the address as its only line, for other programs.
+  /// Has the address as its only line, for other programs. Empty: there is no file.
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
 
   /// Opens the page in the browser of the desktop. The command line, which other users of the computer see, has the
-  /// name of a file that leads to the page, not the token. False: there is no desktop, or no program that opens pages.
-  [[nodiscard]] bool open() const;
+  /// name of a file that leads to the page, not the token. If there is no desktop, or nothing there opens a page, one
+  /// line on standard error asks the person to do so; it may come later.
+  void open() const;
 
  private:
   std::string url_;

@@ -38,6 +38,7 @@
 #include "tools/proleg/ui/algorithm_session.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/class_program.hpp"
+#include "tools/proleg/ui/desktop_start.hpp"
 #include "tools/proleg/ui/draft_session.hpp"
 #include "tools/proleg/ui/fast_simulation.hpp"
 #include "tools/proleg/ui/gallery.hpp"
@@ -72,6 +73,7 @@ struct UiOptions {
   bool no_browser = false;
   bool paused = false;
   bool allow_code = false;
+  bool is_desktop = false;
   std::optional<std::string> learners;  ///< of a class
   bool is_seat = false;                 ///< started by a class
   std::optional<SeatSettings> seat;
@@ -308,11 +310,15 @@ int serve_class(const UiOptions& options) {
   return tools::serve_class(of_class);
 }
 
-/// Serves the page until the program is to end.
-void serve_until_end(boost::asio::io_context& context, host::WebServer& page) {
+/// Serves the page until the program is to end. with_last_page: it ends when the last page has been closed, too.
+void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bool with_last_page) {
   constexpr std::chrono::milliseconds signal_period{100};
   constexpr std::chrono::seconds trim_period{10};
+  LastPage last_page(std::chrono::steady_clock::now());
   for (auto trim_at = std::chrono::steady_clock::now() + trim_period; !interrupted();) {
+    if (with_last_page && last_page.is_gone(std::chrono::steady_clock::now(), page.viewers())) {
+      break;
+    }
     context.restart();
     context.run_for(signal_period);
     if (const auto now = std::chrono::steady_clock::now(); now >= trim_at) {
@@ -336,8 +342,14 @@ std::string modules_refusal(const UiOptions& options) {
 }
 
 int serve(UiOptions& options) {
+  if (options.is_desktop && (options.learners || options.is_seat || options.bus.bus)) {
+    throw BadInput("--desktop: found an option of a class or a bus, which need a terminal, expected none");
+  }
   if (options.learners) {
     return serve_class(options);
+  }
+  if (options.is_desktop && options.recordings == default_recordings) {
+    options.recordings = desktop_folder();
   }
   InputLines input;
   if (options.is_seat) {
@@ -457,7 +469,7 @@ int serve(UiOptions& options) {
                                present_draft, sharing, module_requests, page);
   if (options.seat) {
     const SeatInput seat(*options.seat, input, page);
-    serve_until_end(context, page);
+    serve_until_end(context, page, false);
     return exit_success;
   }
   const PageAddress address(page.origin(), page.port(), token.text());
@@ -475,10 +487,10 @@ int serve(UiOptions& options) {
   if (has_file) {
     note_as_recent(recent, options.scenario.file);
   }
-  if (!options.no_browser && !address.open()) {
-    std::cerr << "proleg ui: there is no desktop with a browser here; open the address yourself\n";
+  if (!options.no_browser) {
+    address.open();
   }
-  serve_until_end(context, page);
+  serve_until_end(context, page, options.is_desktop);
   return exit_success;
 }
 
@@ -506,6 +518,9 @@ int main(int argc, char** argv) {
       .shows_default();
   command_line.add_option("--page", options.page, "another page, a folder with index.html").value_name("FOLDER");
   command_line.add_flag("--no-browser", options.no_browser, "only print the address");
+  command_line.add_flag("--desktop", options.is_desktop,
+                        "as the menu of a desktop starts it: the folder for recordings is Proleg in your home, and the "
+                        "program ends a minute after the last page was closed");
   command_line.add_flag("--allow-code", options.allow_code,
                         "with --lan or --class: let others write and run algorithms, which can do all that you can do");
   command_line

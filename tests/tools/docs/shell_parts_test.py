@@ -78,7 +78,7 @@ class HelpTexts(unittest.TestCase):
     def test_words_are_known_where_the_text_lists_them_in_a_regular_form(self):
         self.assertEqual(help_texts.known_words(ENTRIES["--engine"]), ["ode", "reduced", "mujoco"])
         self.assertEqual(help_texts.known_words(ENTRIES["--modules"]), ["native", "mcu"])
-        self.assertEqual(self.words("what to write: robot, obstacle or algorithm"), ["robot", "obstacle", "algorithm"])
+        self.assertEqual(self.words("what to write: robot, project, obstacle or algorithm"), ["robot", "project", "obstacle", "algorithm"])
         self.assertEqual(self.words("kind: long (a chain; of cubes); short (one)"), ["long", "short"])
 
     def test_words_are_not_guessed(self):

@@ -208,11 +208,81 @@ TEST_F(NewRobot, RefusesBadInputAndWritesNothing) {
   expect_refused({"new", "robot", "--joints", "2", "--axes", "ppy", "--out", out}, {"--axes", "3 letters"});
   expect_refused({"new", "robot", "--out", out}, {"--joints"});
   expect_refused({"new", "gait", "--joints", "5", "--out", out},
-                 {"proleg new: found 'gait', expected 'robot', 'obstacle' or 'algorithm'"});
+                 {"proleg new: found 'gait', expected 'robot', 'project', 'obstacle' or 'algorithm'"});
   expect_refused({"new", "robot", "--joints", "5", "--out", ""}, {"--out"});
   std::ofstream(file("plain")) << "a file, not a folder\n";
   expect_refused({"new", "robot", "--joints", "5", "--out", file("plain").string()}, {"plain"});
   EXPECT_EQ(left_behind(), std::vector<std::string>{"plain"});
+}
+
+class NewProject : public CommandLine {
+ protected:
+  void write(const std::string& name, std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"new", "project", file(name).string()});
+    const Finished finished = proleg(options);
+    ASSERT_EQ(finished.status, 0) << finished.err;
+    EXPECT_TRUE(finished.out.ends_with("open it:  proleg ui " + file(name).string() + '\n')) << finished.out;
+  }
+};
+
+TEST_F(NewProject, HasTheRobotThatNewRobotWritesAndAReadme) {
+  write("mine");
+  ASSERT_EQ(proleg({"new", "robot", "--joints", "5", "--out", file("robot").string()}).status, 0);
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(file("robot"))) {
+    if (entry.is_regular_file()) {
+      const fs::path copy = file("mine") / entry.path().lexically_relative(file("robot"));
+      EXPECT_EQ(read_file(copy), read_file(entry.path())) << copy;
+    }
+  }
+  EXPECT_TRUE(read_file(file("mine/README.md")).starts_with("# mine\n"));
+}
+
+TEST_F(NewProject, TheCommandsOfItsReadmeRun) {
+  write("mine");
+  std::istringstream readme(read_file(file("mine/README.md")));
+  std::size_t commands = 0;
+  for (std::string line; std::getline(readme, line);) {
+    if (!line.starts_with("    proleg ") || line.starts_with("    proleg ui")) {  // that one opens a page
+      continue;
+    }
+    std::string command = line.substr(0, line.find('#'));
+    command += command.find("optimise") != std::string::npos ? " --evaluations 8" : "";
+    command += command.find("hil") != std::string::npos ? " --seconds 0.5" : "";
+    const std::string folder = fs::path(PROLEG_PROGRAM).parent_path().string();
+    const std::string script =
+        "cd '" + file("mine").string() + "' && PATH='" + folder + "':$PATH && " + command.substr(4);
+    const Finished finished = finish(start({"sh", "-c", script}));
+    EXPECT_EQ(finished.status, 0) << command << finished.err;
+    ++commands;
+  }
+  EXPECT_GE(commands, 4U);
+  for (const char* name : {"run.proleg", "run.svg", "found/best.simulation.xml"}) {
+    EXPECT_TRUE(fs::exists(file("mine") / name)) << name;
+  }
+}
+
+TEST_F(NewProject, ItsSearchFitsEachKindOfRobot) {
+  fs::create_directory(file("snake"));  // an empty folder is as good as none
+  write("snake", {"--kind", "snake"});
+  write("long", {"--joints", "7"});
+  for (const char* name : {"snake", "long"}) {
+    const Finished finished = proleg({"optimise", (file(name) / "search.optimise.xml").string(), "--evaluations", "2",
+                                      "--out", (file(name) / "found").string()});
+    EXPECT_EQ(finished.status, 0) << name << finished.err;
+  }
+}
+
+TEST_F(NewProject, RefusesAFolderThatHasFiles) {
+  fs::create_directory(file("full"));
+  std::ofstream(file("full/mine")) << "precious\n";
+  std::ofstream(file("plain")) << "a file\n";
+  for (const auto& [name, found] :
+       {std::pair("full", "found a folder with files"), std::pair("plain", "found a file")}) {
+    expect_refused({"new", "project", file(name).string()}, {found, "expected a new or an empty folder"});
+  }
+  expect_refused({"new", "project", file("none").string(), "--kind", "elephant"}, {"--kind", "'elephant'"});
+  EXPECT_FALSE(fs::exists(file("none")));
+  expect_refused({"new", "project"}, {"FOLDER"});
 }
 
 class NewObstacle : public CommandLine {};

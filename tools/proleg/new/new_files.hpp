@@ -1,6 +1,6 @@
 #pragma once
 
-// The subcommands of `proleg new`, the texts of a new algorithm (CMake makes strings of the program of them), and how
+// The subcommands of `proleg new`, the texts of new files (CMake makes strings of the program of them), and how
 // they write files.
 
 #include <filesystem>
@@ -20,6 +20,13 @@ namespace proleg::tools {
 [[nodiscard]] std::string_view algorithm_cmake_text();
 [[nodiscard]] std::string_view algorithm_actuation_text();
 [[nodiscard]] std::string_view algorithm_readme_text();
+
+// The files of a project beside its robot, in project_template/.
+[[nodiscard]] std::string_view project_readme_text();  ///< NAME: of the folder
+[[nodiscard]] std::string_view project_search_text();  ///< JOINTS: a 1 for each joint
+
+/// proleg new project: writes a folder to work in. argv[0] is "project". Returns the exit status.
+int new_project(int argc, char** argv);
 
 /// proleg new algorithm: writes the folder of a user's algorithm. argv[0] is "algorithm". Returns the exit status.
 int new_algorithm(int argc, char** argv);

@@ -55,7 +55,12 @@ async function main(words: string[]): Promise<void> {
       writeFileSync(file, await film.draw(wishes.first + at));
       pictures.push(file);
     }
-    execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', String(quality), '-m', '6', '-d', String(pause), ...pictures, '-o', out], { stdio: 'ignore' });
+    try {
+      const look = ['-loop', '0', '-lossy', '-q', String(quality), '-m', '6', '-d', String(pause)];
+      execFileSync('img2webp', [...look, ...pictures, '-o', out], { stdio: 'ignore' });
+    } catch {
+      throw new Error(`${out}: img2webp could not write it`);
+    }
     console.log(`${out}: ${pictures.length} pictures, ${Math.ceil(statSync(out).size / 1024)} KiB`);
   } finally {
     await browser.close();

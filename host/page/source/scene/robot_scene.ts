@@ -377,7 +377,7 @@ export class RobotScene {
     this.grid?.position.set(along * cosine - across * sine, along * sine + across * cosine, height);
     // The edge of the grid fades before it ends.
     this.fog.far = this.farthest ?? this.orbit.distance + cell * gridCells * 0.45;
-    this.fog.near = Math.min(this.orbit.distance * 1.3, this.fog.far / 2);
+    this.fog.near = this.farthest === null ? this.orbit.distance * 1.3 : this.farthest / 2;
     this.camera.updateMatrixWorld();
     this.viewMatrix.multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
     // Behind the fog everything has the colour of the background.

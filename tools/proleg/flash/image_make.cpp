@@ -68,8 +68,9 @@ std::uint32_t parse_fingerprint(const std::string& word) {
 void parse_revisions(const std::string& word, Header& header) {
   const std::size_t colon = word.find(':');
   const auto lowest = parse_whole<std::uint8_t>(std::string_view(word).substr(0, colon));
-  const auto highest = colon == std::string::npos ? std::optional<std::uint8_t>()
-                                                  : parse_whole<std::uint8_t>(std::string_view(word).substr(colon + 1));
+  // Without a colon it is empty, which is no number.
+  const auto highest =
+      parse_whole<std::uint8_t>(std::string_view(word).substr(colon == std::string::npos ? word.size() : colon + 1));
   if (!lowest || !highest || *lowest > *highest) {
     throw InputError("--revisions", 0, in_quotes(word), "LOWEST:HIGHEST, two whole numbers from 0 to 255");
   }

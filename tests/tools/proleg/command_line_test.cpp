@@ -56,7 +56,7 @@ TEST_F(CommandLine, AMissingProgramSaysHowItIsBuiltOrInstalled) {
 TEST_F(CommandLine, VersionNamesTheBuild) {
   const Finished finished = proleg({"--version"});
   EXPECT_EQ(finished.status, 0);
-  EXPECT_EQ(finished.out.rfind("proleg 0.1.0-", 0), 0U) << finished.out;
+  EXPECT_EQ(finished.out.rfind("proleg " PROLEG_VERSION "-", 0), 0U) << finished.out;
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {

@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 
 LONGEST = 300  # s
+LARGEST = 60e6  # bytes
 
 
 class Installation(unittest.TestCase):
@@ -28,7 +29,7 @@ class Installation(unittest.TestCase):
         cls.folder = Path(tempfile.mkdtemp())
         built = cls.folder / "a stage"
         cls.prefix = cls.folder / "a place for Proleg"
-        result = subprocess.run(["cmake", "--install", PROGRAMS.parent, "--prefix", built], capture_output=True, text=True)
+        result = subprocess.run(["cmake", "--install", PROGRAMS.parent, "--strip", "--prefix", built], capture_output=True, text=True)
         assert result.returncode == 0, result.stdout + result.stderr
         built.rename(cls.prefix)
         cls.work = cls.folder / "work"
@@ -53,6 +54,17 @@ class Installation(unittest.TestCase):
             self.assertTrue((self.prefix / "lib/proleg/bin" / f"proleg-{name}").exists(), name)
             self.assertTrue((self.prefix / "share/man/man1" / f"proleg-{name}.1").exists(), name)
         self.assertTrue((self.prefix / "share/bash-completion/completions/proleg").exists())
+
+    def test_it_has_at_most_60_mb(self):
+        sizes = {}
+        for file in self.prefix.rglob("*"):
+            if file.is_file() and not file.is_symlink():
+                part = "/".join(file.relative_to(self.prefix).parts[:3])
+                sizes[part] = sizes.get(part, 0) + file.stat().st_size
+        for part, size in sorted(sizes.items(), key=lambda item: -item[1]):
+            print(f"{size / 1e6:6.1f} MB  {part}")
+        print(f"{sum(sizes.values()) / 1e6:6.1f} MB  in all", flush=True)
+        self.assertLessEqual(sum(sizes.values()), LARGEST)
 
     def test_the_shipped_scenarios_are_those_of_the_installation_and_have_names(self):
         shipped = json.loads(self.proleg("scenarios", "--json").stdout)["scenarios"]

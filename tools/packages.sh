@@ -1,5 +1,5 @@
 # Names of the Debian packages, and functions that install the missing ones. tools/demo, tools/check, tools/page,
-# tools/docs and CMake (tools/cmake/configuration.cmake) read it.
+# tools/docs, tools/release and CMake (tools/cmake/configuration.cmake) read it.
 
 # What CMake needs for the programs for this computer.
 build_packages=(
@@ -53,6 +53,10 @@ kicad_packages=(kicad kicad-symbols kicad-footprints xvfb xdotool)
 page_packages=(nodejs npm)
 browser_packages=(chromium)  # its tests
 film_packages=(webp)         # tools/film, which needs the browser, too
+
+# Debian packages of Proleg: tools/release. What is optional in a build is in them. Their slow test makes an empty Debian.
+release_packages=(dpkg-dev file lintian libmujoco-dev libopenmpi-dev libboost-mpi-dev)
+release_test_packages=(debootstrap)
 
 # The documentation as a site: tools/docs.
 docs_packages=(mkdocs mkdocs-material doxygen python3)

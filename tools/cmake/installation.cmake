@@ -11,7 +11,10 @@
 #   share/man, share/bash-completion, share/zsh, share/fish
 #                         manual pages and completions, made of the help texts of the programs
 
+# Components are the Debian packages (debian_packages.cmake): `runtime` for all that does not name another.
+
 set(PROLEG_INSTALLED_PROGRAMS lib/proleg/bin)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
 
 if(CMAKE_CROSSCOMPILING)
   return()
@@ -42,6 +45,14 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/stm32f405/bin/ DESTINATION share/pro
 install(FILES ${CMAKE_SOURCE_DIR}/host/desktop/proleg.desktop DESTINATION share/applications)
 install(FILES ${CMAKE_SOURCE_DIR}/host/desktop/proleg.svg DESTINATION share/icons/hicolor/scalable/apps)
 install(FILES ${CMAKE_SOURCE_DIR}/host/udev/70-proleg.rules DESTINATION lib/udev/rules.d)
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION share/doc/proleg)
-install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE
-  DESTINATION share/doc/proleg)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION share/doc/proleg PATTERN mkdocs.yml EXCLUDE)
+install(FILES ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/proleg)
+# The licence of Proleg, and those of what its programs, images and page contain.
+file(READ ${CMAKE_SOURCE_DIR}/LICENSE licence)
+string(REGEX REPLACE "^[^\n]*\n\nCopyright \\(c\\) ([^\n]*)\n\n" "" licence "${licence}")
+set(copyright ${CMAKE_MATCH_1})
+string(REGEX REPLACE "\n\n" "\n.\n" licence "${licence}")
+string(REGEX REPLACE "\n(.)" "\n \\1" licence "${licence}")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/LICENSE)
+configure_file(${CMAKE_SOURCE_DIR}/tools/release.d/copyright.in ${CMAKE_BINARY_DIR}/packages/copyright @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/packages/copyright DESTINATION share/doc/proleg)

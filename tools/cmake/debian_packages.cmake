@@ -1,0 +1,55 @@
+# Debian packages, by CPack: `tools/release --debs FOLDER` makes them. The install() rules say what is in them; what only Debian
+# wants is added by complete_debian_packages.cmake.
+#   proleg      component runtime: the programs, and all that they need
+#   proleg-mpi  component mpi: the optimiser on a cluster, apart for its libraries. If MPI was found.
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR Proleg)
+set(CPACK_PACKAGE_CONTACT "The Proleg authors <maintainers@proleg.example>")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_COMPONENTS_ALL runtime)
+if(TARGET proleg-optimise-mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+endif()
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_STRIP_FILES ON)
+# Of any umask.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME proleg)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS xdg-utils)  # `proleg ui` opens the browser by it
+# What `proleg flash --bare` starts; a debugger for virtual chips; a reader of recordings.
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "can-utils, dfu-util, gdb-multiarch, openocd, proleg-mpi (= ${PROJECT_VERSION}), sqlite3, stm32flash")
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "simulator and tools for modular robots that crawl
+Proleg is for robots that crawl like caterpillars and snakes and consist of
+identical joint modules. One fixed-point core computes the joint angles; the
+simulation and the processor of a module run it and give the same bits.
+
+The package has the command proleg: a page in the browser on which a robot
+crawls and every parameter can be changed, simulation, search for gaits, and
+what finds, flashes and drives the modules of a robot on a CAN bus. It brings
+robots and worlds to begin with, and the images that are flashed into modules.")
+
+set(CPACK_DEBIAN_MPI_PACKAGE_NAME proleg-mpi)
+set(CPACK_DEBIAN_MPI_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "proleg (= ${PROJECT_VERSION})")
+set(CPACK_COMPONENT_MPI_DESCRIPTION "search for gaits of modular robots on a cluster
+Proleg is for robots that crawl like caterpillars and snakes and consist of
+identical joint modules.
+
+The package has the program by which 'proleg optimise' computes on many
+computers at once, through MPI.")
+
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/tools/cmake/complete_debian_packages.cmake)
+set(CPACK_PROLEG_COPYRIGHT ${CMAKE_BINARY_DIR}/packages/copyright)
+set(CPACK_PROLEG_OVERRIDES ${CMAKE_SOURCE_DIR}/tools/release.d)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+# tools/release builds what is installed; without this CPack would build everything.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
+include(CPack)

@@ -1,9 +1,8 @@
 # Names of the Debian packages, and functions that install the missing ones. tools/demo, tools/check, tools/page,
-# tools/docs, tools/release and CMake (tools/cmake/configuration.cmake) read it.
+# tools/docs, tools/release, tools/arm64 and CMake (tools/cmake/configuration.cmake) read it.
 
-# What CMake needs for the programs for this computer.
-build_packages=(
-  g++ cmake ninja-build pkg-config
+# The libraries of the programs.
+library_packages=(
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
@@ -12,11 +11,18 @@ build_packages=(
   libevdev-dev  # gamepads
   libssl-dev    # TLS of the page; SHA-256
 )
+# What CMake needs for the programs for this computer.
+build_packages=(g++ cmake ninja-build pkg-config "${library_packages[@]}")
 # The programs, and what goes with them: quick builds, version and npm's downloads; sqlite3 shows the contents of recordings.
 host_packages=("${build_packages[@]}" ccache git ca-certificates sqlite3)
 
 # The image that is flashed into modules.
 firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3)
+
+# The programs for arm64: the compiler, what makes the folder of its libraries, and what runs the programs here.
+arm64_packages=(g++-aarch64-linux-gnu mmdebstrap qemu-user)
+# These libraries, for arm64, are in that folder and not installed: some -dev packages exclude those of another processor.
+arm64_libraries=("${library_packages[@]}" libmujoco-dev)
 
 # Additional packages for the tests: a second compiler with its sanitizers, independent programs.
 test_packages=(
@@ -30,7 +36,7 @@ test_packages=(
   openssl           # certificates
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
-  g++-aarch64-linux-gnu qemu-user  # another processor, which must compute the same
+  "${arm64_packages[@]}"  # another processor, which must compute the same
   libmujoco-dev     # the engine MuJoCo
   libbenchmark-dev  # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster

@@ -26,10 +26,18 @@ add_compile_options(
   -ffp-contract=off
   # Binaries contain no paths of the build computer.
   -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  # Eigen asks for this macro before it calls that operation by its name. Char has the sign that it has on x86-64.
+  add_compile_options(-U__ARM_FEATURE_FMA -fsigned-char)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Notes about objects of older compilers, of which there are none; and warnings of memcpy in a std::string, which is right.
+    add_compile_options(-Wno-psabi -Wno-array-bounds -Wno-stringop-overflow -Wno-restrict)
+  endif()
+endif()
 
 # The linker leaves out what a program does not use of the sources of a room: a program contains less of the code that is in
 # all of them.
-if(NOT CMAKE_CROSSCOMPILING AND NOT PROLEG_SANITIZE)
+if(NOT PROLEG_TARGET AND NOT PROLEG_SANITIZE)
   add_compile_options(-ffunction-sections -fdata-sections)
   add_link_options(LINKER:--gc-sections)
 endif()

@@ -16,10 +16,15 @@
 set(PROLEG_INSTALLED_PROGRAMS lib/proleg/bin)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
 
-if(CMAKE_CROSSCOMPILING)
+if(PROLEG_TARGET)
   return()
 endif()
 
+# Manual pages and completions are made of what the programs print.
+set(started_programs ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+if(CMAKE_CROSSCOMPILING)
+  set(started_programs ${CMAKE_BINARY_DIR}/emulated)
+endif()
 # The page and the images are built by other commands.
 install(CODE "
   foreach(needed \"build/page/index.html;tools/page\" \"build/player/player.html;tools/page\"
@@ -32,7 +37,7 @@ install(CODE "
   endforeach()
   file(MAKE_DIRECTORY \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin\")
   execute_process(
-    COMMAND python3 -B \"${CMAKE_SOURCE_DIR}/tools/docs.d/shell_files.py\" \"${CMAKE_RUNTIME_OUTPUT_DIRECTORY}\"
+    COMMAND python3 -B \"${CMAKE_SOURCE_DIR}/tools/docs.d/shell_files.py\" \"${started_programs}\"
             \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\"
     COMMAND_ERROR_IS_FATAL ANY)
   file(CREATE_LINK ../lib/proleg/bin/proleg \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin/proleg\" SYMBOLIC)

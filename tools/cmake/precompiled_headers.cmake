@@ -31,7 +31,7 @@ set(PROLEG_NETWORK_ROOMS "^(host/(remote|robot|server|transport)|tools/proleg)(/
 set(PROLEG_NETWORK_HEADERS <boost/asio/io_context.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/posix/stream_descriptor.hpp>
     <boost/asio/steady_timer.hpp> <nlohmann/json.hpp>)
 
-if(PROLEG_PRECOMPILED_HEADERS AND NOT CMAKE_CROSSCOMPILING)
+if(PROLEG_PRECOMPILED_HEADERS AND NOT PROLEG_TARGET)
   find_package(Eigen3 REQUIRED NO_MODULE)
   set(program_headers <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory>
       <optional> <span> <sstream> <string> <string_view> <vector>)

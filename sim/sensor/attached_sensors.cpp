@@ -163,7 +163,8 @@ void AttachedSensors::measure_inclination(const Pose& pose, std::span<double> ou
   const Eigen::Vector3d vertical =
       gravity_.norm() > shortest ? (-gravity_).normalized().eval() : Eigen::Vector3d::UnitZ().eval();
   const Eigen::Vector3d up = pose.orientation.conjugate() * vertical;
-  out[0] = std::atan2(up.y(), std::hypot(up.x(), up.z())) * degrees_per_radian;
+  // The last bit of std::hypot depends on the processor; that of a root does not.
+  out[0] = std::atan2(up.y(), std::sqrt(up.x() * up.x() + up.z() * up.z())) * degrees_per_radian;
   out[1] = std::atan2(-up.x(), up.z()) * degrees_per_radian;
 }
 

@@ -36,7 +36,6 @@ test_packages=(
   openssl           # certificates
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
-  "${arm64_packages[@]}"  # another processor, which must compute the same
   libmujoco-dev     # the engine MuJoCo
   libbenchmark-dev  # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster

@@ -1,6 +1,7 @@
 #include "tests/identity/expect_golden.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace proleg::identity {
 namespace {
@@ -42,8 +43,9 @@ void expect_as_native(const std::function<std::unique_ptr<Player>()>& make, cons
 }
 
 void expect_golden_from(std::string_view variant, const ActuationModule& algorithm, std::uint32_t cases) {
+  const std::filesystem::path program = std::filesystem::path(PROLEG_VARIANT_DIR) / variant;
   for (const Driver driver : {Driver::whole, Driver::modules}) {
-    expect_golden([=] { return make_variant_player(variant, driver, cases); }, algorithm, cases);
+    expect_golden([=] { return make_variant_player(program, driver, cases); }, algorithm, cases);
   }
 }
 

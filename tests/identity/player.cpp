@@ -1,7 +1,7 @@
 #include "tests/identity/player.hpp"
 
 #include <cstdio>
-#include <filesystem>
+#include <utility>
 #include <vector>
 
 namespace proleg::identity {
@@ -24,8 +24,8 @@ class NativePlayer final : public Player {
 
 class VariantPlayer final : public Player {
  public:
-  VariantPlayer(std::string_view variant, Driver driver, std::uint32_t cases)
-      : program_(std::filesystem::path(PROLEG_VARIANT_DIR) / variant), driver_(driver), cases_(cases) {
+  VariantPlayer(std::filesystem::path program, Driver driver, std::uint32_t cases)
+      : program_(std::move(program)), driver_(driver), cases_(cases) {
     if (!std::filesystem::exists(program_)) {
       throw PlayerError(program_.string() + " is missing; build the whole preset");
     }
@@ -93,8 +93,8 @@ std::unique_ptr<Player> make_native_player(Driver driver) {
   return std::make_unique<NativePlayer<Modules>>();
 }
 
-std::unique_ptr<Player> make_variant_player(std::string_view variant, Driver driver, std::uint32_t cases) {
-  return std::make_unique<VariantPlayer>(variant, driver, cases);
+std::unique_ptr<Player> make_variant_player(const std::filesystem::path& program, Driver driver, std::uint32_t cases) {
+  return std::make_unique<VariantPlayer>(program, driver, cases);
 }
 
 }  // namespace proleg::identity

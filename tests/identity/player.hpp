@@ -3,11 +3,11 @@
 // Players of the identity cases: this program, a program built by another compiler, an emulated Cortex-M.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "tests/identity/identity_case.hpp"
 
@@ -44,8 +44,8 @@ void expect_clean(Status status, std::uint32_t missed_frames, std::uint32_t numb
 /// Played by the code of this program.
 [[nodiscard]] std::unique_ptr<Player> make_native_player(Driver driver);
 
-/// Played by a program made from variant_main.cpp, e.g. "identity_clang_O0". cases: number of cases it will be asked
-/// for.
-[[nodiscard]] std::unique_ptr<Player> make_variant_player(std::string_view variant, Driver driver, std::uint32_t cases);
+/// Played by a program made from variant_main.cpp. cases: number of cases it will be asked for.
+[[nodiscard]] std::unique_ptr<Player> make_variant_player(const std::filesystem::path& program, Driver driver,
+                                                          std::uint32_t cases);
 
 }  // namespace proleg::identity

@@ -19,8 +19,10 @@ host_packages=("${build_packages[@]}" ccache git ca-certificates sqlite3)
 # The image that is flashed into modules.
 firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3)
 
-# The programs for arm64: the compiler, what makes the folder of its libraries, and what runs the programs here.
-arm64_packages=(g++-aarch64-linux-gnu mmdebstrap qemu-user)
+# The programs for arm64: the compiler, and what runs the programs here.
+aarch64_packages=(g++-aarch64-linux-gnu qemu-user)
+# And what makes the folder of its libraries.
+arm64_packages=("${aarch64_packages[@]}" mmdebstrap)
 # These libraries, for arm64, are in that folder and not installed: some -dev packages exclude those of another processor.
 arm64_libraries=("${library_packages[@]}" libmujoco-dev)
 
@@ -36,6 +38,7 @@ test_packages=(
   openssl           # certificates
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
+  "${aarch64_packages[@]}"  # another processor, which must compute the same
   libmujoco-dev     # the engine MuJoCo
   libbenchmark-dev  # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster

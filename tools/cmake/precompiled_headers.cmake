@@ -16,8 +16,8 @@ function(proleg_precompiled_headers name)
   endif()
 endfunction()
 
-# Rooms that compute little, or mostly wait: fewer optimisations shorten their compile time under the sanitizers, and for users
-# their programs become a third smaller.
+# Rooms that compute little, or mostly wait: fewer optimisations shorten their compile time under the sanitizers, and make the
+# programs of users smaller.
 if(PROLEG_SANITIZE)
   set(PROLEG_LIGHT_ROOMS "^(tools|host/(remote|robot|robot_control|server|transport)|sim/(data_file|record|scenario|optimize/(confirm|evaluation|experiment|mpi|report|sweep)))(/|$)")
   set(PROLEG_LIGHT_OPTION -O0)

@@ -9,8 +9,18 @@ import { EmbeddedRecording } from '../player/embedded_recording.js';
 import { type Ground, RobotScene } from '../scene/robot_scene.js';
 import { colours } from '../scene/scene_colours.js';
 import type { RobotDocument } from '../wire/messages.js';
-import type { FilmWishes } from './film_wishes.js';
 import { drawSetpoints } from './setpoint_lines.js';
+
+// What a film shows. Ticks count as in the recording.
+export interface FilmWishes {
+  first: number; // tick of the first picture
+  ticks: number; // the film ends before tick first + ticks
+  period: number; // ticks of a period of the gait; a film of whole periods can begin again without a jump
+  width: number; // pixels
+  height: number;
+  linesHeight: number; // pixels of `height`: the set-points
+  isDark: boolean;
+}
 
 declare global {
   interface Window {

@@ -199,7 +199,8 @@ export class RobotModel {
 
   // As MergedSet.showIn() and cutAround(), around a place that is in view.
   showIn(frustum: THREE.Frustum, farthest: number, place: THREE.Vector3): void {
-    this.still?.cutAround(place, 2 ** Math.ceil(Math.log2(2 * farthest))); // other numbers as the view zooms: seldom
+    // A power of two changes rarely while the view zooms.
+    this.still?.cutAround(place, 2 ** Math.ceil(Math.log2(2 * farthest)));
     this.still?.showIn(frustum, farthest);
   }
 

@@ -4,8 +4,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
-import type {} from '../../../../host/page/source/film/film.js';
-import type { FilmWishes } from '../../../../host/page/source/film/film_wishes.js';
+import type { FilmWishes } from '../../../../host/page/source/film/film.js';
 
 export class FilmPage {
   private constructor(readonly page: Page) {}

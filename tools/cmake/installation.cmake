@@ -4,6 +4,8 @@
 #   lib/proleg/bin        all programs
 #   lib/proleg/lib        plug-ins
 #   share/proleg          scenarios, page, player, images
+#   src/proleg, share/cmake, include
+#                         for users' algorithms and plug-ins (development_files.cmake)
 #   share/doc/proleg      documents
 #   share/applications, share/icons
 #                         the entry in the menu of a desktop
@@ -42,6 +44,8 @@ install(CODE "
     COMMAND_ERROR_IS_FATAL ANY)
   file(CREATE_LINK ../lib/proleg/bin/proleg \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin/proleg\" SYMBOLIC)
 ")
+
+include(development_files)
 
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/sim/scenarios DESTINATION share/proleg)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/page ${CMAKE_SOURCE_DIR}/build/player DESTINATION share/proleg)

@@ -5,6 +5,19 @@
 #   const proleg::ActuationModule& proleg::user::NAME();
 # whose declaration takes PROLEG_ALGORITHM_SOURCES.
 
+# Compiles through ccache, if it is installed and can write to its folder: without that it ends the build.
+macro(proleg_use_ccache)
+  find_program(CCACHE_PROGRAM ccache)
+  if(CCACHE_PROGRAM)
+    execute_process(COMMAND ${CCACHE_PROGRAM} --get-config cache_dir OUTPUT_VARIABLE ccache_folder OUTPUT_STRIP_TRAILING_WHITESPACE)
+    execute_process(COMMAND sh -c "\"$0\" -E make_directory \"$1/tmp\" && test -w \"$1/tmp\"" ${CMAKE_COMMAND} ${ccache_folder}
+      RESULT_VARIABLE ccache_status OUTPUT_QUIET ERROR_QUIET)
+    if(ccache_status EQUAL 0)
+      set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+    endif()
+  endif()
+endmacro()
+
 # proleg_find_user_algorithm(<folder> <prefix>)
 #   Sets <prefix>_NAME, <prefix>_SOURCE (the file) and <prefix>_FINGERPRINT: the first 32 bits of the SHA-256 of the source
 #   and of the headers, as 0x1234ABCD. A change of them configures the build again.
@@ -88,8 +101,9 @@ ${declarations}}  // namespace proleg::user
 endfunction()
 
 # proleg_algorithm_project()
-#   For the CMakeLists.txt of a user's folder: a library NAME.so for --algorithms, and the test NAME_test, which has the
-#   core and the algorithm (proleg::user::NAME()). PROLEG_SOURCE is this checkout.
+#   For the CMakeLists.txt of a user's folder, by find_package(Proleg): a library NAME.so for --algorithms; the test NAME_test, which
+#   has the core and the algorithm (proleg::user::NAME()); and the target module-image, which is built when it is named: the image of
+#   the modules with the algorithm, and their bootloader, in image/bin of the build folder. PROLEG_SOURCE is the folder with this tree.
 macro(proleg_algorithm_project)
   proleg_find_user_algorithm(${CMAKE_CURRENT_SOURCE_DIR} algorithm)
   if(NOT CMAKE_BUILD_TYPE)
@@ -98,10 +112,7 @@ macro(proleg_algorithm_project)
   set(CMAKE_CXX_STANDARD 20)
   set(CMAKE_CXX_STANDARD_REQUIRED ON)
   set(CMAKE_CXX_EXTENSIONS OFF)
-  find_program(CCACHE_PROGRAM ccache)
-  if(CCACHE_PROGRAM)
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
-  endif()
+  proleg_use_ccache()
   # As the core and the images: what compiles here compiles there.
   add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -ffp-contract=off)
   file(GLOB core_sources ${PROLEG_SOURCE}/shared/fixed/*.cpp ${PROLEG_SOURCE}/shared/gait/*.cpp ${PROLEG_SOURCE}/shared/kernel/*.cpp)
@@ -145,4 +156,9 @@ const proleg::AlgorithmInterface proleg_algorithm_interface =
     target_link_libraries(${algorithm_NAME}_test PRIVATE tested_algorithm proleg_core)
     add_test(NAME ${algorithm_NAME} COMMAND ${algorithm_NAME}_test)
   endif()
+
+  add_custom_target(module-image
+    COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROLEG_SOURCE} -D BUILD=${CMAKE_CURRENT_BINARY_DIR}/image
+            -D ALGORITHM=${CMAKE_CURRENT_SOURCE_DIR} -P ${PROLEG_SOURCE}/tools/cmake/build_module_image.cmake
+    USES_TERMINAL VERBATIM)
 endmacro()

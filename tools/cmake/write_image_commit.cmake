@@ -1,6 +1,6 @@
 # Writes a header with the git commit of the sources of an image, if that has changed: the last commit of the folders
-# that an image is built from, and whether they differ from it. Without git: 20 zeros. HAS_USER_ALGORITHMS: the image has
-# algorithms of users, so its sources are more than those of the commit.
+# that an image is built from, and whether they differ from it. Without git: 20 zeros. Installed sources have such a header, written
+# at their installation. HAS_USER_ALGORITHMS: the image has algorithms of users, so its sources are more than those of the commit.
 #   cmake -D SOURCE_DIR=... -D HAS_USER_ALGORITHMS=... -D OUTPUT=... -P write_image_commit.cmake
 
 set(folders shared firmware tools/cmake tools/toolchains CMakeLists.txt CMakePresets.json)
@@ -18,6 +18,12 @@ if(changes OR HAS_USER_ALGORITHMS)
   set(has_changes true)
 endif()
 set(text "#define PROLEG_IMAGE_COMMIT {${bytes}}\n#define PROLEG_IMAGE_HAS_CHANGES ${has_changes}\n")
+if(EXISTS ${SOURCE_DIR}/image_commit.hpp)
+  file(READ ${SOURCE_DIR}/image_commit.hpp text)
+  if(HAS_USER_ALGORITHMS)
+    string(REPLACE "HAS_CHANGES false" "HAS_CHANGES true" text "${text}")
+  endif()
+endif()
 set(before "")
 if(EXISTS ${OUTPUT})
   file(READ ${OUTPUT} before)

@@ -1,6 +1,12 @@
 # Common part of the Cortex-M toolchains: Debian's gcc-arm-none-eabi. The including file sets `cpu`, and
 # PROLEG_TARGET, which is the name of its preset.
 
+find_program(PROLEG_ARM_COMPILER arm-none-eabi-g++)
+if(NOT PROLEG_ARM_COMPILER)
+  # CMake does not break a line that begins with a blank.
+  message(FATAL_ERROR " found no arm-none-eabi-g++, expected it in a folder of PATH: "
+    "sudo apt install gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib")
+endif()
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_C_COMPILER arm-none-eabi-gcc)

@@ -8,6 +8,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/program_run.hpp"
 
 namespace proleg::verify {
 namespace {
@@ -127,8 +128,9 @@ std::vector<std::string> result_lines(const Proof& proof) {
     lines.push_back(test.error.empty() ? "test       passed: " + test.name
                                        : "test       fails: " + test.name + ": " + test.error);
   }
-  if (!missing_programs(proof).empty() && !proof.leaves_out_missing) {
-    lines.emplace_back("missing    compilers are not installed; --leave-out-missing accepts that");
+  if (const auto missing = missing_programs(proof); !missing.empty() && !proof.leaves_out_missing) {
+    lines.push_back("missing    compilers are not installed: " + tools::installing_command(missing) +
+                    "; --leave-out-missing accepts that");
   }
   if (proof.forbidden) {
     for (const std::string& each : *proof.forbidden) {

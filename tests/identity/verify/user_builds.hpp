@@ -16,11 +16,17 @@ class BuildError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The builds of one algorithm, in build/verify/ of its folder. They are kept, so the next time only changes are built.
+/// The builds of one algorithm, in build/verify/ of its folder, or if that cannot be written, in a folder of the user's
+/// cache (XDG_CACHE_HOME). They are kept, so the next time only changes are built.
 class UserBuilds {
  public:
-  /// tree: the checkout of Proleg. folder: the algorithm's, absolute.
+  /// tree: the sources of Proleg. folder: the algorithm's, absolute. Throws BuildError if there is no place for builds.
   UserBuilds(std::filesystem::path tree, std::filesystem::path folder);
+
+  /// The folder of all builds.
+  [[nodiscard]] const std::filesystem::path& place() const { return place_; }
+  /// Whether that is not in the folder of the algorithm.
+  [[nodiscard]] bool are_aside() const { return place_ != folder_ / "build/verify"; }
 
   /// The algorithm's name, which is that of its source. Throws BuildError if the folder has no such source.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -41,12 +47,16 @@ class UserBuilds {
 
  private:
   void run(const std::string& what, const std::vector<std::string>& command) const;
+  [[nodiscard]] std::filesystem::path choose_place() const;
   [[nodiscard]] std::filesystem::path build_folder(const std::string& what) const;
+  void configure(const std::string& what, const std::filesystem::path& source,
+                 const std::vector<std::string>& options) const;
   void configure_cortex_m(const std::string& preset) const;
 
   std::filesystem::path tree_;
   std::filesystem::path folder_;
   std::string name_;
+  std::filesystem::path place_;
 };
 
 }  // namespace proleg::verify

@@ -135,7 +135,8 @@ class Verification {
         progress_(options.json, step_count()) {
     for (const char* program : {"cmake", "ninja"}) {
       if (!is_installed(program)) {
-        throw BadInput(std::string("found no ") + program + ", expected it in a folder of PATH; install it");
+        throw BadInput(std::string("found no ") + program +
+                       ", expected it in a folder of PATH: " + installing_command({program}));
       }
     }
     proof_.cases = cases;
@@ -144,6 +145,10 @@ class Verification {
   }
 
   Proof run() {
+    if (builds_.are_aside()) {
+      std::cerr << "proleg verify: cannot write to the folder of the algorithm; builds are in "
+                << builds_.place().string() << '\n';
+    }
     library();
     print(heading_text(proof_));
     // A library that has failed would only fail again, and without a guard.
@@ -343,7 +348,7 @@ int main(int argc, char** argv) {
       .required()
       .value_name("");
   command_line.add_option("--cases", options.cases, "random cases of 1000 ticks; by default 50").value_name("N");
-  command_line.add_option("--source", options.source, "checkout of Proleg; by default the one of this program")
+  command_line.add_option("--source", options.source, "sources of Proleg; by default those of this program")
       .value_name("FOLDER");
   command_line.add_flag("--leave-out-missing", options.leaves_out_missing,
                         "success even if a compiler is not installed");

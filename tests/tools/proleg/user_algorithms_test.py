@@ -662,6 +662,8 @@ class Verify(unittest.TestCase):
             self.assertEqual(result.returncode, status, result.stdout + result.stderr)
             self.assertRegex(result.stdout, r"clang\+\+ -O2 .* not run: no clang\+\+")
             self.assertRegex(result.stdout, r"Cortex-M4 .* not run: no arm-none-eabi-g\+\+")
+            command = "sudo apt install clang gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib"
+            self.assertEqual(command in result.stdout, not options)
 
 
 class Image(unittest.TestCase):

@@ -1,7 +1,10 @@
 #include "tools/proleg/common/installation.hpp"
 
+#include <algorithm>
+#include <fstream>
 #include <system_error>
 
+#include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
 
 namespace proleg::tools {
@@ -17,6 +20,25 @@ std::optional<fs::path> installed_data() {
   std::error_code error;
   fs::path data = top() / "share/proleg";
   return !is_source_tree(top()) && fs::is_directory(data, error) ? std::optional(std::move(data)) : std::nullopt;
+}
+
+/// The sources of an installation, with the build id that was written beside them.
+fs::path installed_sources() {
+  fs::path sources = top() / "src/proleg";
+  if (!is_source_tree(sources)) {
+    throw BadInput("found no sources of Proleg in " + sources.string() +
+                   ", expected those of the package proleg-dev: sudo apt install proleg-dev");
+  }
+  std::ifstream file(sources / "build_id_text.hpp");
+  std::string line;
+  std::getline(file, line);
+  const std::string found = line.substr(std::min(line.find('"'), line.size()));
+  if (found != '"' + std::string(build_id) + '"') {
+    throw BadInput("found the sources of Proleg " + (found.empty() ? "without a version" : found) + " in " +
+                   sources.string() + ", expected those of this program, \"" + build_id +
+                   "\"; install proleg and proleg-dev of one version");
+  }
+  return sources;
 }
 
 bool is_below(const fs::path& file, const fs::path& folder) {
@@ -44,6 +66,9 @@ fs::path source_tree(const std::string& given) {
       throw BadInput("--source: found " + folder.string() + " without the sources of Proleg, expected a checkout");
     }
     return folder;
+  }
+  if (installed_data()) {
+    return installed_sources();
   }
   // A program is in build/PRESET/bin of its checkout.
   fs::path folder = program_folder();

@@ -12,11 +12,12 @@ namespace proleg::tools {
 /// The folder of this program; empty if the kernel does not name it.
 [[nodiscard]] std::filesystem::path program_folder();
 
-/// The checkout of Proleg's sources: `given`, or if that is empty, the checkout in which this program was built. Throws
-/// BadInput, which names the option --source, if no checkout is found.
+/// The sources from which users' algorithms and images are built: `given`, or if that is empty, src/proleg of the
+/// installation or the checkout in which this program was built. Throws BadInput, which says how to get them, if they
+/// are not there, or if the installed ones are not those of this program.
 [[nodiscard]] std::filesystem::path source_tree(const std::string& given);
 
-/// Whether a folder is such a checkout.
+/// Whether a folder has these sources: a checkout, or src/proleg of an installation.
 [[nodiscard]] bool is_source_tree(const std::filesystem::path& folder);
 
 /// The scenarios that ship with Proleg: sim/scenarios of the checkout, or share/proleg/scenarios. Nothing if there is

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -98,6 +99,19 @@ bool is_installed(const std::string& program) {
     }
   }
   return false;
+}
+
+std::string installing_command(const std::vector<std::string>& programs) {
+  static const std::map<std::string_view, std::string_view> packages{
+      {"arm-none-eabi-g++", "gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib"},
+      {"clang++", "clang"},
+      {"ninja", "ninja-build"}};
+  std::string command = "sudo apt install";
+  for (const std::string& program : programs) {
+    const auto package = packages.find(program);
+    command.append(" ").append(package == packages.end() ? program : package->second);
+  }
+  return command;
 }
 
 ProgramResult run_program(const std::vector<std::string>& command, const std::string& folder) {

@@ -15,6 +15,9 @@ namespace proleg::tools {
 /// Whether a shell would find the program.
 [[nodiscard]] bool is_installed(const std::string& program);
 
+/// The command that installs the Debian packages of programs which builds need.
+[[nodiscard]] std::string installing_command(const std::vector<std::string>& programs);
+
 struct ProgramResult {
   bool was_found = true;
   int status = 0;      ///< exit status, or 128 + the number of a signal, as a shell reports it

@@ -132,7 +132,7 @@ std::string actuation_lines(const AlgorithmForm& form) {
 /// What the templates ask for: lines between `@if KEY@`, `@else@` and `@end@` are there if it holds.
 class Filling {
  public:
-  Filling(const AlgorithmForm& form, const AlgorithmPlace& place) {
+  Filling(const AlgorithmForm& form, const std::string& source_tree) {
     conditions_ = {{"example", has_values_of_example(form)},
                    {"harmonic", has_harmonic(form)},
                    {"own_values", !form.values.empty()},
@@ -154,8 +154,7 @@ class Filling {
     words_ = {{"NAME", form.name},
               {"ID", std::to_string(form.id)},
               {"HELP", form.help},
-              {"SOURCE", place.source_tree},
-              {"FOLDER", place.folder},
+              {"SOURCE", source_tree},
               {"PARAMETER_NAMES", names_of(form.parameters)},
               {"VALUE_NAMES", names_of(form.values)},
               {"FIRST_VALUE_NAMES", names_of(form.values, " = first_own_value")},
@@ -224,8 +223,8 @@ void check_algorithm_folder(const std::string& folder, const std::string& field)
   }
 }
 
-std::vector<sim::SourceFile> algorithm_files(const AlgorithmForm& form, const AlgorithmPlace& place) {
-  const Filling filling(form, place);
+std::vector<sim::SourceFile> algorithm_files(const AlgorithmForm& form, const std::string& source_tree) {
+  const Filling filling(form, source_tree);
   std::vector<sim::SourceFile> files{
       {"README.md", filling.fill(algorithm_readme_text())},
       {form.name + ".cpp", filling.fill(algorithm_source_text())},

@@ -53,8 +53,7 @@ int write_algorithm(const AlgorithmOptions& options) {
   }
   const std::filesystem::path tree = source_tree(options.source);
   check_algorithm_folder(folder.string(), "--out");
-  write_new_files(folder,
-                  algorithm_files(example_form(options.name, choose_id(options)), {folder.string(), tree.string()}));
+  write_new_files(folder, algorithm_files(example_form(options.name, choose_id(options)), tree.string()));
   const auto inside = [&folder](const std::string& path) { return shell_argument((folder / path).string()); };
   std::cout << "build it:  cmake -S " << shell_argument(folder.string()) << " -B " << inside("build")
             << " -G Ninja && cmake --build " << inside("build") << '\n'
@@ -75,7 +74,7 @@ int new_algorithm(int argc, char** argv) {
       .value_name("FOLDER");
   command_line.add_option("--id", options.id, "of the algorithm, 96 to 126; by default one that follows from NAME")
       .value_name("N");
-  command_line.add_option("--source", options.source, "checkout of Proleg; by default the one of this program")
+  command_line.add_option("--source", options.source, "sources of Proleg; by default those of this program")
       .value_name("FOLDER");
   return command_line.run(argc, argv, [&] { return write_algorithm(options); });
 }

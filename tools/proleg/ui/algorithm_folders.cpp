@@ -118,7 +118,7 @@ AlgorithmFolder AlgorithmFolders::create(const AlgorithmForm& form, const fs::pa
                        "another name");
     }
   }
-  const std::vector<sim::SourceFile> files = algorithm_files(form, {folder.string(), source_tree.string()});
+  const std::vector<sim::SourceFile> files = algorithm_files(form, source_tree.string());
   std::error_code error;
   if (!fs::create_directory(folder, error)) {
     if (error) {

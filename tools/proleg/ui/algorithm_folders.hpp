@@ -45,7 +45,7 @@ class AlgorithmFolders {
   /// Throws InputError if there is no algorithm in a folder of this name.
   [[nodiscard]] AlgorithmFolder find(const std::string& folder) const;
 
-  /// Writes the files of a new one into a new folder with its name. source_tree: checkout of Proleg. Throws InputError
+  /// Writes the files of a new one into a new folder with its name. source_tree: sources of Proleg. Throws InputError
   /// for a form that breaks a rule, or if the folder exists; FileError, and then there is no new folder.
   AlgorithmFolder create(const AlgorithmForm& form, const std::filesystem::path& source_tree) const;
 

@@ -131,9 +131,11 @@ json AlgorithmSession::build(const host::OperationRequest& request) {
   const AlgorithmFolder algorithm = folder_of(request.arguments);
   const std::string folder = algorithm.path.string();
   const std::string build = algorithm.build().string();
+  const std::string tree = source_tree("").string();
   // The same as docs/user-algorithms.md has for the command line; `proleg verify` runs the test.
   begin(Work::build, {algorithm},
-        {{"cmake", "-S", folder, "-B", build, "-G", "Ninja", "-DPROLEG_SOURCE=" + source_tree("").string()},
+        {{"cmake", "-S", folder, "-B", build, "-G", "Ninja", "-DPROLEG_SOURCE=" + tree,
+          "-DProleg_DIR=" + tree + "/tools/cmake"},
          {"cmake", "--build", build, "--target", algorithm.name}});
   return {{"version", job_->version}};
 }

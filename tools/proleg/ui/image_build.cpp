@@ -82,8 +82,7 @@ std::vector<std::vector<std::string>> ImageBuild::commands(std::span<const Algor
   }
   if (!is_installed(compiler)) {
     throw std::runtime_error(std::string("found no ") + compiler +
-                             ", expected it in a folder of PATH: sudo apt install gcc-arm-none-eabi "
-                             "libstdc++-arm-none-eabi-newlib");
+                             ", expected it in a folder of PATH: " + installing_command({compiler}));
   }
   std::error_code error;
   fs::create_directories(folder_, error);

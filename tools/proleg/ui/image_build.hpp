@@ -18,9 +18,9 @@ class ImageBuild {
   /// project: its folder. The build is kept in build/image, so the next one takes less time.
   explicit ImageBuild(const std::filesystem::path& project) : folder_(project / "build/image") {}
 
-  /// Makes the folder, and returns the programs that build the image with these algorithms; they run in the checkout.
-  /// Throws InputError for a path that CMake cannot take, FileError if the folder cannot be made, std::runtime_error
-  /// without the compiler.
+  /// Makes the folder, and returns the programs that build the image with these algorithms; they run in the folder of
+  /// the sources. Throws InputError for a path that CMake cannot take, FileError if the folder cannot be made,
+  /// std::runtime_error without the compiler.
   [[nodiscard]] std::vector<std::vector<std::string>> commands(std::span<const AlgorithmFolder> algorithms) const;
 
   /// The built image, for the document `algorithm_image`. Throws InputError if it is not there, or not intact.

@@ -7,10 +7,10 @@
 namespace proleg::tools {
 namespace {
 
-const AlgorithmPlace place{"/home/me/my_wave", "/home/me/proleg"};
+const std::string source_tree = "/home/me/proleg";
 
 std::string file_of(const AlgorithmForm& form, const std::string& name) {
-  const std::vector<sim::SourceFile> files = algorithm_files(form, place);
+  const std::vector<sim::SourceFile> files = algorithm_files(form, source_tree);
   const auto file = std::ranges::find(files, name, &sim::SourceFile::path);
   return file == files.end() ? "no file " + name : file->text.str();
 }
@@ -62,7 +62,7 @@ TEST(AlgorithmFiles, NothingOfTheTemplatesIsLeft) {
       AlgorithmForm form = example_form("my_wave", 103);
       form.parameters.resize(parameters);
       form.senses_touch = is_touching;
-      for (const sim::SourceFile& file : algorithm_files(form, place)) {
+      for (const sim::SourceFile& file : algorithm_files(form, source_tree)) {
         EXPECT_EQ(file.text.str().find('@'), std::string::npos) << file.path << ":\n" << file.text.str();
       }
     }

@@ -1,0 +1,15 @@
+# For find_package(Proleg VERSION): the version of the sources. Those with other first or second numbers do not fit (docs/versions.md).
+
+foreach(proleg_source ../.. ../../../src/proleg)
+  if(EXISTS "${CMAKE_CURRENT_LIST_DIR}/${proleg_source}/shared/gait")
+    file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/${proleg_source}/CMakeLists.txt" PACKAGE_VERSION REGEX "^project\\(proleg VERSION ")
+  endif()
+endforeach()
+string(REGEX REPLACE "^.* VERSION ([0-9.]+) .*$" "\\1" PACKAGE_VERSION "${PACKAGE_VERSION}")
+string(REGEX MATCH "^[0-9]+\\.[0-9]+" proleg_series "${PACKAGE_VERSION}")
+if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)
+  set(PACKAGE_VERSION_EXACT TRUE)
+endif()
+if(PACKAGE_FIND_VERSION VERSION_LESS_EQUAL PACKAGE_VERSION AND "${PACKAGE_FIND_VERSION}." MATCHES "^${proleg_series}\\.")
+  set(PACKAGE_VERSION_COMPATIBLE TRUE)
+endif()

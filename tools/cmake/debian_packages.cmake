@@ -1,13 +1,14 @@
 # Debian packages, by CPack: `tools/release --debs FOLDER` makes them. The install() rules say what is in them; what only Debian
 # wants is added by complete_debian_packages.cmake.
 #   proleg      component runtime: the programs, and all that they need
+#   proleg-dev  component dev: what users' algorithms, plug-ins and images for modules are built from
 #   proleg-mpi  component mpi: the optimiser on a cluster, apart for its libraries. If MPI was found.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR Proleg)
 set(CPACK_PACKAGE_CONTACT "The Proleg authors <maintainers@proleg.example>")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_COMPONENTS_ALL runtime)
+set(CPACK_COMPONENTS_ALL runtime dev)
 if(TARGET proleg-optimise-mpi)
   list(APPEND CPACK_COMPONENTS_ALL mpi)
 endif()
@@ -45,6 +46,22 @@ identical joint modules.
 
 The package has the program by which 'proleg optimise' computes on many
 computers at once, through MPI.")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME proleg-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_DEV_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "proleg (= ${PROJECT_VERSION}), cmake (>= 3.25), g++, ninja-build, python3")
+# The compiler for modules.
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "gcc-arm-none-eabi, libstdc++-arm-none-eabi-newlib")
+set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "ccache, clang")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "algorithms and plug-ins for modular robots that crawl
+Proleg is for robots that crawl like caterpillars and snakes and consist of
+identical joint modules.
+
+The package has the sources of the core and of the program of a module, with
+a CMake package. Algorithms of users are built from them, for this computer
+and for modules, and the command 'proleg verify' proves that both compute the
+same bits. It also has the header of plug-ins for robots without modules.")
 
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/tools/cmake/complete_debian_packages.cmake)
 set(CPACK_PROLEG_COPYRIGHT ${CMAKE_BINARY_DIR}/packages/copyright)

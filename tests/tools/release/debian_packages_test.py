@@ -20,12 +20,16 @@ from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
 
+sys.dont_write_bytecode = True
+sys.path.append(str(Path(__file__).resolve().parents[1] / "proleg"))
+from own_algorithm_commands import OrdinaryUser, commands_of, in_the_test, parts_of  # noqa: E402
+
 MIRROR = "http://deb.debian.org/debian"
 LONGEST = 1200  # s, of one command
 LARGEST = 60e6  # bytes installed
 # What apt and dpkg keep of any package, what runs, and what users write.
 NOT_OF_A_PACKAGE = ("proc", "sys", "dev", "run", "tmp", "var/cache", "var/log", "var/lib/apt", "var/lib/dpkg")
-OWN = ("proleg",)  # the packages whose files must go
+OWN = ("proleg", "proleg-dev")  # the packages whose files must go
 
 
 def run(*command, **options):
@@ -76,6 +80,8 @@ class DebianPackages(unittest.TestCase):
         cls.inside("apt-get", "install", "-y", "--no-install-recommends", "man-db")
         for package in OWN:
             needed = cls.field(package, "Depends")
+            if package == "proleg-dev":  # with the compiler for modules, without the package of the programs
+                needed = re.sub(r"proleg \([^)]*\), ", "", needed) + ", " + cls.field(package, "Recommends")
             cls.inside("apt-get", "satisfy", "-y", "--no-install-recommends", needed)
         cls.before = cls.files()
 
@@ -138,7 +144,18 @@ class DebianPackages(unittest.TestCase):
         for name in re.findall(r"^  (\w+) ", self.inside("proleg", "--help"), re.MULTILINE):
             self.assertIn(f"proleg {name}", self.inside("man", f"proleg-{name}"), name)
 
-    def test_5_purged_it_leaves_nothing(self):
+    def test_5_an_ordinary_user_makes_an_algorithm_and_its_image(self):
+        user = OrdinaryUser(self.root / "home/user", "/usr", root=self.root)
+        begin = time.monotonic()
+        first, rest = parts_of(commands_of(SOURCE / "docs/user-algorithms.md"))
+        for command in first + rest[:3]:  # the others are about a bus, not about the packages
+            result = user.run(in_the_test(command), LONGEST)
+            self.assertEqual(result.returncode, 0, command + "\n" + result.stdout + result.stderr)
+        self.assertIn("differences       0 against", result.stdout)
+        print(f"the algorithm in its image, with a proof of two cases: {time.monotonic() - begin:.0f} s", flush=True)
+        shutil.rmtree(user.home)
+
+    def test_6_purged_it_leaves_nothing(self):
         self.inside("apt-get", "purge", "-y", *OWN)
         self.assertEqual(sorted(self.files() ^ self.before), [])
         self.assertEqual([str(path) for path in (self.root / "var/lib/dpkg").rglob("*proleg*")], [])

@@ -11,6 +11,10 @@ library_packages=(
   libevdev-dev  # gamepads
   libssl-dev    # TLS of the page; SHA-256
 )
+# The package for Python (tools/python).
+python_packages=(pybind11-dev python3-dev python3-numpy)
+# What its examples use, in their slow test.
+python_example_packages=(python3-scipy python3-optuna python3-deap python3-pandas)
 # What CMake needs for the programs for this computer.
 build_packages=(g++ cmake ninja-build pkg-config "${library_packages[@]}")
 # The programs, and what goes with them: quick builds, version and npm's downloads; sqlite3 shows the contents of recordings.
@@ -28,6 +32,7 @@ arm64_libraries=("${library_packages[@]}" libmujoco-dev)
 
 # Additional packages for the tests: a second compiler with its sanitizers, independent programs.
 test_packages=(
+  "${python_packages[@]}"
   clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev
   lld               # links the programs of the sanitizers
   llvm              # names of functions in reports of the sanitizers, which their suppressions need
@@ -63,7 +68,7 @@ browser_packages=(chromium)  # its tests
 film_packages=(webp)         # tools/film, which needs the browser, too
 
 # Debian packages of Proleg: tools/release. What is optional in a build is in them. Their slow test makes an empty Debian.
-release_packages=(dpkg-dev file lintian libmujoco-dev libopenmpi-dev libboost-mpi-dev)
+release_packages=(dpkg-dev file lintian libmujoco-dev libopenmpi-dev libboost-mpi-dev "${python_packages[@]}")
 release_test_packages=(debootstrap)
 
 # The documentation as a site: tools/docs.

@@ -39,6 +39,8 @@ endif()
 # all of them.
 if(NOT PROLEG_TARGET AND NOT PROLEG_SANITIZE)
   add_compile_options(-ffunction-sections -fdata-sections)
+  # A room may become a part of a library that a program loads (tools/python), whose functions no other library replaces.
+  add_compile_options(-fPIC -fno-semantic-interposition)
   add_link_options(LINKER:--gc-sections)
 endif()
 

@@ -3,6 +3,7 @@
 #   proleg      component runtime: the programs, and all that they need
 #   proleg-dev  component dev: what users' algorithms, plug-ins and images for modules are built from
 #   proleg-mpi  component mpi: the optimiser on a cluster, apart for its libraries. If MPI was found.
+#   python3-proleg  component python: the package for Python. If it is built.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR Proleg)
@@ -11,6 +12,9 @@ set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_COMPONENTS_ALL runtime dev)
 if(TARGET proleg-optimise-mpi)
   list(APPEND CPACK_COMPONENTS_ALL mpi)
+endif()
+if(TARGET proleg_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
@@ -62,6 +66,21 @@ The package has the sources of the core and of the program of a module, with
 a CMake package. Algorithms of users are built from them, for this computer
 and for modules, and the command 'proleg verify' proves that both compute the
 same bits. It also has the header of plug-ins for robots without modules.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-proleg)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+# It is made for one version of Python.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "proleg (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-scipy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/tools/release.d/python3-proleg/postinst
+  ${CMAKE_SOURCE_DIR}/tools/release.d/python3-proleg/prerm)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "simulation of modular robots that crawl, for Python
+Proleg is for robots that crawl like caterpillars and snakes and consist of
+identical joint modules.
+
+The package has the simulator as a module of Python: it rates many gaits at
+once, gives arrays of numpy, and has the results of the programs to the last
+bit. Examples use the optimisers of SciPy, Optuna and DEAP.")
 
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/tools/cmake/complete_debian_packages.cmake)
 set(CPACK_PROLEG_COPYRIGHT ${CMAKE_BINARY_DIR}/packages/copyright)

@@ -49,5 +49,9 @@ namespace proleg::optimize {
 /// be written.
 std::filesystem::path write_scenario(const Experiment& experiment, const Evaluation& evaluation,
                                      const std::filesystem::path& folder, const std::string& name);
+/// The same for a scenario that was read from files, with its start values, engine, seed, duration and step. What files
+/// do not have (other overrides, changes and moves) is not written. remark: a comment in the files.
+std::filesystem::path write_scenario(const sim::Scenario& scenario, const std::string& remark,
+                                     const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace proleg::optimize

@@ -349,14 +349,17 @@ fs::path write_scenario(const Experiment& experiment, const Evaluation& evaluati
   if (experiment.scenario.sources.empty()) {
     throw FileError(folder, "no scenario is written there: that of the experiment was not read from files");
   }
-  const sim::Scenario scenario = own_world(experiment, evaluation);
-  const ScenarioFiles files = collect_scenario_files(scenario, name + ".files");
   const std::string remark =
-      "<!-- Found by an optimisation: " + comment_text(fs::path(experiment.path).filename().string()) + ", method " +
-      comment_text(method_name(experiment.method)) + "." +
-      (experiment.trials.spread.any() ? " What its trials varied has the values of the original scenario." : "") +
-      " -->\n";
+      "Found by an optimisation: " + fs::path(experiment.path).filename().string() + ", method " +
+      method_name(experiment.method) + "." +
+      (experiment.trials.spread.any() ? " What its trials varied has the values of the original scenario." : "");
+  return write_scenario(own_world(experiment, evaluation), remark, folder, name);
+}
 
+fs::path write_scenario(const sim::Scenario& scenario, const std::string& text, const fs::path& folder,
+                        const std::string& name) {
+  const ScenarioFiles files = collect_scenario_files(scenario, name + ".files");
+  const std::string remark = "<!-- " + comment_text(text) + " -->\n";
   for (const FileCopy& file : files.copies) {
     write_with_folder(folder / file.place, file.text);
   }

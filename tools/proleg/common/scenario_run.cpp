@@ -24,8 +24,17 @@ namespace {
 
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-/// The length of the run. Throws InputError if a change or a move takes effect after it.
-std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
+}  // namespace
+
+void set_duration(sim::Scenario& scenario, const std::string& option, const std::string& seconds) {
+  const std::optional<double> number = parse_number(seconds);
+  if (!number || *number < 0.01 || *number > 86'400.0) {
+    throw InputError(option, 0, in_quotes(seconds), "0.01 to 86400 seconds");
+  }
+  scenario.duration_s = *number;
+}
+
+std::uint32_t run_ticks(const sim::Scenario& scenario) {
   const std::uint32_t ticks = sim::tick_count(scenario);
   const auto require_before_end = [ticks](const char* option, std::uint32_t tick) {
     if (tick >= ticks) {
@@ -41,8 +50,6 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
   }
   return ticks;
 }
-
-}  // namespace
 
 void add_start_options(CommandLine& command_line, ScenarioOptions& options) {
   add_scenario(command_line, options.file, "scenario").required();
@@ -126,16 +133,12 @@ ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files) 
     sim::apply_setting(run.scenario, setting);
   }
   if (options.seconds) {
-    const std::optional<double> seconds = parse_number(*options.seconds);
-    if (!seconds || *seconds < 0.01 || *seconds > 86'400.0) {
-      throw InputError("--seconds", 0, in_quotes(*options.seconds), "0.01 to 86400 seconds");
-    }
-    run.scenario.duration_s = *seconds;
+    set_duration(run.scenario, "--seconds", *options.seconds);
   }
   for (const std::string& move : options.moves) {
     sim::add_move(run.scenario, move);
   }
-  run.ticks = checked_tick_count(run.scenario);
+  run.ticks = run_ticks(run.scenario);
   if (options.losses) {
     run.losses = sim::read_losses(*options.losses, run.scenario.robot);
     run.losses.require_effect(run.ticks, run.scenario.kernel);

@@ -57,6 +57,13 @@ struct ScenarioRun {
 /// ".simulation.xml".
 void refuse_folder(const std::filesystem::path& path, const std::string& suffix);
 
+/// Gives the scenario another length, a number of seconds from 0.01 to 86400. option: for the message. Throws
+/// InputError.
+void set_duration(sim::Scenario& scenario, const std::string& option, const std::string& seconds);
+
+/// The length of a run in ticks. Throws InputError if a change or a move takes effect after it.
+[[nodiscard]] std::uint32_t run_ticks(const sim::Scenario& scenario);
+
 /// Reads the scenario and applies the options. Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options);
 /// Reads the scenario from files that need not be on disk, and applies the options. Throws InputError.

@@ -69,9 +69,10 @@ constexpr std::array scenarios{
 
 std::span<const ShippedScenario> shipped_scenarios() { return scenarios; }
 
-std::string scenario_file(const std::string& word) {
+std::string scenario_file(const std::string& word) { return scenario_file(word, shipped_folder()); }
+
+std::string scenario_file(const std::string& word, const std::optional<fs::path>& folder) {
   std::error_code error;
-  const std::optional<fs::path> folder = shipped_folder();
   if (word.empty() || fs::exists(word, error) || !folder) {
     return word;
   }

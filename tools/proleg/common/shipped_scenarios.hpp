@@ -2,6 +2,8 @@
 
 // The scenarios that ship with Proleg: what they are called on a command line and in the gallery of the page.
 
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +30,8 @@ struct ShippedScenario {
 /// the shipped scenario that has this name, or this place below shipped_folder(). Throws InputError for a word that is
 /// neither, unless it has the form of a path.
 [[nodiscard]] std::string scenario_file(const std::string& word);
+/// The same with shipped scenarios in another folder; nothing: there are none.
+[[nodiscard]] std::string scenario_file(const std::string& word, const std::optional<std::filesystem::path>& folder);
 
 /// Adds the positional argument FILE for a scenario. `file` has the value of scenario_file() when the body of the
 /// program runs.

@@ -1,0 +1,58 @@
+#include "tools/python/module/errors.hpp"
+
+#include <exception>
+
+#include "shared/computer/algorithm_library/guarded_algorithm.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "sim/physics/physics_error.hpp"
+#include "tools/proleg/common/command_line.hpp"
+
+namespace proleg::python {
+namespace {
+
+// The interpreter keeps them as long as it runs.
+PyObject* input_error = nullptr;
+PyObject* file_error = nullptr;
+PyObject* run_error = nullptr;
+
+PyObject* add(pybind11::module_& module, const char* name, const char* text, const pybind11::tuple& bases) {
+  const std::string full_name = std::string("proleg.") + name;
+  PyObject* const made = PyErr_NewExceptionWithDoc(full_name.c_str(), text, bases.ptr(), nullptr);
+  if (made == nullptr) {
+    throw pybind11::error_already_set();
+  }
+  module.add_object(name, made);
+  return made;
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const InputError& error) {
+    PyErr_SetString(input_error, error.what());
+  } catch (const tools::BadInput& error) {
+    PyErr_SetString(input_error, error.what());
+  } catch (const FileError& error) {
+    PyErr_SetString(file_error, error.what());
+  } catch (const sim::PhysicsError& error) {
+    PyErr_SetString(run_error, error.what());
+  } catch (const AlgorithmFailure& error) {
+    PyErr_SetString(run_error, error.what());
+  }
+}
+
+}  // namespace
+
+void add_errors(pybind11::module_& module) {
+  const pybind11::handle base =
+      add(module, "Error", "What Proleg cannot do. str(): one line that says what was found and what was expected.",
+          pybind11::make_tuple(pybind11::handle(PyExc_Exception)));
+  const auto with = [&](PyObject* other) { return pybind11::make_tuple(base, pybind11::handle(other)); };
+  input_error = add(module, "InputError", "A file, a name or a value cannot be used.", with(PyExc_ValueError));
+  file_error = add(module, "FileError", "A file cannot be written, or read to its end.", with(PyExc_OSError));
+  run_error = add(module, "RunError", "A simulation failed: the robot flew off, or the engine broke down.",
+                  with(PyExc_RuntimeError));
+  pybind11::register_local_exception_translator(translate);
+}
+
+}  // namespace proleg::python

@@ -1,0 +1,217 @@
+#include "tools/python/module/evaluation.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/loop/simulation_batch.hpp"
+#include "sim/measure/measure.hpp"
+#include "sim/optimize/evaluation/scenario_runs.hpp"
+#include "sim/scenario/settings.hpp"
+#include "tools/proleg/common/scenario_run.hpp"
+#include "tools/python/module/conversions.hpp"
+#include "tools/python/module/long_call.hpp"
+
+namespace py = pybind11;
+
+namespace proleg::python {
+namespace {
+
+/// Candidates, row by row, and what becomes of them.
+class Evaluation {
+ public:
+  Evaluation(const sim::Scenario& scenario, std::vector<std::string> names, std::vector<double> candidates,
+             std::vector<sim::Measure> measures)
+      : scenario_(scenario),
+        names_(std::move(names)),
+        candidates_(std::move(candidates)),
+        measures_(std::move(measures)),
+        count_(candidates_.size() / names_.size()),
+        scores_(count_ * measures_.size(), std::numeric_limits<double>::quiet_NaN()),
+        failures_(count_) {}
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+  /// Throws InputError for the first value that its parameter does not take; the message names its place.
+  void check() const {
+    sim::Scenario scenario = scenario_;
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t k = 0; k < names_.size(); ++k) {
+        try {
+          sim::apply_setting(scenario, word(i, k));
+        } catch (const InputError& error) {
+          throw InputError("candidates[" + std::to_string(i) + ", " + std::to_string(k) + "]: " + error.what());
+        }
+      }
+    }
+  }
+
+  /// Simulates some candidates, in the thread that calls. stop: ends the work.
+  void run(std::size_t first, std::size_t end, const std::atomic<bool>& stop) {
+    std::vector<sim::Scenario> scenarios(end - first, scenario_);
+    for (std::size_t i = first; i < end; ++i) {
+      for (std::size_t k = 0; k < names_.size(); ++k) {
+        sim::apply_setting(scenarios[i - first], word(i, k));
+      }
+    }
+    const auto after_tick = [&stop](std::size_t /*i*/, const sim::Simulation& /*simulation*/,
+                                    optimize::TrialResult& result) { result.given_up = stop; };
+    const auto at_end = [&](std::size_t i, const sim::Simulation& simulation, optimize::TrialResult& /*result*/) {
+      const sim::MeasureValues values = simulation.measures();
+      for (std::size_t m = 0; m < measures_.size(); ++m) {
+        scores_[(first + i) * measures_.size() + m] = values[measures_[m]];
+      }
+    };
+    std::vector<optimize::TrialResult> results = optimize::run_scenarios(scenarios, {after_tick, at_end});
+    for (std::size_t i = first; i < end; ++i) {
+      failures_[i] = std::move(results[i - first].failure);
+    }
+  }
+
+  [[nodiscard]] std::vector<double> take_scores() { return std::move(scores_); }
+  [[nodiscard]] std::vector<std::string> take_failures() { return std::move(failures_); }
+
+ private:
+  [[nodiscard]] std::string word(std::size_t candidate, std::size_t name) const {
+    return names_[name] + '=' + word_of(candidates_[candidate * names_.size() + name]);
+  }
+
+  const sim::Scenario& scenario_;
+  std::vector<std::string> names_;
+  std::vector<double> candidates_;
+  std::vector<sim::Measure> measures_;
+  std::size_t count_;
+  std::vector<double> scores_;
+  std::vector<std::string> failures_;
+};
+
+/// Runs the parts of an evaluation in threads.
+class Crew {
+ public:
+  Crew(Evaluation& evaluation, const sim::Scenario& scenario, std::size_t workers, std::size_t part)
+      : evaluation_(evaluation), scenario_(scenario), part_(part), working_(workers) {
+    for (std::size_t i = 0; i < workers; ++i) {
+      threads_.emplace_back([this] { work(); });
+    }
+  }
+  ~Crew() {
+    stop_ = true;
+    for (std::thread& thread : threads_) {
+      thread.join();
+    }
+  }
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  /// Waits until all is done. Throws what a thread threw, or what a signal handler of Python raised.
+  void wait() {
+    SignalWatch watch;
+    std::unique_lock lock(mutex_);
+    while (!done_.wait_for(lock, std::chrono::milliseconds(50), [this] { return working_ == 0; })) {
+      lock.unlock();
+      watch.check();
+      lock.lock();
+    }
+    if (thrown_) {
+      std::rethrow_exception(thrown_);
+    }
+  }
+
+ private:
+  void work() {
+    try {
+      const EngineTurn turn(scenario_, nullptr, &stop_);
+      while (!stop_) {
+        const std::size_t first = next_.fetch_add(part_);
+        if (first >= evaluation_.count()) {
+          break;
+        }
+        evaluation_.run(first, std::min(first + part_, evaluation_.count()), stop_);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      thrown_ = thrown_ ? thrown_ : std::current_exception();
+      stop_ = true;
+    }
+    const std::lock_guard lock(mutex_);
+    --working_;
+    done_.notify_one();
+  }
+
+  Evaluation& evaluation_;
+  const sim::Scenario& scenario_;
+  std::size_t part_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> stop_ = false;
+  std::mutex mutex_;
+  std::condition_variable done_;
+  std::size_t working_;
+  std::exception_ptr thrown_;
+  std::vector<std::thread> threads_;
+};
+
+sim::Measure measure_named(const std::string& name) {
+  const std::optional<sim::Measure> measure = sim::find_measure(name);
+  if (!measure) {
+    throw InputError("measure", 0, in_quotes(name), "one of " + listed(sim::measure_names()));
+  }
+  return *measure;
+}
+
+/// Candidates for each part: as many as the engine steps together, and few enough for all workers to have some.
+std::size_t part_size(const sim::Scenario& scenario, std::size_t count, std::size_t workers) {
+  constexpr std::size_t lanes = 8;  // of the widest kernel; a part should fill them
+  const std::size_t most = sim::batch_size(scenario);
+  if (most == 1) {
+    return 1;
+  }
+  const std::size_t share = (count + workers - 1) / workers;
+  return std::clamp((share + lanes - 1) / lanes * lanes, lanes, most);
+}
+
+py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names,
+                   const py::array_t<double, py::array::c_style | py::array::forcecast>& candidates,
+                   const std::vector<std::string>& measure_names, std::size_t workers) {
+  if (names.empty() || candidates.ndim() != 2 || static_cast<std::size_t>(candidates.shape(1)) != names.size() ||
+      measure_names.empty() || workers == 0) {
+    throw InputError("evaluate", 0, "arguments of other shapes", "those that the package gives");
+  }
+  static_cast<void>(tools::run_ticks(scenario));  // refuses changes after the end
+  std::vector<sim::Measure> measures;
+  for (const std::string& name : measure_names) {
+    measures.push_back(measure_named(name));
+  }
+  const auto count = static_cast<std::size_t>(candidates.shape(0));
+  Evaluation evaluation(scenario, names, std::vector<double>(candidates.data(), candidates.data() + candidates.size()),
+                        measures);
+  evaluation.check();
+  if (count > 0) {
+    const py::gil_scoped_release released;
+    Crew crew(evaluation, scenario, std::min(workers, count), part_size(scenario, count, workers));
+    crew.wait();
+  }
+  return py::make_tuple(array_of(evaluation.take_scores(), {count, measures.size()}), evaluation.take_failures());
+}
+
+}  // namespace
+
+void add_evaluation(py::module_& module) {
+  module.def("evaluate", &evaluate, py::arg("scenario"), py::arg("names"), py::arg("candidates"), py::arg("measures"),
+             py::arg("workers"));
+}
+
+}  // namespace proleg::python

@@ -1,0 +1,25 @@
+"""Proleg for Python: simulates robots that are chains of joint modules, with the bits of the command line and of the robot.
+
+    import proleg
+
+    scenario = proleg.Scenario("caterpillar")
+    scenario["amplitude"] = 30
+    run = proleg.simulate(scenario, seconds=10, engine="reduced")
+    print(run.displacement, run.measures["cost_of_transport"])
+
+    scores = proleg.evaluate(scenario, ["amplitude", "frequency"], [[30, 0.8], [40, 1.2]])
+
+A name that `proleg scenarios` lists stands for a shipped scenario. Angles are degrees, times seconds, lengths metres. What
+cannot be used raises InputError with the line that the command line prints.
+"""
+
+from proleg._core import Error, FileError, InputError, RunError, build_id
+from proleg.evaluation import Scores, evaluate
+from proleg.recording import Recording, open
+from proleg.run import MEASURES, SERIES, Measure, Run, simulate
+from proleg.scenario import Parameter, Scenario, caterpillar, shipped, snake
+
+__version__ = build_id.split("+")[0].split(" ")[0]
+
+__all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Recording", "Run", "RunError", "Scenario",
+           "Scores", "caterpillar", "evaluate", "open", "shipped", "simulate", "snake"]

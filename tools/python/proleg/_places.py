@@ -1,0 +1,19 @@
+"""Where the package finds the scenarios that ship with Proleg."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+def shipped_folder() -> str | None:
+    """The folder with the shipped scenarios; None if there is none.
+
+    Beside the package (pip), below the prefix in which it is installed (a Debian package), or in the checkout in which it
+    was built.
+    """
+    package = Path(__file__).absolute().parent
+    for folder in (package, *package.parents):
+        for below in ("scenarios" if folder == package else "share/proleg/scenarios", "sim/scenarios"):
+            if (folder / below / "travelling_wave").is_dir():
+                return str(folder / below)
+    return None

@@ -114,8 +114,26 @@ class ServoPulses {
 
   [[nodiscard]] const ServoSchedule& schedule() const { return schedule_; }
 
-  /// Appends the pulses of the running joints in the last computed tick, in the order of time, then of joints. To be
-  /// called once after each tick.
+  /// The way of a joint in a tick: the set-point at its start and the one at its end.
+  struct Way {
+    unsigned joint;
+    std::int32_t from;
+    std::int32_t to;
+  };
+  /// Appends the pulses of a tick, in the order of time, then of joints. ways: of the joints that get pulses, by
+  /// ascending joint. To be called once for each tick.
+  void append(std::uint64_t tick, std::span<const Way> ways, std::vector<ServoPulse>& pulses) {
+    const std::uint64_t end = schedule_.first_interval(tick + 1);
+    for (std::uint64_t interval = schedule_.first_interval(tick); interval < end; ++interval) {
+      const std::int32_t fraction = schedule_.fraction(interval);
+      for (const Way& way : ways) {
+        const std::int32_t angle = interpolate(way.from, way.to, fraction);
+        pulses.push_back({schedule_.start_us(interval), way.joint, servo_command(limiters_[way.joint].next(angle))});
+      }
+    }
+  }
+
+  /// The same for the last computed tick of a chain: its running joints get pulses.
   void append(const KernelChain& chain, std::vector<ServoPulse>& pulses) {
     ways_.clear();
     for (unsigned joint = 0; joint < chain.joint_count(); ++joint) {
@@ -125,25 +143,10 @@ class ServoPulses {
         limiters_[joint].release();
       }
     }
-    const std::uint64_t tick = chain.tick() - 1U;
-    const std::uint64_t end = schedule_.first_interval(tick + 1);
-    for (std::uint64_t interval = schedule_.first_interval(tick); interval < end; ++interval) {
-      const std::int32_t fraction = schedule_.fraction(interval);
-      for (const Way& way : ways_) {
-        const std::int32_t angle = interpolate(way.from, way.to, fraction);
-        pulses.push_back({schedule_.start_us(interval), way.joint, servo_command(limiters_[way.joint].next(angle))});
-      }
-    }
+    append(chain.tick() - 1U, ways_, pulses);
   }
 
  private:
-  /// The way of a running joint in the tick.
-  struct Way {
-    unsigned joint;
-    std::int32_t from;
-    std::int32_t to;
-  };
-
   ServoSchedule schedule_;
   std::vector<MotionLimiter> limiters_;  ///< by joint
   std::vector<Way> ways_;                ///< in append()

@@ -190,6 +190,9 @@ class GaitMeter {
   /// The measures of the run so far. heading_deg: direction of `speed` in the horizontal plane, relative to the
   /// direction of the head at the start; 90 is to its left.
   [[nodiscard]] MeasureValues values(double heading_deg = 0.0) const;
+  /// How far the centre of mass has come in the direction of the head at the start, m; not a number if the head pointed
+  /// up or down.
+  [[nodiscard]] double forward_distance() const { return (center_ - start_).head<2>().dot(forward_); }
   /// Horizontal speed of the centre of mass in any direction, m/s: over the last two strides, or over as many as take a
   /// second; without strides over the last two seconds. Nothing before that.
   [[nodiscard]] std::optional<double> recent_speed() const;

@@ -9,6 +9,8 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <iterator>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -192,9 +194,7 @@ py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names
   }
   static_cast<void>(tools::run_ticks(scenario));  // refuses changes after the end
   std::vector<sim::Measure> measures;
-  for (const std::string& name : measure_names) {
-    measures.push_back(measure_named(name));
-  }
+  std::ranges::transform(measure_names, std::back_inserter(measures), measure_named);
   const auto count = static_cast<std::size_t>(candidates.shape(0));
   Evaluation evaluation(scenario, names, std::vector<double>(candidates.data(), candidates.data() + candidates.size()),
                         measures);

@@ -9,6 +9,7 @@
 #include "tools/python/module/recording.hpp"
 #include "tools/python/module/run.hpp"
 #include "tools/python/module/scenario.hpp"
+#include "tools/python/module/worlds.hpp"
 
 PYBIND11_MODULE(_core, module) {
   module.attr("build_id") = proleg::tools::build_id;
@@ -17,4 +18,5 @@ PYBIND11_MODULE(_core, module) {
   proleg::python::add_run(module);
   proleg::python::add_evaluation(module);
   proleg::python::add_recording(module);
+  proleg::python::add_worlds(module);
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -248,9 +249,7 @@ std::string save(const Scenario& scenario, const std::string& path, bool replace
 template <typename Named>
 std::vector<std::string> names_of(const std::vector<Named>& items) {
   std::vector<std::string> names;
-  for (const Named& item : items) {
-    names.push_back(item.name);
-  }
+  std::ranges::transform(items, std::back_inserter(names), &Named::name);
   return names;
 }
 

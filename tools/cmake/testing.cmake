@@ -39,11 +39,12 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; print(sys.executable)"
   OUTPUT_VARIABLE Python3_EXECUTABLE OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 
-# proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
-#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [VIRTUAL_TIME])
+# proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [INSTALLS folders...] [COMPILES] [LABELS ...]
+#                 [TIMEOUT seconds] [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [VIRTUAL_TIME])
 #   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them but sources
+#   INSTALLS   build folders that it installs (cmake --install): their scripts, and what these install
 #   COMPILES   it compiles from the folders of DATA, so that their sources count too
 #   COST       roughly, where it is many seconds: long tests start first
 #   TIMEOUT    when it hangs: 15 times its cost, and 1200 at least, unless it is given
@@ -55,13 +56,16 @@ execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sys; print(sys.executab
 set(PROLEG_HALF_CORES 2)
 set(PROLEG_SHORTEST_TIMEOUT 1200)
 function(proleg_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "VIRTUAL_TIME;COMPILES" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 test "VIRTUAL_TIME;COMPILES" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;INSTALLS;LABELS;ENVIRONMENT")
   set(inputs)
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
   endforeach()
   foreach(data IN LISTS PROLEG_TEST_DATA test_DATA)
     list(APPEND inputs --data ${data})
+  endforeach()
+  foreach(build IN LISTS test_INSTALLS)
+    list(APPEND inputs --installs ${build})
   endforeach()
   if(test_COMPILES)
     list(APPEND inputs --compiles)

@@ -141,6 +141,21 @@ class TestResults(Folder):
             self.write("sources/room.cpp", f"int two();  // {options}\n")
             expect(*options)
 
+    def test_what_cmake_installs_is_an_input(self):
+        self.write("build/cmake_install.cmake", f'include("{self.folder}/build/room/cmake_install.cmake")\n')
+        script = 'file(INSTALL DESTINATION "share" TYPE FILE FILES "%s/docs" "%s/golden.tsv")\n' % (self.folder, self.folder)
+        self.write("build/room/cmake_install.cmake", script)
+        self.write("docs/page.md", "one")
+        options = ("--installs", "build")
+        self.expect_new_run(*options)
+        self.expect_reuse(*options)
+        self.write("docs/page.md", "two")
+        self.expect_new_run(*options)
+        self.write("build/room/cmake_install.cmake", script + "# of another version of CMake\n")
+        self.expect_new_run(*options)
+        self.write("elsewhere.md", "text")
+        self.expect_reuse(*options)
+
     def test_another_environment_is_tested(self):
         self.expect_new_run()
         self.expect_new_run(GTEST_SHARD_INDEX="1")
@@ -171,6 +186,9 @@ class TestResults(Folder):
         finished = audit()
         self.assertEqual(finished.returncode, 1)
         self.assertIn("page.md is read", finished.stdout)
+
+        reads = ["--", "sh", "-c", f"echo text >{checkout / 'docs' / 'written.md'}"]
+        self.assertEqual(audit().returncode, 0, "a file that is only written is no input")
 
         module = checkout / "page" / "node_modules" / "three" / "index.js"
         module.parent.mkdir(parents=True)

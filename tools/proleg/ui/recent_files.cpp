@@ -11,6 +11,7 @@
 #include <system_error>
 #include <thread>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/sources.hpp"
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int list_format = 1;
+constexpr std::uint64_t list_format = 1;
 
 /// Keeps other programs from the list while this object lives. If one of them does not let go, it goes on without: then
 /// an entry may be lost, but never the list, which is replaced as a whole.
@@ -56,11 +57,25 @@ std::optional<fs::path> folder_of(const char* variable) {
   return value;
 }
 
+json document_in(const fs::path& file) {
+  sim::DiskFiles disk;
+  return json::parse(disk.read(file).value_or("").str(), nullptr, false);
+}
+
+/// The list of a later version is not written: that version would lose it.
+void require_no_later_format(const fs::path& file) {
+  const json document = document_in(file);
+  const json format = document.is_object() ? document.value("format", json()) : json();
+  if (format.is_number_unsigned() && format.get<std::uint64_t>() > list_format) {
+    throw InputError(file.string(), 0, "format " + format.dump(),
+                     std::to_string(list_format) + "; a later version of Proleg has written it");
+  }
+}
+
 /// All paths of the list, also of what does not exist at present: it may be on a disk that comes back.
 std::vector<std::string> paths_in(const fs::path& file) {
   std::vector<std::string> paths;
-  sim::DiskFiles disk;
-  const json document = json::parse(disk.read(file).value_or("").str(), nullptr, false);
+  const json document = document_in(file);
   if (!document.is_object() || document.value("format", json()) != list_format) {
     return paths;
   }
@@ -98,6 +113,7 @@ void RecentFiles::note(const fs::path& path) const {
   }
   fs::create_directories(file_->parent_path());
   const FolderLock lock(file_->parent_path());
+  require_no_later_format(*file_);
   std::vector<std::string> paths = paths_in(*file_);
   std::erase(paths, noted);
   paths.insert(paths.begin(), noted);

@@ -1,10 +1,13 @@
 #include "tools/proleg/ui/recent_files.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "tests/support/message_of.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -61,14 +64,26 @@ TEST_F(RecentFilesTest, WhatDoesNotExistIsNotShownAndComesBack) {
 TEST_F(RecentFilesTest, ADamagedListIsAnEmptyOne) {
   const fs::path a = make("a.simulation.xml");
   recent_.note(a);
-  for (const char* text :
-       {"", "{", "[]", "7", R"({"format":1})", R"({"format":1,"paths":7})", R"({"format":2,"paths":[]})",
-        R"({"format":1,"paths":[1,null,"relative","http://example.org/x",{}]})", "\xff\xfe"}) {
+  for (const char* text : {"", "{", "[]", "7", R"({"format":1})", R"({"format":1,"paths":7})", R"({"format":"2"})",
+                           R"({"format":1,"paths":[1,null,"relative","http://example.org/x",{}]})", "\xff\xfe"}) {
     std::ofstream(list_) << text;
     EXPECT_TRUE(recent_.read().empty()) << text;
     recent_.note(a);
     EXPECT_EQ(recent_.read(), std::vector<fs::path>{a}) << text;
   }
+}
+
+TEST_F(RecentFilesTest, TheListOfALaterVersionStaysAsItIs) {
+  const fs::path a = make("a.simulation.xml");
+  recent_.note(a);
+  const std::string later = R"({"format":2,"paths":["/later"],"more":{}})";
+  std::ofstream(list_) << later;
+  EXPECT_TRUE(recent_.read().empty());
+  const std::string error = message_of<InputError>([&] { recent_.note(a); });
+  EXPECT_EQ(error, list_.string() + ": found format 2, expected 1; a later version of Proleg has written it");
+  std::ostringstream text;
+  text << std::ifstream(list_).rdbuf();
+  EXPECT_EQ(text.str(), later);
 }
 
 TEST_F(RecentFilesTest, AListThatCannotBeWrittenIsAnError) {

@@ -6,7 +6,7 @@
 #   share/proleg          scenarios, page, player, images
 #   src/proleg, share/cmake, include
 #                         for users' algorithms and plug-ins (development_files.cmake)
-#   share/doc/proleg      documents
+#   share/doc/proleg      documents: html/, if tools/docs --installed has made it, else as text
 #   share/applications, share/icons
 #                         the entry in the menu of a desktop
 #   lib/udev/rules.d      rights and names of adapters
@@ -54,7 +54,16 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/stm32f405/bin/ DESTINATION share/pro
 install(FILES ${CMAKE_SOURCE_DIR}/host/desktop/proleg.desktop DESTINATION share/applications)
 install(FILES ${CMAKE_SOURCE_DIR}/host/desktop/proleg.svg DESTINATION share/icons/hicolor/scalable/apps)
 install(FILES ${CMAKE_SOURCE_DIR}/host/udev/70-proleg.rules DESTINATION lib/udev/rules.d)
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION share/doc/proleg PATTERN mkdocs.yml EXCLUDE)
+# The site has the same pages and pictures. An installation from before may have had no site.
+install(CODE "
+  set(site \"${CMAKE_SOURCE_DIR}/build/docs_installed/site\")
+  set(documents \"\${CMAKE_INSTALL_PREFIX}/share/doc/proleg\")
+  if(EXISTS \"\${site}/index.html\")
+    file(INSTALL DESTINATION \"\${documents}/html\" TYPE DIRECTORY FILES \"${CMAKE_SOURCE_DIR}/build/docs_installed/site/\")
+  else()
+    file(INSTALL DESTINATION \"\${documents}\" TYPE DIRECTORY FILES \"${CMAKE_SOURCE_DIR}/docs/\" PATTERN mkdocs.yml EXCLUDE)
+  endif()
+")
 install(FILES ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/proleg)
 # The licence of Proleg, and those of what its programs, images and page contain.
 file(READ ${CMAKE_SOURCE_DIR}/LICENSE licence)

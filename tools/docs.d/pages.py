@@ -1,7 +1,8 @@
 """Collects the sources of the documentation's site: the pages of docs/, those at the top of the tree, a manual for each
 command and the interfaces of the core.
 
-usage: pages.py SOURCE_FOLDER PROGRAM_FOLDER OUTPUT_FOLDER: writes pages/, theme/ and mkdocs.yml into the last one
+usage: pages.py SOURCE_FOLDER PROGRAM_FOLDER OUTPUT_FOLDER: writes pages/, theme/ and mkdocs.yml into the last one; without the
+interfaces if its name ends in _installed
 """
 
 import html
@@ -82,12 +83,15 @@ def main():
         texts[in_site(source, ".", name)] = text
         (pages / in_site(source, ".", name)).write_text(for_site(source, name, text))
 
-    generated = {"commands": commands.write_manuals(programs, texts, pages / "commands"),
-                 "interfaces": interfaces.write_pages(source, output / "xml", pages / "interfaces")}
+    generated = {"commands": commands.write_manuals(programs, texts, pages / "commands"), "interfaces": []}
+    if not output.name.endswith("_installed"):  # who reads interfaces has the sources
+        generated["interfaces"] = interfaces.write_pages(source, output / "xml", pages / "interfaces")
     for page in pages.rglob("*.md"):
         page.write_text(bars_in_tables(page.read_text()))
     config = (source / "docs/mkdocs.yml").read_text()
     for folder, files in generated.items():
+        if not files:
+            config = re.sub(rf"^.*\[{folder}/\*\]\n", "", config, flags=re.MULTILINE)
         config = config.replace(f"{folder}/*", ", ".join(f"{folder}/{file}" for file in files))
     (output / "mkdocs.yml").write_text(config)
 

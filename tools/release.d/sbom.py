@@ -19,6 +19,7 @@ from pathlib import Path
 # Debian packages whose code is in the programs or images: headers, and the libraries of the compiler for modules.
 IN_PROGRAMS = ["libboost-dev", "libcli11-dev", "libeigen3-dev", "nlohmann-json3-dev"]
 IN_IMAGES = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "libstdc++-arm-none-eabi-newlib"]
+IN_DOCUMENTS = ["mkdocs-material"]
 NONE = "NOASSERTION"
 
 
@@ -77,6 +78,8 @@ def bill(source, version, commit, debs):
         add(debian(name), "DYNAMIC_LINK")
     for name in IN_PROGRAMS + IN_IMAGES:
         add(debian(name), "STATIC_LINK")
+    for name in IN_DOCUMENTS:
+        add(debian(name), "CONTAINS")
     for found in npm_packages(source / "host/page/package-lock.json"):
         add(found, "CONTAINS")
     created = datetime.fromtimestamp(int(os.environ["SOURCE_DATE_EPOCH"]), timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -1,8 +1,17 @@
-// Search in a page that was opened as a file. A browser neither loads a worker nor fetches a file there. So the index
-// comes as a script, and the program of the worker runs in a frame, which has the worker's functions.
-if (location.protocol === "file:") {
-  const base = document.currentScript.dataset.base;
+// The search. Its index comes as a script, because a browser fetches no file in a page that was opened as a file. Nor does it load
+// a worker there: then the program of the worker runs in a frame, which has the worker's functions.
+const base = document.currentScript.dataset.base;
+// The theme asks __search for an index before it fetches one.
+window.__search = {
+  index: new Promise((resolve) => {
+    window.set_search_index = resolve;
+    const script = document.createElement("script");
+    script.src = `${base}/search/search_index.js`;
+    document.head.append(script);
+  }),
+};
 
+if (location.protocol === "file:") {
   window.IFrameWorker = class extends EventTarget {
     constructor(address) {
       super();
@@ -29,14 +38,4 @@ if (location.protocol === "file:") {
     }
   };
   window.Worker = window.IFrameWorker;
-
-  // The theme asks __search for an index before it fetches one.
-  window.__search = {
-    index: new Promise((resolve) => {
-      window.set_search_index = resolve;
-      const script = document.createElement("script");
-      script.src = `${base}/search/search_index.js`;
-      document.head.append(script);
-    }),
-  };
 }

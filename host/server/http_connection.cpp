@@ -87,7 +87,7 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   std::string socket_origin_;  ///< origin of the WebSocket for the present request, after its Host was accepted
   bool is_head_ = false;
   std::string header_;
-  std::string body_;  ///< of an error, if it is not the text of its status
+  std::string body_;  ///< of a document, or of an error if it is not the text of its status
 };
 
 void HttpConnection::open() {
@@ -198,11 +198,13 @@ void HttpConnection::respond_stopped(bool is_kept_alive) {
 }
 
 void HttpConnection::serve_file(std::string_view path, bool is_kept_alive) {
-  const PageFile* const file = server_->link().page.find(path);
-  if (file == nullptr) {
-    respond_error(404, is_kept_alive);
-  } else {
+  if (const PageFile* const file = server_->link().page.find(path)) {
     respond(200, file->content_type, file->bytes, is_kept_alive);
+  } else if (std::optional<PageFile> document = server_->link().documents.read(path)) {
+    body_ = std::move(document->bytes);
+    respond(200, document->content_type, body_, is_kept_alive);
+  } else {
+    respond_error(404, is_kept_alive);
   }
 }
 

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t max_total_bytes = 64U << 20U;
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> content_types{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> content_types{{
     {".html", "text/html; charset=utf-8"},
     {".js", "text/javascript; charset=utf-8"},
     {".css", "text/css; charset=utf-8"},
@@ -25,19 +25,26 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> content_
     {".map", "application/json"},
     {".svg", "image/svg+xml"},
     {".png", "image/png"},
+    {".webp", "image/webp"},
+    {".xml", "application/xml"},
     {".ico", "image/x-icon"},
     {".woff2", "font/woff2"},
 }};
 
-std::string_view content_type_of(const fs::path& path) {
+std::optional<std::string_view> known_content_type(const fs::path& path) {
   const std::string ending = path.extension().string();
   const auto* const found = std::find_if(content_types.begin(), content_types.end(),
                                          [&ending](const auto& entry) { return entry.first == ending; });
-  if (found == content_types.end()) {
+  return found == content_types.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::string_view content_type_of(const fs::path& path) {
+  const std::optional<std::string_view> type = known_content_type(path);
+  if (!type) {
     throw InputError(path.string(), 0, "a file of another type",
-                     "one of html, js, css, txt, json, map, svg, png, ico, woff2");
+                     "one of html, js, css, txt, json, map, svg, png, webp, xml, ico, woff2");
   }
-  return found->second;
+  return *type;
 }
 
 std::string bytes_of(const fs::path& path) {
@@ -75,6 +82,33 @@ PageFiles::PageFiles(const fs::path& folder) {
     }
   } catch (const fs::filesystem_error& error) {
     throw FileError(error.path1(), error.code().message());
+  }
+}
+
+DocumentFiles::DocumentFiles(const fs::path& folder, const std::string& below) {
+  try {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file() && !entry.is_symlink()) {  // a link could lead out of the folder
+        paths_.emplace(below + entry.path().lexically_relative(folder).generic_string(), entry.path());
+      }
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw FileError(error.path1(), error.code().message());
+  }
+  if (const auto index = paths_.find(below + "index.html"); index != paths_.end()) {
+    paths_.emplace(below, index->second);
+  }
+}
+
+std::optional<PageFile> DocumentFiles::read(std::string_view path) const {
+  const auto found = paths_.find(path);
+  if (found == paths_.end()) {
+    return std::nullopt;
+  }
+  try {
+    return PageFile{known_content_type(found->second).value_or("application/octet-stream"), bytes_of(found->second)};
+  } catch (const FileError&) {
+    return std::nullopt;
   }
 }
 

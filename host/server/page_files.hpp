@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,23 @@ namespace proleg::host {
 struct PageFile {
   std::string_view content_type;
   std::string bytes;
+};
+
+/// Files that a server reads when they are asked for, because most of them never are. It finds them by the path that
+/// they had at the start, so no path leads out of the folder.
+class DocumentFiles {
+ public:
+  /// Has no files.
+  DocumentFiles() = default;
+  /// The files of a folder and its subfolders below a path such as "/docs/", which is its index.html. Leaves out what
+  /// is neither a file nor a folder. Throws FileError.
+  DocumentFiles(const std::filesystem::path& folder, const std::string& below);
+
+  /// The file of a path such as "/docs/first-steps.html"; nothing if there is none, or none any more.
+  [[nodiscard]] std::optional<PageFile> read(std::string_view path) const;
+
+ private:
+  std::map<std::string, std::filesystem::path, std::less<>> paths_;
 };
 
 /// The files of the page, in memory. A request finds a file by its whole path, so no path leads out of the folder.

@@ -41,10 +41,11 @@ ServerInbox::Contents ServerInbox::take_contents() {
   return std::exchange(contents_, {});
 }
 
-SessionLink::SessionLink(AccessToken access_token, PageFiles page_files, std::size_t history_bytes,
-                         ViewerHub::Options options, RobotSession& session)
+SessionLink::SessionLink(AccessToken access_token, PageFiles page_files, DocumentFiles document_files,
+                         std::size_t history_bytes, ViewerHub::Options options, RobotSession& session)
     : token(std::move(access_token)),
       page(std::move(page_files)),
+      documents(std::move(document_files)),
       history(history_bytes),
       hub(std::move(options), token, session, history) {}
 

@@ -60,14 +60,15 @@ class ServerInbox {
 /// Connects the sockets with the session's thread: `history` and `inbox` are for any thread, `hub` and deliver() for
 /// that of the sockets.
 struct SessionLink {
-  SessionLink(AccessToken access_token, PageFiles page_files, std::size_t history_bytes, ViewerHub::Options options,
-              RobotSession& session);
+  SessionLink(AccessToken access_token, PageFiles page_files, DocumentFiles document_files, std::size_t history_bytes,
+              ViewerHub::Options options, RobotSession& session);
 
   /// Moves the contents of the inbox to the hub.
   void deliver();
 
   const AccessToken token;
   const PageFiles page;
+  const DocumentFiles documents;
   TickHistory history;
   ServerInbox inbox;
   ViewerHub hub;

@@ -185,7 +185,7 @@ NewViewers first_control(bool is_open_to_network, bool is_seat) {
 
 WebServer::WebServer(boost::asio::io_context& context, ServerOptions options, RobotSession& session)
     : link_(std::make_shared<SessionLink>(
-          std::move(options.token), std::move(options.page), options.history_bytes,
+          std::move(options.token), std::move(options.page), std::move(options.documents), options.history_bytes,
           ViewerHub::Options{std::move(options.program), std::move(options.free_operations),
                              first_control(options.certificate != nullptr, options.is_seat)},
           session)),

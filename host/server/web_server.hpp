@@ -91,6 +91,7 @@ struct ServerOptions {
   /// Programs behind this server, which must outlive the io_context; "/" is then class.html. Null: there are none.
   SeatDirectory* seats = nullptr;
   bool is_seat = false;  ///< this is such a program
+  DocumentFiles documents{};
 };
 
 /// Serves the page of one session (docs/page-interface.md), in the thread that runs the io_context. The session is in

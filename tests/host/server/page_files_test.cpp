@@ -74,9 +74,9 @@ TEST_F(PageFilesOfAFolder, DoNotFollowLinks) {
 
 TEST_F(PageFilesOfAFolder, AreOfKnownTypes) {
   write("a.exe", "x");
-  EXPECT_EQ(error(),
-            (folder / "a.exe").string() +
-                ": found a file of another type, expected one of html, js, css, txt, json, map, svg, png, ico, woff2");
+  EXPECT_EQ(error(), (folder / "a.exe").string() +
+                         ": found a file of another type, expected one of html, js, css, txt, json, map, svg, png, "
+                         "webp, xml, ico, woff2");
 }
 
 TEST_F(PageFilesOfAFolder, NeedAnIndex) {
@@ -88,6 +88,45 @@ TEST_F(PageFilesOfAFolder, HaveABoundedSize) {
   write("large.txt", "");
   std::filesystem::resize_file(folder / "large.txt", (64U << 20U) + 1);
   EXPECT_EQ(error(), folder.path().string() + ": found more than 64 MiB, expected the folder of the page");
+}
+
+TEST_F(PageFilesOfAFolder, AsDocumentsAreBelowTheirPath) {
+  const DocumentFiles documents(folder.path(), "/docs/");
+  ASSERT_TRUE(documents.read("/docs/"));
+  EXPECT_EQ(documents.read("/docs/")->bytes, "<p>");
+  EXPECT_EQ(documents.read("/docs/index.html")->content_type, "text/html; charset=utf-8");
+  ASSERT_TRUE(documents.read("/docs/icons/a.svg"));
+  EXPECT_EQ(documents.read("/docs/icons/a.svg")->bytes, std::string("<svg/>\0", 7));
+  for (const char* path :
+       {"", "/", "/docs", "/index.html", "/docs/icons", "/docs/icons/../index.html", "/docs//index.html"}) {
+    EXPECT_FALSE(documents.read(path)) << path;
+  }
+  EXPECT_FALSE(DocumentFiles().read("/docs/"));
+}
+
+TEST_F(PageFilesOfAFolder, AsDocumentsMayHaveAnyType) {
+  write("robot.eds", "x");
+  const DocumentFiles documents(folder.path(), "/docs/");
+  ASSERT_TRUE(documents.read("/docs/robot.eds"));
+  EXPECT_EQ(documents.read("/docs/robot.eds")->content_type, "application/octet-stream");
+}
+
+TEST_F(PageFilesOfAFolder, AsDocumentsAreReadWhenTheyAreAskedFor) {
+  const DocumentFiles documents(folder.path(), "/docs/");
+  write("index.html", "changed");
+  write("later.html", "is not known");
+  std::filesystem::remove(folder / "icons/a.svg");
+  ASSERT_TRUE(documents.read("/docs/index.html"));
+  EXPECT_EQ(documents.read("/docs/index.html")->bytes, "changed");
+  EXPECT_FALSE(documents.read("/docs/later.html"));
+  EXPECT_FALSE(documents.read("/docs/icons/a.svg"));
+}
+
+TEST_F(PageFilesOfAFolder, AsDocumentsAreNoLinks) {
+  const TemporaryFolder other;
+  std::ofstream(other / "secret.txt") << "secret";
+  std::filesystem::create_symlink(other / "secret.txt", folder / "a.txt");
+  EXPECT_FALSE(DocumentFiles(folder.path(), "/docs/").read("/docs/a.txt"));
 }
 
 }  // namespace

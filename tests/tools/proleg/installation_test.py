@@ -19,6 +19,11 @@ from xml.etree import ElementTree
 
 sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 
+sys.path[:0] = [str(Path(__file__).resolve().parents[2] / part) for part in ("host/server", "tools/proleg/ui", "support")]
+from search_program import experiment  # noqa: E402
+from waiting import wait_until  # noqa: E402
+from web_client import Viewer, request, status  # noqa: E402
+
 LONGEST = 300  # s
 LARGEST = 60e6  # bytes
 
@@ -116,6 +121,122 @@ class Installation(unittest.TestCase):
                 self.assertEqual(answer.read(), (self.prefix / "share/proleg/page/index.html").read_bytes())
             program.send_signal(signal.SIGINT)
             self.assertEqual(program.wait(LONGEST), 0)
+
+    def serve(self, prefix, *words):
+        """`proleg ui` of a prefix: the process and a viewer. It keeps its state in the folder of the test."""
+        process = subprocess.Popen([prefix / "bin/proleg", "ui", *words, "--paused", "--no-browser", "--recordings", self.work],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.work,
+                                   env={**os.environ, "XDG_STATE_HOME": str(self.folder / "state")})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        port, token = re.search(r":(\d+)/#(\S+)", process.stdout.readline()).groups()
+        viewer = Viewer(int(port), token)
+        self.addCleanup(viewer.sock.close)
+        return process, viewer, int(port)
+
+    def end(self, process):
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(LONGEST), 0)
+        return process.stderr.read()
+
+    def own_copy(self, name):
+        copy = self.folder / name
+        shutil.copytree(self.prefix, copy, symlinks=True)
+        self.addCleanup(shutil.rmtree, copy)
+        return copy
+
+    def test_an_update_under_a_running_page_is_said_and_nothing_is_lost(self):
+        prefix = self.own_copy("updated")
+        shutil.copytree(prefix / "share/proleg/scenarios/travelling_wave", self.work / "mine")
+        process, viewer, port = self.serve(prefix, "mine/uniform.simulation.xml")
+        epoch = viewer.take_control()
+        viewer.until(lambda: viewer.documents.get("draft", {}).get("value") and "program" in viewer.documents)
+        self.assertFalse(viewer.documents["program"]["value"]["is_replaced"])
+        paths = ["/", "/app.js", "/style.css"]
+        before = [request(port, path=path) for path in paths]
+
+        def must(name, /, **arguments):
+            result = viewer.do(name, epoch, **arguments)
+            self.assertTrue(result["ok"], result)
+            return result["value"]
+
+        def search(name):
+            must("search.refresh")
+            viewer.until(lambda: "searches" in viewer.documents)
+            return next(one for one in viewer.documents["searches"]["value"]["searches"] if one["name"] == name)
+
+        must("search.start", name="during", experiment=experiment(evaluations="100000"), workers=1)
+        while search("searches/during")["made"] == 0:
+            pass
+        shutil.rmtree(prefix)
+        shutil.copytree(self.prefix, prefix, symlinks=True)
+        (prefix / "share/proleg/page/index.html").write_text("another version")
+        shutil.rmtree(prefix / "share/proleg/scenarios/robots")
+        shutil.rmtree(prefix / "share/proleg/images")
+
+        viewer.until(lambda: viewer.documents["program"]["value"]["is_replaced"])
+        self.assertEqual([request(port, path=path) for path in paths], before, "never half of each")
+        made = search("searches/during")["made"]
+        while search("searches/during")["made"] <= made:
+            pass
+        must("gallery.look")
+        must("search.stop", name="searches/during")
+        wait_until(lambda: (self.work / "searches/during/best.simulation.xml").exists(), "the best gait of the search")
+        wait_until(lambda: search("searches/during")["state"] != "running", "the end of the search")
+        errors = self.end(process)
+        self.assertRegex(errors, r"\Aproleg ui: warning: its files were replaced or removed.*\n\Z")
+        shutil.rmtree(self.work / "mine")
+        shutil.rmtree(self.work / "searches")
+
+    def test_two_versions_run_at_the_same_time(self):
+        other = self.own_copy("other version")
+        (other / "share/proleg/page/index.html").write_text("other version")
+        shutil.copytree(self.prefix / "share/proleg/scenarios/travelling_wave", self.work / "two")
+        one, other = self.serve(self.prefix, "two/uniform.simulation.xml"), self.serve(other, "two/coupled.simulation.xml")
+        self.assertNotEqual(one[2], other[2])
+        self.assertEqual(request(one[2])[2], (self.prefix / "share/proleg/page/index.html").read_bytes())
+        self.assertEqual(request(other[2])[2], b"other version")
+        for process, *_ in (one, other):
+            self.assertEqual(self.end(process), "")
+        recent = json.loads((self.folder / "state/proleg/recent.json").read_text())["paths"]
+        self.assertEqual(sorted(recent)[-2:], [str(self.work / "two" / f"{name}.simulation.xml") for name in ("coupled", "uniform")])
+        shutil.rmtree(self.work / "two")
+
+    def test_the_page_has_the_documentation_that_is_installed(self):
+        site = self.prefix / "share/doc/proleg/html"
+        was_made = site.exists()
+        if not was_made:
+            site.mkdir()
+            (site / "index.html").write_text("the documentation")
+        (site / "link.html").symlink_to("/etc/passwd")
+        process, viewer, port = self.serve(self.prefix, "caterpillar")
+        viewer.until(lambda: "program" in viewer.documents)
+        self.assertTrue(viewer.documents["program"]["value"]["has_documentation"])
+        for path in ("/docs/", "/docs/index.html"):
+            first, fields, content = request(port, path=path)
+            self.assertEqual((first.split()[1], fields["content-type"], content),
+                             ("200", "text/html; charset=utf-8", (site / "index.html").read_bytes()))
+            self.assertIn("script-src 'self'", fields["content-security-policy"])
+        for path in ("/docs/none.html", "/docs/link.html", "/docs/../page/index.html", "/docs/%2e%2e/copyright", "/docs//etc/passwd"):
+            self.assertIn(status(port, path=path), (400, 404), path)
+        if was_made:
+            for file in site.rglob("*"):
+                if file.is_file() and not file.is_symlink():
+                    content = request(port, path=f"/docs/{file.relative_to(site)}")[2]
+                    self.assertEqual(content, file.read_bytes(), file)
+        self.end(process)
+        (site / "link.html").unlink()
+        away = site.with_name("away")
+        site.rename(away)
+        process, viewer, port = self.serve(self.prefix, "caterpillar")
+        viewer.until(lambda: "program" in viewer.documents)
+        self.assertFalse(viewer.documents["program"]["value"]["has_documentation"])
+        self.assertEqual(status(port, path="/docs/index.html"), 404)
+        self.end(process)
+        if was_made:
+            away.rename(site)
+        else:
+            shutil.rmtree(away)
 
     def test_the_menu_of_a_desktop_starts_the_page(self):
         entry = self.prefix / "share/applications/proleg.desktop"

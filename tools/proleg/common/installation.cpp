@@ -53,6 +53,11 @@ fs::path program_folder() {
   return fs::read_symlink("/proc/self/exe", error).parent_path();
 }
 
+bool is_program_replaced() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).string().ends_with(" (deleted)");  // proc(5)
+}
+
 bool is_source_tree(const fs::path& folder) {
   std::error_code error;
   return fs::exists(folder / "tools/cmake/user_algorithm.cmake", error) &&
@@ -117,6 +122,13 @@ fs::path folder_of_page(const std::string& folder, const std::string& file) {
                          : ", expected one that tools/page has built"));
   }
   return path;
+}
+
+std::optional<fs::path> documentation_folder() {
+  std::error_code error;
+  fs::path folder =
+      installed_data() ? top() / "share/doc/proleg/html" : program_folder().parent_path().parent_path() / "docs/site";
+  return fs::exists(folder / "index.html", error) ? std::optional(std::move(folder)) : std::nullopt;
 }
 
 fs::path image_folder() {

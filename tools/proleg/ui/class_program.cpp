@@ -20,6 +20,7 @@
 #include "tools/proleg/ui/class_files.hpp"
 #include "tools/proleg/ui/class_room.hpp"
 #include "tools/proleg/ui/class_session.hpp"
+#include "tools/proleg/ui/program_watch.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 
 namespace proleg::tools {
@@ -48,6 +49,7 @@ ClassRoomOptions room_options(const ClassOptions& options) {
   }
   room.is_open_to_network = options.lan.lan;
   room.may_write_code = options.allow_code;
+  room.page_program = build_id;
   room.may_teacher_write_code = options.allow_code || !options.lan.lan;
   return room;
 }
@@ -69,6 +71,7 @@ int serve_class(const ClassOptions& options) {
   host::ServerOptions server{token, std::move(page_files), std::string("proleg ") + build_id, {}, options.port};
   server.certificate = std::move(certificate);
   server.seats = &room;
+  server.documents = served_documentation();
   for (const std::vector<std::string>& operations : {ClassFiles::operations(), ClassSession::operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
@@ -86,9 +89,11 @@ int serve_class(const ClassOptions& options) {
   }
   constexpr std::chrono::milliseconds signal_period{100};
   constexpr std::chrono::seconds goodbye{2};
+  ProgramWatch watch(build_id, page);
   while (!interrupted()) {
     context.restart();
     context.run_for(signal_period);
+    watch.look(std::chrono::steady_clock::now());
   }
   page.stop();
   context.restart();

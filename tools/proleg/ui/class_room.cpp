@@ -208,7 +208,8 @@ void ClassRoom::start_program(const Learner& learner, Place& place, bool is_paus
                       {"name", learner.name},
                       {"is_teacher", is_teacher},
                       {"may_write_code", is_teacher ? options_.may_teacher_write_code : options_.may_write_code},
-                      {"is_open_to_network", options_.is_open_to_network}};
+                      {"is_open_to_network", options_.is_open_to_network},
+                      {"page_program", options_.page_program}};
   place.program = std::make_unique<SeatProgram>(command, folder, settings, Clock::now());
 }
 

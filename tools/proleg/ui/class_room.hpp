@@ -31,6 +31,7 @@ struct ClassRoomOptions {
   std::vector<std::string> command;       ///< of the program of a seat, with the options that all have
   std::optional<HandOut> first_scenario;  ///< with which all begin
   bool may_write_code = false;            ///< learners may write algorithms
+  std::string page_program;               ///< build id of the program that serves the page
   bool may_teacher_write_code = true;
   bool is_open_to_network = false;
 };

@@ -60,8 +60,12 @@ SeatSettings read_seat_settings(InputLines& lines) {
   if (!token) {
     throw BadInput("--seat: found no settings on standard input, expected those that 'proleg ui --class' gives");
   }
-  return {*token, line.value("name", ""), line.value("is_teacher", false), line.value("may_write_code", false),
-          line.value("is_open_to_network", false)};
+  return {*token,
+          line.value("name", ""),
+          line.value("is_teacher", false),
+          line.value("may_write_code", false),
+          line.value("is_open_to_network", false),
+          line.value("page_program", "")};
 }
 
 SeatInput::SeatInput(const SeatSettings& settings, InputLines& lines, host::WebServer& page)

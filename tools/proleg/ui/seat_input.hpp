@@ -20,6 +20,7 @@ struct SeatSettings {
   bool is_teacher = false;
   bool may_write_code = false;
   bool is_open_to_network = false;
+  std::string page_program;  ///< build id of the class, which serves the page
 };
 
 /// Lines of standard input. A wait for one ends.

@@ -45,6 +45,7 @@
 #include "tools/proleg/ui/mesh_session.hpp"
 #include "tools/proleg/ui/modules_session.hpp"
 #include "tools/proleg/ui/page_access.hpp"
+#include "tools/proleg/ui/program_watch.hpp"
 #include "tools/proleg/ui/project_files.hpp"
 #include "tools/proleg/ui/recent_files.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
@@ -311,7 +312,8 @@ int serve_class(const UiOptions& options) {
 }
 
 /// Serves the page until the program is to end. with_last_page: it ends when the last page has been closed, too.
-void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bool with_last_page) {
+void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bool with_last_page,
+                     ProgramWatch& watch) {
   constexpr std::chrono::milliseconds signal_period{100};
   constexpr std::chrono::seconds trim_period{10};
   LastPage last_page(std::chrono::steady_clock::now());
@@ -321,7 +323,9 @@ void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bo
     }
     context.restart();
     context.run_for(signal_period);
-    if (const auto now = std::chrono::steady_clock::now(); now >= trim_at) {
+    const auto now = std::chrono::steady_clock::now();
+    watch.look(now);
+    if (now >= trim_at) {
       malloc_trim(0);  // the place of many small parts, such as those of a large world, goes back to the system
       trim_at = now + trim_period;
     }
@@ -389,6 +393,9 @@ int serve(UiOptions& options) {
                              port};
   server.certificate = std::move(certificate);
   server.is_seat = options.is_seat;
+  if (!options.seat) {
+    server.documents = served_documentation();
+  }
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), DraftSession::free_operations(), Gallery::free_operations(),
@@ -467,9 +474,10 @@ int serve(UiOptions& options) {
   }
   const ModulesSession modules({recordings.folder, robot_bus, opens_any_address(options), modules_refusal(options)},
                                present_draft, sharing, module_requests, page);
+  ProgramWatch watch(options.seat ? options.seat->page_program : build_id, page);
   if (options.seat) {
     const SeatInput seat(*options.seat, input, page);
-    serve_until_end(context, page, false);
+    serve_until_end(context, page, false, watch);
     return exit_success;
   }
   const PageAddress address(page.origin(), page.port(), token.text());
@@ -490,7 +498,7 @@ int serve(UiOptions& options) {
   if (!options.no_browser) {
     address.open();
   }
-  serve_until_end(context, page, options.is_desktop);
+  serve_until_end(context, page, options.is_desktop, watch);
   return exit_success;
 }
 

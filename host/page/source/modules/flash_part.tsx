@@ -1,5 +1,6 @@
 // Brings an image to modules: which one, to which, and how far each is.
 import { useSignal } from '@preact/signals';
+import { DocumentationLink } from '../panels/documentation_link.js';
 import type { ModuleOperations } from '../wire/messages.js';
 import { FlashTable } from './flash_table.js';
 import { flashRows, flashWarnings } from './flash_rows.js';
@@ -32,7 +33,7 @@ export function FlashPart({ app }: { app: ModulesApp }) {
   const to = onlyChecked.value && checked !== null ? `nodes ${checked}` : 'all modules';
   return (
     <>
-      <p class="hint">A module whose new program does not start well returns to the one before. Settings stay.</p>
+      <p class="hint">A module whose new program does not start well returns to the one before. Settings stay. <DocumentationLink state={app.page.state} to="flashing.html">Flashing</DocumentationLink></p>
       <div class="fields">
         <ImageChoice app={app} chosen={chosen} />
       </div>

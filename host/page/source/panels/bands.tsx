@@ -5,6 +5,7 @@ import type { PageAddress } from '../wire/page_address.js';
 import { BusBands } from './bus_bands.js';
 import { ConnectionBand } from './connection_band.js';
 import { loadLater, LaterView } from './later_view.js';
+import { ProgramBand } from './program_band.js';
 
 // Only in a class.
 const handedOut = loadLater<Stores<'shownPage' | 'state' | 'wantedScenario'>>(() => import('./handed_out_band.js').then((module) => module.HandedOutBand));
@@ -58,6 +59,7 @@ export function Bands({ app, address }: { app: Stores<'operations' | 'shownPage'
   return (
     <div class="bands">
       <ConnectionBand status={app.state.connection.value} isSeat={address.isSeat} />
+      <ProgramBand app={app} isSeat={address.isSeat} />
       <BusBands app={app} />
       {session?.failure && (
         <div class="band lost" role="alert">

@@ -31,5 +31,6 @@ export const findIcon = icon(
     <path d="m10.2 10.2 3.3 3.3" />
   </>,
 );
+export const documentationIcon = icon(<path d="M8 4.5C6.5 3 4 2.8 2 3v9.5c2-.2 4.5 0 6 1.5 1.5-1.5 4-1.7 6-1.5V3c-2-.2-4.5 0-6 1.5zM8 4.5V14" />);
 export const addIcon = icon(<path d="M8 3v10M3 8h10" />);
 export const copyIcon = icon(<path d="M6 5.5h7v8H6zM10 5.5v-3H3v8h3" />);

@@ -1,4 +1,5 @@
 // The buttons at the end of every bar: find an action, show the keys, change the colours.
+import type { ComponentChildren } from 'preact';
 import { toggleDialog } from '../view/dialogs.js';
 import { nextTheme, themeChoice } from '../view/theme.js';
 import { findIcon, themeIcon } from './icons.js';
@@ -18,9 +19,11 @@ export function ThemeButton({ hint = '' }: { hint?: string }) {
   );
 }
 
-export function PageTools() {
+// `documentation`: the link to it, if there is one.
+export function PageTools({ documentation = null }: { documentation?: ComponentChildren }) {
   return (
     <div class="tools">
+      {documentation}
       <button
         type="button"
         class="icon-button"

@@ -2,6 +2,8 @@
 import type { PageName, Stores } from '../view/robot_view.js';
 import type { PageState } from '../state/page_state.js';
 import type { SessionDocument } from '../wire/messages.js';
+import { DocumentationLink } from './documentation_link.js';
+import { documentationIcon } from './icons.js';
 import { PageTools } from './page_tools.js';
 import { StopArea } from './stop_area.js';
 
@@ -169,7 +171,13 @@ export function TopBar({ app }: { app: Stores<'operations' | 'shownPage' | 'stat
       <RobotName state={app.state} />
       <Figures state={app.state} />
       <Control app={app} />
-      <PageTools />
+      <PageTools
+        documentation={
+          <DocumentationLink state={app.state} to="index.html" isButton label="Documentation">
+            {documentationIcon}
+          </DocumentationLink>
+        }
+      />
       {(!isAlone || hasBus) && <StopArea stop={app.stop} isSimulation={app.state.robot.value?.kind === 'simulation'} />}
     </header>
   );

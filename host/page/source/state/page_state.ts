@@ -16,6 +16,7 @@ import type {
   LibraryItem,
   MissingAlgorithms,
   PartsDocument,
+  ProgramDocument,
   Mesh,
   ModuleJob,
   ModulesDocument,
@@ -95,6 +96,10 @@ export class PageState {
   // In a class: whose robot this is, and what the teacher has handed out.
   readonly seat = signal<SeatDocument | null>(null);
   readonly handedOut = signal<readonly HandedOut[]>([]);
+  // The installation of the program; null until it has said it.
+  readonly program = signal<ProgramDocument | null>(null);
+  // Whether the program is another one than that with which this page began: the page may be too old for it.
+  readonly isOtherProgram = signal(false);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -127,6 +132,7 @@ export class PageState {
   // The name of another viewer who drives, else null.
   readonly otherHolder = computed(() => (this.isHolder.value ? null : (this.control.value?.holder?.name ?? null)));
 
+  private firstProgram: string | null = null;
   private lastNotice = 0;
   private firstNews = 0; // number of the server's first notice that is shown
   private nextNotice: number | null = null; // number that its next notice has
@@ -146,6 +152,9 @@ export class PageState {
       this.receiveNotice(message);
     } else if (message.type === 'document') {
       switch (message.name) {
+        case 'program':
+          this.program.value = message.value;
+          break;
         case 'robot':
           this.robot.value = message.value;
           break;
@@ -248,6 +257,8 @@ export class PageState {
   receiveStatus(status: ConnectionStatus): void {
     this.connection.value = status;
     if (status.state === 'open') {
+      this.firstProgram ??= status.program;
+      this.isOtherProgram.value = status.program !== this.firstProgram;
       // The server sends all its notices after each welcome: those that this page has missed are news.
       const isSameServer = this.nextNotice !== null && this.nextNotice <= status.nextNotice;
       this.firstNews = isSameServer ? (this.nextNotice ?? 0) : status.nextNotice;

@@ -295,7 +295,16 @@ export interface HandedOut {
   title: string;
 }
 
+// The installation of the program, and whether an update has replaced it.
+export interface ProgramDocument {
+  version: string;
+  has_documentation: boolean;
+  is_replaced: boolean; // its files, while it runs
+  is_other_version: boolean; // than the program that serves the page
+}
+
 export interface Documents {
+  program: ProgramDocument;
   gallery: { entries: GalleryEntry[] };
   algorithm_folders: AlgorithmFolders;
   algorithm_build: AlgorithmBuild;

@@ -29,6 +29,16 @@ describe('the state of the page', () => {
     assert.equal(state.otherHolder.value, null);
   });
 
+  it('knows when the program is another one than before', () => {
+    const state = connected();
+    state.receiveStatus({ state: 'lost', attempts: 1 });
+    assert.equal(state.isOtherProgram.value, false);
+    state.receiveStatus({ state: 'open', client: 4, program: 'proleg', nextNotice: 0 });
+    assert.equal(state.isOtherProgram.value, false);
+    state.receiveStatus({ state: 'open', client: 5, program: 'proleg, a later version', nextNotice: 0 });
+    assert.equal(state.isOtherProgram.value, true);
+  });
+
   it('keeps the documents when the connection is lost, but not the control', () => {
     const state = connected();
     state.receive(control(3));

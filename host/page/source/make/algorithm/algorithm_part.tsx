@@ -1,5 +1,6 @@
 // The part Algorithm of the page Make: algorithms of the user's own, written, built and run without a command line.
 import { useEffect } from 'preact/hooks';
+import { DocumentationLink } from '../../panels/documentation_link.js';
 import type { AlgorithmBuild, BuildMessage } from '../../wire/messages.js';
 import { algorithmApp, type AlgorithmApp, type AlgorithmHost } from './algorithm_app.js';
 import { AlgorithmFormView } from './algorithm_form.js';
@@ -150,7 +151,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
       {document !== null && document.refusal !== null && <p class="hint">Algorithms cannot be written here: {document.refusal}.</p>}
       {document !== null && document.refusal === null && (
         <>
-          <p class="hint">A gait or a reflex of your own, in C++: a form writes the source, which you then edit, build and run here.</p>
+          <p class="hint">A gait or a reflex of your own, in C++: a form writes the source, which you then edit, build and run here. <DocumentationLink state={state} to="user-algorithms.html">How to write one</DocumentationLink></p>
           <div class="fields" role="group" aria-label="Algorithms of your own">
             {document.folders.map(({ folder, name }) => (
               <button

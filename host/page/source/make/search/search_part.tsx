@@ -1,6 +1,7 @@
 // The part Search of the page Make: the searches, the form of a new one, and the chosen candidate.
 import { useSignal } from '@preact/signals';
 import type { ExperimentFile, SearchEntry } from '../../wire/messages.js';
+import { DocumentationLink } from '../../panels/documentation_link.js';
 import { TableHead } from '../../panels/table_head.js';
 import { CandidateView } from './candidate_view.js';
 import { searchApp, type SearchApp } from './search_app.js';
@@ -97,7 +98,7 @@ export function SearchPart({ app: host }: { app: SearchHost }) {
     <>
       <section class="panel make-panel" aria-label="Search">
         <h2>Search</h2>
-        <p class="hint">A search tries many values of parameters, and finds those with which the robot rates best. It goes on when this page is closed.</p>
+        <p class="hint">A search tries many values of parameters, and finds those with which the robot rates best. It goes on when this page is closed. <DocumentationLink state={host.page.state} to="optimisation.html">How to search</DocumentationLink></p>
         <SearchList app={app} />
         <div class="fields">
           <button type="button" class={form.isOpen.value ? '' : 'primary'} aria-pressed={form.isOpen.value} onClick={() => (form.isOpen.peek() ? (form.isOpen.value = false) : form.open())}>

@@ -217,7 +217,7 @@ export class ScriptedRobot {
   }
 
   private sendDocuments(viewer: Viewer): void {
-    type OfMake = 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'parts' | Extract<keyof Documents, `algorithm${string}` | `search${string}` | 'sweeps'> | 'missing_algorithms' | 'foresight' | 'gallery' | 'modules' | 'module_job' | 'class' | 'seat' | 'handed_out';
+    type OfMake = 'draft' | 'draft_robot' | 'draft_meshes' | 'library' | 'parts' | Extract<keyof Documents, `algorithm${string}` | `search${string}` | 'sweeps'> | 'missing_algorithms' | 'foresight' | 'gallery' | 'modules' | 'module_job' | 'class' | 'seat' | 'handed_out' | 'program';
     const documents: Omit<Documents, 'remote_values' | OfMake> = {
       robot: chain(),
       parameters: [],

@@ -96,10 +96,14 @@ class Recover(unittest.TestCase):
             names = list(dict.fromkeys(events.names()))
             self.assertEqual(names, ["waits", "found", "progress", "ended", "result"])
             self.assertEqual(events.names().count("ended"), 1)
-            self.assertEqual(events.all[0], {"event": "waits", "seconds": 2.0})
+            waits = [event for event in events.all if event["event"] == "waits"]
+            self.assertEqual(waits[0], {"event": "waits", "seconds": 2.0, "left_s": 2.0, "seen": waits[0]["seen"]})
+            left = [event["left_s"] for event in waits]
+            self.assertEqual((left, left[-1]), (sorted(left, reverse=True), 0))
+            self.assertEqual(waits[-1]["seen"], 5)
             result = events.result()
             self.assertTrue(result["well"])
-            found = sorted(events.all[1]["modules"], key=lambda module: module["serial"])
+            found = sorted(events.all[len(waits)]["modules"], key=lambda module: module["serial"])
             self.assertEqual(found, [{"node": module["node_before"], "serial": module["serial"], "found": module["found"]}
                                      for module in sorted(result["modules"], key=lambda module: module["serial"])])
             ended = events.all[-2]["modules"]
@@ -110,6 +114,24 @@ class Recover(unittest.TestCase):
             events = run_events("recover", "--wait", "0", "--bus", bus.tcp)
             self.assertEqual((events.process.returncode, events.result()), (status, report))
             self.assertEqual(events.names(), ["found", "result"])
+
+    def test_a_person_switches_the_supply_off_and_on_while_it_waits(self):
+        later = self.image(schema=2)
+        with Bus("--broken", "2=silent") as bus:
+            nodes = json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]
+            self.assertEqual([node["node"] for node in nodes], [1, 3, 4, 5], "its program answers nothing")
+            self.assertIn("found the line 'up', expected off or on", bus.say("up"))
+            with Events("recover", later, "--wait", "10", "--bus", bus.tcp) as recovery:
+                recovery.until("waits")
+                self.assertIn("the supply of the robot is off", bus.say("off"))
+                recovery.until("waits")
+                self.assertIn("the supply of the robot is on", bus.say("on"))
+                self.assertEqual(recovery.end(), 0, recovery.errors)
+                result = recovery.result()
+            self.assertEqual([module["node"] for module in result["modules"]], [1, 2, 3, 4, 5])
+            self.assertEqual(codes(result, "found"), [[], ["silent_program"], [], [], []])
+            self.assertEqual([module["done"] for module in result["modules"]], [[], ["it was flashed"], [], [], []])
+            self.assertEqual(recover(bus.tcp, "--wait", "0")[0], 0)
 
     def test_a_module_that_stays_broken_is_a_result_too(self):
         with Bus("--broken", "2=no-program") as bus:
@@ -124,7 +146,7 @@ class Recover(unittest.TestCase):
                 with Events("recover", "--wait", "600", "--bus", bus.tcp) as recovery:
                     self.assertEqual(recovery.next()["event"], "waits")
                     recovery.process.send_signal(number)
-                    self.assertEqual((recovery.end(), recovery.names()), (1, ["waits"]))
+                    self.assertEqual((recovery.end(), set(recovery.names())), (1, {"waits"}))
                     self.assertIn("interrupted", recovery.errors)
 
     def test_a_person_reads_what_is_missing(self):

@@ -32,7 +32,7 @@ class Bus:
 
     def __init__(self, *options, scenario=SCENARIO):
         self.process = subprocess.Popen([PROGRAMS / "proleg-bus", SOURCE / scenario, "--pty", "--tcp", "0", *options],
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.tcp = self.find(r"--bus (tcp:\S+)")
         self.pty = self.find(r"--bus (serial:\S+)")
 
@@ -42,6 +42,12 @@ class Bus:
         if not found:
             raise AssertionError(f"proleg bus printed {line!r} {self.process.stderr.read()!r}")
         return found.group(1)
+
+    def say(self, line):
+        """A line on its standard input: `off` and `on` switch the supply of the robot. Returns what it answers."""
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+        return self.process.stderr.readline()
 
     def joint_with_power(self):
         """The joint whose servo gets power next; of a bus with --verbose."""

@@ -18,7 +18,8 @@ BrokenModules::BrokenModules(const std::vector<std::string>& arguments, const si
 }
 
 std::string BrokenModules::syntax() {
-  return "NODE=hangs, faults (the program, at once), no-program, newer-settings (than the program knows), or "
+  return "NODE=hangs, faults (the program, at once), silent (until the supply was switched off and on), no-program, "
+         "newer-settings (than the program knows), or "
          "duplicate:OTHER (has the node id OTHER)";
 }
 
@@ -31,7 +32,8 @@ void BrokenModules::parse(const std::string& argument) {
     Kind kind;
   };
   static constexpr std::array names{Name{"hangs", Kind::hangs}, Name{"faults", Kind::faults},
-                                    Name{"no-program", Kind::no_program}, Name{"newer-settings", Kind::newer_settings}};
+                                    Name{"silent", Kind::silent}, Name{"no-program", Kind::no_program},
+                                    Name{"newer-settings", Kind::newer_settings}};
   constexpr std::string_view duplicate = "duplicate:";
   const std::size_t equal = argument.find('=');
   const std::string_view kind = equal == std::string::npos ? "" : std::string_view(argument).substr(equal + 1);
@@ -83,7 +85,12 @@ std::unique_ptr<sim::JointModule> BrokenModules::make(const sim::ModuleParts& pa
       return sim::ProgramHealth::good;
     });
   } else {
-    const auto health = kind == Kind::hangs ? sim::ProgramHealth::hangs : sim::ProgramHealth::faults;
+    const auto health = kind == Kind::hangs    ? sim::ProgramHealth::hangs
+                        : kind == Kind::faults ? sim::ProgramHealth::faults
+                                               : sim::ProgramHealth::deaf;
+    if (kind == Kind::silent) {
+      module->set_start_time(sim::NativeProgram::start_time_us);  // its bootloader listens after power on
+    }
     const image::Header first = image::decode(module->program().image()).header;
     module->program().set_health([health, first](const image::Header& header) {
       return header == first ? health : sim::ProgramHealth::good;  // another program starts well

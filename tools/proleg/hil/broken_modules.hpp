@@ -31,7 +31,7 @@ class BrokenModules {
   }
 
  private:
-  enum class Kind : std::uint8_t { none, hangs, faults, no_program, newer_settings, duplicate };
+  enum class Kind : std::uint8_t { none, hangs, faults, silent, no_program, newer_settings, duplicate };
   struct Fault {
     Kind kind = Kind::none;
     unsigned other = 0;  ///< joint of the other module with the same node id

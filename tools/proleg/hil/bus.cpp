@@ -23,6 +23,7 @@
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/shipped_scenarios.hpp"
+#include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/hil/broken_modules.hpp"
 #include "tools/proleg/hil/gateway_line.hpp"
 #include "tools/proleg/hil/hil_modules.hpp"
@@ -179,6 +180,7 @@ class Server final : private host::BusServerListener {
     while (!interrupted() && !is_closed_ && (until == 0 || robot_.now() < until)) {
       // The clients' frames enter the bus at the present time.
       advance(pace);
+      take_input();
       context_.restart();
       const std::uint64_t wake_ns = std::min(robot_.next_event(), robot_.now() + longest_wait_ns);
       if (const std::uint64_t now_ns = pace.now_ns(); now_ns < wake_ns) {
@@ -262,6 +264,27 @@ class Server final : private host::BusServerListener {
     }
   }
 
+  /// A person switches the supply of the robot by lines of standard input.
+  void take_input() {
+    while (const auto line = input_lines_.next()) {
+      const std::string word(trimmed(*line));
+      if (word == "off" || word == "on") {
+        switch_supply(word == "on");
+      } else if (!word.empty()) {
+        std::cerr << "proleg bus: found the line " << in_quotes(word)
+                  << ", expected off or on: the supply of the robot\n";
+      }
+    }
+  }
+
+  void switch_supply(bool is_on) {
+    constexpr std::uint32_t nominal_mv = 3'300;
+    for (unsigned joint = 0; joint < robot_.joint_count(); ++joint) {
+      robot_.module(joint).set_supply(robot_.now(), is_on ? nominal_mv : 0);
+    }
+    std::cerr << "proleg bus: the supply of the robot is " << (is_on ? "on" : "off") << '\n';
+  }
+
   /// Reports the power of joints: a person at a real robot sees which joint moves.
   void report_power() {
     for (unsigned joint = 0; joint < robot_.joint_count(); ++joint) {
@@ -298,6 +321,7 @@ class Server final : private host::BusServerListener {
   std::vector<bool> has_power_ = std::vector<bool>(nodes_.size());  ///< reported power by joint
   bool is_verbose_;
   bool is_closed_ = false;
+  InputLines input_lines_;
   std::unique_ptr<sim::CandumpLog> log_;
   boost::asio::io_context context_{1};
   host::BusServer server_{context_, *this};
@@ -338,7 +362,9 @@ int main(int argc, char** argv) {
       "proleg bus",
       "A simulated robot in real time, whose bus other programs reach as they reach a real one: with --bus of the "
       "other "
-      "subcommands, and with any CAN tool. Its modules are switched on and wait for a host. Ends with Ctrl-C.");
+      "subcommands, and with any CAN tool. Its modules are switched on and wait for a host. The lines 'off' and 'on' "
+      "of "
+      "standard input switch its supply. Ends with Ctrl-C.");
   ServerOptions options;
   add_scenario(command_line, options.scenario.file, "scenario").required();
   command_line.add_option("--can", options.can, "a CAN interface of this computer, such as vcan0. May be repeated.")

@@ -1,5 +1,5 @@
 // A job with modules in words.
-import type { JobKind, ModuleJob } from '../wire/messages.js';
+import type { JobKind, ModuleJob, ModuleWait } from '../wire/messages.js';
 
 const titles: Record<JobKind, string> = {
   scan: 'Scan',
@@ -37,6 +37,16 @@ export function jobState(job: ModuleJob): { text: string; tone: 'good' | 'quiet'
   if (job.status === null) return { text: 'ended by a signal', tone: 'bad' };
   if (job.status !== 1 || job.result === null) return { text: 'failed', tone: 'bad' };
   return isDryRun(job.result) ? { text: 'done, nothing was changed', tone: 'quiet' } : { text: 'ended: not all is well', tone: 'bad' };
+}
+
+// The wait of a `recover` for modules that are silent; null: it does not wait now.
+export function waitOf(job: ModuleJob | null): ModuleWait | null {
+  const wait = job !== null && job.kind === 'recover' && isRunning(job) ? job.latest.waits : undefined;
+  return wait === undefined || wait.left_s <= 0 ? null : wait;
+}
+
+export function waitText({ left_s: left, seen }: ModuleWait): { text: string; left: string } {
+  return { text: seen === 0 ? 'no module was seen yet' : `${seen} ${seen === 1 ? 'module was' : 'modules were'} seen`, left: `${Math.ceil(left)} s left` };
 }
 
 // The word of an answer for what a person has typed: the name of a joint, whatever its case, or what the program knows.

@@ -1,12 +1,14 @@
 // Brings modules back that do not start, or have no node id of their own: first it says what is wrong, then it does it.
 import { useSignal } from '@preact/signals';
+import { DocumentationLink } from '../panels/documentation_link.js';
 import { TableHead } from '../panels/table_head.js';
+import type { PageState } from '../state/page_state.js';
 import type { ModuleJob, ModuleRef, ModuleTrouble } from '../wire/messages.js';
 import { resultOf } from '../wire/module_messages.js';
 import { AdvanceCell } from './flash_table.js';
 import { ImageChoice, imageOf } from './image_choice.js';
 import { CheckBox, JobButton, JobObstacle, TableFrame } from './job_controls.js';
-import { isRunning, numberIn } from './job_text.js';
+import { isRunning, numberIn, waitOf, waitText } from './job_text.js';
 import { refText, serialText } from './module_rows.js';
 import type { ModulesApp } from './modules_app.js';
 
@@ -69,6 +71,28 @@ function RecoverTable({ app, job }: { app: ModulesApp; job: ModuleJob }) {
   );
 }
 
+// What a person does while it waits, and for how long yet.
+function RecoverWait({ job, state }: { job: ModuleJob | null; state: PageState }) {
+  const wait = waitOf(job);
+  if (wait === null) return null;
+  const { text, left } = waitText(wait);
+  return (
+    <div class="recover-wait" data-testid="recover-wait">
+      <p class="announcement" role="status">
+        <strong>If a module answers nothing at all, switch the robot’s supply off and on now.</strong> The adapter must keep its power.{' '}
+        <DocumentationLink state={state} to="flashing.html#a-program-that-answers-nothing">
+          Why
+        </DocumentationLink>
+      </p>
+      <div class="fields">
+        <progress aria-label="Time for this" max={wait.seconds} value={wait.seconds - wait.left_s} />
+        <span>{left}</span>
+        <span class="hint">{text}</span>
+      </div>
+    </div>
+  );
+}
+
 export function RecoverPart({ app }: { app: ModulesApp }) {
   const chosen = useSignal<string | null>(null);
   const wait = useSignal(defaultWait);
@@ -87,12 +111,11 @@ export function RecoverPart({ app }: { app: ModulesApp }) {
       reset_settings: resets.peek(),
       dry_run: dryRun,
     });
-  const waits = job !== null && isRunning(job) ? job.latest.waits?.seconds : undefined;
   return (
     <>
       <p class="hint">
         For modules that do not start, have no node id or that of another one, or are Stopped. A module that is well is left alone. Nothing shows that a module is
-        missing, so it waits: a program that hangs is silent for five seconds at first.
+        missing, so it waits: a program that hangs is silent for five seconds at first. <DocumentationLink state={app.page.state} to="flashing.html#a-module-that-does-not-come-back">A module that does not come back</DocumentationLink>
       </p>
       <div class="fields">
         <ImageChoice app={app} chosen={chosen} none="without an image" />
@@ -118,9 +141,9 @@ export function RecoverPart({ app }: { app: ModulesApp }) {
         <JobButton app={app} isPrimary={wasLooked} obstacle={problem ?? (wasLooked ? null : 'Look what is wrong first.')} title="Does what the table says" run={() => begin(false)}>
           Recover
         </JobButton>
-        {waits !== undefined && <span role="status">It looks for modules, for {waits} s at most …</span>}
         <JobObstacle app={app} />
       </div>
+      <RecoverWait job={job} state={app.page.state} />
       {job !== null && <RecoverTable app={app} job={job} />}
     </>
   );

@@ -86,7 +86,7 @@ export interface JobEvents {
   progress?: { modules: FlashProgress[] };
   ended?: { modules: FlashOutcome[] };
   found?: { modules: (ModuleRef & { found: ModuleTrouble[] })[] };
-  waits?: { seconds: number };
+  waits?: ModuleWait;
   numbered?: { count: number };
   moves?: ModuleRef & { degrees: number };
   cannot_move?: ModuleRef & { problem: string };
@@ -100,6 +100,13 @@ export interface NodeChange {
   from: number;
   to: number;
   joint: string | null;
+}
+
+// A wait for modules that are silent; 0 s are left when it has ended.
+export interface ModuleWait {
+  seconds: number;
+  left_s: number;
+  seen: number; // modules
 }
 
 // What waits for an answer.

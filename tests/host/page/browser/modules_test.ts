@@ -381,6 +381,46 @@ describe('modules that do not come back', () => {
   });
 });
 
+describe('a module that answers nothing', () => {
+  const folder = makeProject();
+  const ui = useUi(() => UiProgram.start(join(folder, 'mine/uniform.simulation.xml'), ['--recordings', folder]), { takesControl: true });
+  const modules = new ModulesPage(() => ui.viewer.page);
+  let bus!: BusProgram;
+
+  before(async () => {
+    bus = await BusProgram.start(['--broken', '3=silent']);
+  });
+
+  after(async () => {
+    await bus.end();
+    rmSync(folder, { recursive: true, maxRetries: 20, retryDelay: 100 });
+  });
+
+  it('comes back when a person switches the supply off and on at the time at which the page asks for it', async () => {
+    const { page } = ui.viewer;
+    await modules.open(bus.address);
+    await modules.task('Recover');
+    const wait = page.getByTestId('recover-wait');
+    const table = page.getByTestId('recovery');
+    await page.getByLabel('look for, in seconds').fill('20');
+    for (const button of ['Look what is wrong', 'Recover']) {
+      assert.equal(await wait.count(), 0);
+      assert.ok(await waitUntil(() => modules.button(button).isEnabled()));
+      await modules.button(button).click();
+      await wait.getByText('switch the robot’s supply off and on now').waitFor();
+      assert.match((await wait.textContent()) ?? '', /\d+ s left/);
+      if (button === 'Recover') await modules.screenshot('recover_wait');
+      bus.switchSupply('off');
+      await wait.getByText('seen').waitFor();
+      bus.switchSupply('on');
+      await modules.waitForJob(/^Recover: (done|ended)/);
+      await table.getByText('has answered nothing until the supply was switched off and on').waitFor();
+    }
+    assert.equal(await table.locator('td.good').count(), 5);
+    assert.equal(bus.serials().size, 5);
+  });
+});
+
 describe('a project without a robot', () => {
   const folder = makeProject();
   let bus!: BusProgram;

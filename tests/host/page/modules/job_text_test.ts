@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { isRunning, jobState, numberIn, placeWord, unitOf, valueWithoutUnit, valueWord } from '../../../../host/page/source/modules/job_text.js';
+import { isRunning, jobState, numberIn, placeWord, unitOf, valueWithoutUnit, valueWord, waitOf, waitText } from '../../../../host/page/source/modules/job_text.js';
 import { resultOf } from '../../../../host/page/source/wire/module_messages.js';
 import { jobOf } from './module_job.js';
 
@@ -9,6 +9,17 @@ describe('a job', () => {
     assert.equal(isRunning(null), false);
     assert.equal(isRunning(jobOf({ state: 'ending' })), true);
     assert.equal(isRunning(jobOf({ state: 'ended' })), false);
+  });
+
+  it('waits for modules until no time is left', () => {
+    const waits = (left_s: number) => ({ waits: { seconds: 8, left_s, seen: 4 } });
+    assert.equal(waitOf(null), null);
+    assert.equal(waitOf(jobOf({ kind: 'recover' })), null);
+    assert.equal(waitOf(jobOf({ kind: 'recover', latest: waits(2.5) }))?.left_s, 2.5);
+    assert.equal(waitOf(jobOf({ kind: 'recover', latest: waits(0) })), null);
+    assert.equal(waitOf(jobOf({ kind: 'recover', state: 'ended', latest: waits(2.5) })), null);
+    assert.deepEqual(waitText({ seconds: 8, left_s: 2.5, seen: 1 }), { text: '1 module was seen', left: '3 s left' });
+    assert.equal(waitText({ seconds: 8, left_s: 2.5, seen: 0 }).text, 'no module was seen yet');
   });
 
   it('is in words what the document says', () => {

@@ -13,7 +13,7 @@ export class BusProgram {
   ) {}
 
   static start(words: string[] = [], file = uniform): Promise<BusProgram> {
-    const child = spawn(program, ['bus', file, '--tcp', '0', '--verbose', ...words], { stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(program, ['bus', file, '--tcp', '0', '--verbose', ...words], { stdio: ['pipe', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';
       let rest = '';
@@ -46,6 +46,11 @@ export class BusProgram {
   private notePower(line: string): void {
     const match = /: (\S+) has( no)? power/.exec(line);
     if (match !== null) this.powered = match[2] === undefined ? (match[1] as string) : null;
+  }
+
+  // A person switches the supply of the robot.
+  switchSupply(state: 'off' | 'on'): void {
+    this.child.stdin?.write(`${state}\n`);
   }
 
   // The joint that moves: a person sees it on the table.

@@ -22,8 +22,9 @@ interface RecoverRow extends ModuleRef {
 function rowsOf(job: ModuleJob | null): RecoverRow[] {
   const result = resultOf(job, 'recover');
   if (result === null) return (job?.kind === 'recover' ? (job.latest.found?.modules ?? []) : []).map((module) => ({ ...module, end: null }));
-  return result.modules.map(({ serial, node, node_before, found, well, remains, problem, done, version }) => {
-    const rest = problem ?? remains.map(({ what, to_do }) => `${what}: ${to_do}`).join('; ');
+  return result.modules.map(({ serial, node, node_before, found, well, remains, problem, done, version, present }) => {
+    const gone = 'answers no more: recover again, and switch the supply off and on while it waits';
+    const rest = problem ?? (present ? remains.map(({ what, to_do }) => `${what}: ${to_do}`).join('; ') : gone);
     const moved = node_before !== node ? `; its node id was ${node_before === 0 ? 'none' : node_before}` : '';
     const text = well ? `well${done.length > 0 ? ' now' : ''}${version === null ? '' : `, ${version}`}${moved}` : rest;
     return { node, serial, found, end: result.dry_run && !well ? null : { text, isGood: well } };

@@ -396,28 +396,25 @@ describe('a module that answers nothing', () => {
     rmSync(folder, { recursive: true, maxRetries: 20, retryDelay: 100 });
   });
 
-  it('comes back when a person switches the supply off and on at the time at which the page asks for it', async () => {
+  it('is found when a person switches the supply off and on at the time at which the page asks for it', async () => {
     const { page } = ui.viewer;
     await modules.open(bus.address);
     await modules.task('Recover');
     const wait = page.getByTestId('recover-wait');
     const table = page.getByTestId('recovery');
-    await page.getByLabel('look for, in seconds').fill('20');
-    for (const button of ['Look what is wrong', 'Recover']) {
-      assert.equal(await wait.count(), 0);
-      assert.ok(await waitUntil(() => modules.button(button).isEnabled()));
-      await modules.button(button).click();
-      await wait.getByText('switch the robot’s supply off and on now').waitFor();
-      assert.match((await wait.textContent()) ?? '', /\d+ s left/);
-      if (button === 'Recover') await modules.screenshot('recover_wait');
-      bus.switchSupply('off');
-      await wait.getByText('seen').waitFor();
-      bus.switchSupply('on');
-      await modules.waitForJob(/^Recover: (done|ended)/);
-      await table.getByText('has answered nothing until the supply was switched off and on').waitFor();
-    }
-    assert.equal(await table.locator('td.good').count(), 5);
-    assert.equal(bus.serials().size, 5);
+    await page.getByLabel('look for, in seconds').fill('12');
+    assert.equal(await wait.count(), 0);
+    assert.ok(await waitUntil(() => modules.button('Look what is wrong').isEnabled()));
+    await modules.button('Look what is wrong').click();
+    await wait.getByText('switch the robot’s supply off and on now').waitFor();
+    assert.match((await wait.textContent()) ?? '', /\d+ s left/);
+    await modules.screenshot('recover_wait');
+    bus.switchSupply('off');
+    await wait.getByText('seen').waitFor();
+    bus.switchSupply('on');
+    await modules.waitForJob(/^Recover: done, nothing was changed/);
+    await table.getByText('has answered nothing until the supply was switched off and on').waitFor();
+    assert.equal(await wait.count(), 0);
   });
 });
 

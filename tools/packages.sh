@@ -28,7 +28,7 @@ aarch64_packages=(g++-aarch64-linux-gnu qemu-user)
 # And what makes the folder of its libraries.
 arm64_packages=("${aarch64_packages[@]}" mmdebstrap)
 # These libraries, for arm64, are in that folder and not installed: some -dev packages exclude those of another processor.
-arm64_libraries=("${library_packages[@]}" libmujoco-dev)
+arm64_libraries=("${library_packages[@]}" libmujoco-dev libopenmpi-dev libboost-mpi-dev)
 
 # Additional packages for the tests: a second compiler with its sanitizers, independent programs.
 test_packages=(
@@ -67,9 +67,10 @@ page_packages=(nodejs npm)
 browser_packages=(chromium)  # its tests
 film_packages=(webp)         # tools/film, which needs the browser, too
 
-# Debian packages of Proleg: tools/release. What is optional in a build is in them. Their slow test makes an empty Debian.
+# Debian packages of Proleg: tools/release. What is optional in a build is in them. Their slow tests make an empty Debian, and run the
+# programs for arm64 in a folder with what they depend on.
 release_packages=(dpkg-dev file lintian libmujoco-dev libopenmpi-dev libboost-mpi-dev "${python_packages[@]}")
-release_test_packages=(debootstrap)
+release_test_packages=(debootstrap mmdebstrap proot)
 
 # The documentation as a site: tools/docs.
 docs_packages=(mkdocs mkdocs-material doxygen python3)

@@ -3,8 +3,9 @@
 
 usage: sbom.py SOURCE_FOLDER VERSION COMMIT DEB... >FILE
 
-Versions of Debian packages are those that are installed here, which the build has used. The time is SOURCE_DATE_EPOCH, and the
-order is fixed, so that one commit and the same packages give the same bytes.
+Versions of Debian packages are those that the build has used: those that are installed here, and for another architecture those of
+build/ARCHITECTURE_sysroot (tools/arm64). The time is SOURCE_DATE_EPOCH, and the order is fixed, so that one commit and the same
+packages give the same bytes.
 """
 
 import hashlib
@@ -19,6 +20,7 @@ from pathlib import Path
 # Debian packages whose code is in the programs or images: headers, and the libraries of the compiler for modules.
 IN_PROGRAMS = ["libboost-dev", "libcli11-dev", "libeigen3-dev", "nlohmann-json3-dev"]
 IN_IMAGES = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "libstdc++-arm-none-eabi-newlib"]
+IN_PYTHON = ["pybind11-dev"]
 IN_DOCUMENTS = ["mkdocs-material"]
 NONE = "NOASSERTION"
 
@@ -27,33 +29,58 @@ class Failure(Exception):
     pass
 
 
-def installed_version(package):
-    found = subprocess.run(["dpkg-query", "--show", "--showformat=${Version}", package], capture_output=True, text=True, check=False)
-    if found.returncode != 0:
-        raise Failure(f"found no installed package {package}, expected it: the release contains or loads it")
-    return found.stdout
+def output_of(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def architecture_here():
+    return output_of("dpkg", "--print-architecture").strip()
+
+
+class Debian:
+    """The Debian packages of one architecture."""
+
+    def __init__(self, source, architecture):
+        if architecture == architecture_here():
+            self.place = "installed here"
+            text = output_of("dpkg-query", "--show", "--showformat=${db:Status-Status} ${Package} ${Version} ${Architecture}\n")
+            lines = [line.removeprefix("installed ") for line in text.splitlines() if line.startswith("installed ")]
+        else:
+            file = source / f"build/{architecture}_sysroot/DEBIAN/versions"
+            self.place = f"in {file}"
+            lines = file.read_text().splitlines()
+        found = (line.split() for line in lines)
+        self.versions = {name: (version, kind) for name, version, kind in found if kind in (architecture, "all")}
+
+    def package(self, name):
+        if name not in self.versions:
+            raise Failure(f"found no package {name} {self.place}, expected it: the release contains or loads it")
+        version, kind = self.versions[name]
+        return package(f"{name}-{kind}", name, version, f"pkg:deb/debian/{name}@{version}?arch={kind}&distro=bookworm")
 
 
 def dependencies(deb):
     """Names of the packages that a package needs, of alternatives the first; without those of this release."""
-    field = subprocess.run(["dpkg-deb", "--field", deb, "Depends"], capture_output=True, text=True, check=True).stdout
+    field = output_of("dpkg-deb", "--field", deb, "Depends")
     names = [re.split(r"[ (|:]", word.strip())[0] for word in field.split(",") if word.strip()]
     return sorted(name for name in names if not name.startswith("proleg"))
+
+
+def by_architecture(debs):
+    found = {}
+    for deb in debs:
+        found.setdefault(output_of("dpkg-deb", "--field", deb, "Architecture").strip(), []).append(deb)
+    return found
 
 
 def spdx_id(*words):
     return "SPDXRef-" + re.sub(r"[^A-Za-z0-9.-]+", "-", "-".join(words)).strip("-")
 
 
-def package(name, version, reference, licence=NONE):
-    return {"SPDXID": spdx_id(reference.split("/")[0].removeprefix("pkg:"), name), "name": name, "versionInfo": version,
+def package(key, name, version, reference, licence=NONE):
+    return {"SPDXID": spdx_id(reference.split("/")[0].removeprefix("pkg:"), key), "name": name, "versionInfo": version,
             "downloadLocation": NONE, "filesAnalyzed": False, "licenseConcluded": NONE, "licenseDeclared": licence, "copyrightText": NONE,
             "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl", "referenceLocator": reference}]}
-
-
-def debian(name):
-    version = installed_version(name)
-    return package(name, version, f"pkg:deb/debian/{name}@{version}?distro=bookworm")
 
 
 def npm_packages(lock):
@@ -62,7 +89,7 @@ def npm_packages(lock):
         if path and not entry.get("dev"):
             name = path.rsplit("node_modules/", 1)[-1]
             reference = f"pkg:npm/{name.replace('@', '%40')}@{entry['version']}"
-            yield package(name, entry["version"], reference, entry.get("license", NONE))
+            yield package(name, name, entry["version"], reference, entry.get("license", NONE))
 
 
 def bill(source, version, commit, debs):
@@ -71,15 +98,20 @@ def bill(source, version, commit, debs):
     packages, relations = {root["SPDXID"]: root}, [("SPDXRef-DOCUMENT", "DESCRIBES", root["SPDXID"])]
 
     def add(found, relation):
-        packages[found["SPDXID"]] = found
-        relations.append((root["SPDXID"], relation, found["SPDXID"]))
+        if found["SPDXID"] not in packages:  # one for all architectures
+            packages[found["SPDXID"]] = found
+            relations.append((root["SPDXID"], relation, found["SPDXID"]))
 
-    for name in sorted(set().union(*map(dependencies, debs))):
-        add(debian(name), "DYNAMIC_LINK")
-    for name in IN_PROGRAMS + IN_IMAGES:
-        add(debian(name), "STATIC_LINK")
+    for architecture, own in sorted(by_architecture(debs).items()):
+        if architecture == "all":
+            continue  # no programs
+        debian = Debian(source, architecture)
+        for name in sorted(set().union(*map(dependencies, own))):
+            add(debian.package(name), "DYNAMIC_LINK")
+        for name in IN_PROGRAMS + (IN_IMAGES + IN_PYTHON if architecture == architecture_here() else []):
+            add(debian.package(name), "STATIC_LINK")
     for name in IN_DOCUMENTS:
-        add(debian(name), "CONTAINS")
+        add(Debian(source, architecture_here()).package(name), "CONTAINS")
     for found in npm_packages(source / "host/page/package-lock.json"):
         add(found, "CONTAINS")
     created = datetime.fromtimestamp(int(os.environ["SOURCE_DATE_EPOCH"]), timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -17,5 +17,15 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(ENV{PKG_CONFIG_SYSROOT_DIR} ${CMAKE_SYSROOT})
 set(ENV{PKG_CONFIG_LIBDIR} ${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
 
+# What Debian calls this processor.
+set(PROLEG_DEBIAN_ARCHITECTURE arm64)
+
+# FindMPI would ask the compiler of Open MPI that is installed here, which names the libraries for this computer.
+set(MPI_CXX_COMPILER_INCLUDE_DIRS ${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu/openmpi/include)
+set(MPI_CXX_LIB_NAMES mpi_cxx mpi)
+foreach(library IN LISTS MPI_CXX_LIB_NAMES)
+  set(MPI_${library}_LIBRARY ${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu/openmpi/lib/lib${library}.so)
+endforeach()
+
 # The emulator that runs these programs on the build computer.
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L ${CMAKE_SYSROOT})

@@ -65,7 +65,8 @@ class DebianPackages(unittest.TestCase):
         if not debs:
             debs = cls.folder / "debs"
             run(SOURCE / "tools/release", "--debs", debs)
-        cls.packages = {deb.name.split("_")[0]: deb for deb in Path(debs).glob("*.deb")}
+        kinds = (run("dpkg", "--print-architecture").strip(), "all")
+        cls.packages = {deb.stem.split("_")[0]: deb for deb in Path(debs).glob("*.deb") if deb.stem.endswith(kinds)}
         cls.root = Path(os.environ.get("PROLEG_DEBIAN", cls.folder / "debian"))
         if not cls.root.exists():
             run("debootstrap", "--variant=minbase", "bookworm", cls.root, MIRROR)

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md: each search finds a gait above 1.9 m, in ODE too; the sweep prints a table.
+"""The examples of docs/python.md: each search finds a gait above 1.9 m, in ODE too; what is learned crosses the terrace; the sweep prints a table.
 
     examples_test.py FOLDER
 """
@@ -26,6 +26,11 @@ class Examples(unittest.TestCase):
                 found = re.search(r"([0-9.]+) m found, ([0-9.]+) m in ODE", printed)
                 self.assertGreater(float(found.group(1)), 1.9)
                 self.assertGreater(float(found.group(2)), 1.9)
+
+    def test_of_learning_crosses_the_terrace(self):
+        printed = self.run_example("learn_step.py").strip().splitlines()[-1]
+        print(printed)
+        self.assertGreater(float(re.search(r"the last link is (-?[0-9.]+) m behind", printed).group(1)), 0)
 
     def test_of_a_sweep_prints_a_table(self):
         self.assertEqual(len(self.run_example("sweep_pandas.py").splitlines()), 6)

@@ -22,7 +22,7 @@ from urllib.error import URLError
 from urllib.request import urlopen
 
 MIRROR = "http://deb.debian.org/debian"
-LONGEST = 1800  # s, of one command; the emulator takes twenty-five times as long as a processor
+LONGEST = 1800  # s, of one command: the emulator is much slower than a processor
 LARGEST = 60e6  # bytes installed
 ELF = b"\x7fELF"
 AARCH64 = 183  # e_machine, at byte 18

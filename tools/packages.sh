@@ -13,8 +13,8 @@ library_packages=(
 )
 # The package for Python (tools/python).
 python_packages=(pybind11-dev python3-dev python3-numpy)
-# What its examples use, in their slow test.
-python_example_packages=(python3-scipy python3-optuna python3-deap python3-pandas)
+# What its examples use, and pip, in their slow tests.
+python_example_packages=(python3-scipy python3-optuna python3-deap python3-pandas python3-pip python3-venv python3-setuptools python3-wheel)
 # What CMake needs for the programs for this computer.
 build_packages=(g++ cmake ninja-build pkg-config "${library_packages[@]}")
 # The programs, and what goes with them: quick builds, version and npm's downloads; sqlite3 shows the contents of recordings.

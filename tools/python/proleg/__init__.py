@@ -20,7 +20,7 @@ from proleg.run import MEASURES, SERIES, Measure, Run, simulate
 from proleg.scenario import Parameter, Scenario, caterpillar, shipped, snake
 from proleg.worlds import Worlds
 
-__version__ = build_id.split("+")[0].split(" ")[0]
+__version__ = build_id.split("-")[0]
 
 __all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Recording", "Run", "RunError", "Scenario",
            "Scores", "Worlds", "caterpillar", "evaluate", "open", "shipped", "simulate", "snake"]

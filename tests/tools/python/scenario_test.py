@@ -3,15 +3,12 @@
 import copy
 import os
 import pickle
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 import proleg
-
-ROOT = Path(sys.argv.pop(1))
 
 
 class ValuesOfAScenario(unittest.TestCase):

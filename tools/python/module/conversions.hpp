@@ -3,19 +3,26 @@
 // What Python gives as numbers, words and lists, as what the rooms below take; and the reverse.
 
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
+
 namespace proleg::python {
 
 /// A number as a word of a command line: the shortest decimal that reads back as the same number; "nan" and "inf" for
 /// what no reader accepts, so that its message shows them.
-[[nodiscard]] std::string word_of(double number);
+[[nodiscard]] inline std::string word_of(double number) {
+  if (std::isnan(number)) {
+    return "nan";
+  }
+  return std::isinf(number) ? (number > 0 ? "inf" : "-inf") : exact_text(number);
+}
 
 /// An array that owns the numbers of a vector, without a copy. shape: its product is the size of the vector.
 template <typename Number>

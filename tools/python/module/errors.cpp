@@ -1,11 +1,10 @@
-#include "tools/python/module/errors.hpp"
-
 #include <exception>
 
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/python/module/parts.hpp"
 
 namespace proleg::python {
 namespace {

@@ -1,5 +1,3 @@
-#include "tools/python/module/evaluation.hpp"
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -27,13 +25,14 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/python/module/conversions.hpp"
 #include "tools/python/module/long_call.hpp"
+#include "tools/python/module/parts.hpp"
 
 namespace py = pybind11;
 
 namespace proleg::python {
 namespace {
 
-/// Candidates, row by row, and what becomes of them.
+/// Candidates, row by row, and their scores.
 class Evaluation {
  public:
   Evaluation(const sim::Scenario& scenario, std::vector<std::string> names, std::vector<double> candidates,
@@ -102,22 +101,22 @@ class Evaluation {
 };
 
 /// Runs the parts of an evaluation in threads.
-class Crew {
+class WorkerThreads {
  public:
-  Crew(Evaluation& evaluation, const sim::Scenario& scenario, std::size_t workers, std::size_t part)
+  WorkerThreads(Evaluation& evaluation, const sim::Scenario& scenario, std::size_t workers, std::size_t part)
       : evaluation_(evaluation), scenario_(scenario), part_(part), working_(workers) {
     for (std::size_t i = 0; i < workers; ++i) {
       threads_.emplace_back([this] { work(); });
     }
   }
-  ~Crew() {
+  ~WorkerThreads() {
     stop_ = true;
     for (std::thread& thread : threads_) {
       thread.join();
     }
   }
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  WorkerThreads(const WorkerThreads&) = delete;
+  WorkerThreads& operator=(const WorkerThreads&) = delete;
 
   /// Waits until all is done. Throws what a thread threw, or what a signal handler of Python raised.
   void wait() {
@@ -201,8 +200,8 @@ py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names
   evaluation.check();
   if (count > 0) {
     const py::gil_scoped_release released;
-    Crew crew(evaluation, scenario, std::min(workers, count), part_size(scenario, count, workers));
-    crew.wait();
+    WorkerThreads threads(evaluation, scenario, std::min(workers, count), part_size(scenario, count, workers));
+    threads.wait();
   }
   return py::make_tuple(array_of(evaluation.take_scores(), {count, measures.size()}), evaluation.take_failures());
 }

@@ -4,12 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include "tools/proleg/common/build_id.hpp"
-#include "tools/python/module/errors.hpp"
-#include "tools/python/module/evaluation.hpp"
-#include "tools/python/module/recording.hpp"
-#include "tools/python/module/run.hpp"
-#include "tools/python/module/scenario.hpp"
-#include "tools/python/module/worlds.hpp"
+#include "tools/python/module/parts.hpp"
 
 PYBIND11_MODULE(_core, module) {
   module.attr("build_id") = proleg::tools::build_id;

@@ -1,5 +1,3 @@
-#include "tools/python/module/recording.hpp"
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -14,6 +12,7 @@
 #include "sim/record/tsv.hpp"
 #include "tools/python/module/conversions.hpp"
 #include "tools/python/module/long_call.hpp"
+#include "tools/python/module/parts.hpp"
 
 namespace py = pybind11;
 

@@ -1,5 +1,3 @@
-#include "tools/python/module/run.hpp"
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -26,6 +24,7 @@
 #include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/python/module/conversions.hpp"
 #include "tools/python/module/long_call.hpp"
+#include "tools/python/module/parts.hpp"
 
 namespace py = pybind11;
 
@@ -71,19 +70,7 @@ class Log {
       kept_[static_cast<std::size_t>(known - series_names.begin())] = true;
     }
     require_memory(ticks);
-    const auto reserve = [&](Kept which, auto& series) {
-      if (keeps(which)) {
-        series.reserve(ticks);
-      }
-    };
-    reserve(setpoints, setpoints_);
-    reserve(angles, angles_);
-    reserve(torques, torques_);
-    reserve(currents, currents_);
-    reserve(contacts, contacts_);
-    reserve(forces, forces_);
-    reserve(positions, positions_);
-    reserve(orientations, orientations_);
+    for_each_kept([ticks](Kept /*which*/, auto& series) { series.reserve(ticks); });
   }
 
   void add(const sim::Simulation& simulation) {
@@ -116,19 +103,8 @@ class Log {
 
   [[nodiscard]] py::dict arrays() {
     py::dict all;
-    const auto put = [&](Kept which, auto& series) {
-      if (keeps(which)) {
-        all[py::str(std::string(series_names[which]))] = series.array();
-      }
-    };
-    put(setpoints, setpoints_);
-    put(angles, angles_);
-    put(torques, torques_);
-    put(currents, currents_);
-    put(contacts, contacts_);
-    put(forces, forces_);
-    put(positions, positions_);
-    put(orientations, orientations_);
+    for_each_kept(
+        [&all](Kept which, auto& series) { all[py::str(std::string(series_names[which]))] = series.array(); });
     return all;
   }
 
@@ -140,6 +116,24 @@ class Log {
   enum Kept : std::size_t { setpoints, angles, torques, currents, contacts, forces, positions, orientations };
 
   [[nodiscard]] bool keeps(Kept which) const { return kept_[which]; }
+
+  /// Calls use(which, series) for each series that is kept.
+  template <typename Use>
+  void for_each_kept(const Use& use) {
+    const auto call = [&](Kept which, auto& series) {
+      if (keeps(which)) {
+        use(which, series);
+      }
+    };
+    call(setpoints, setpoints_);
+    call(angles, angles_);
+    call(torques, torques_);
+    call(currents, currents_);
+    call(contacts, contacts_);
+    call(forces, forces_);
+    call(positions, positions_);
+    call(orientations, orientations_);
+  }
 
   /// A day of a long robot has more numbers than most computers have memory.
   void require_memory(std::uint32_t ticks) const {

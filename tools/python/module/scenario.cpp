@@ -1,5 +1,3 @@
-#include "tools/python/module/scenario.hpp"
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -31,6 +29,7 @@
 #include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/new/robot_options.hpp"
 #include "tools/python/module/conversions.hpp"
+#include "tools/python/module/parts.hpp"
 
 namespace py = pybind11;
 

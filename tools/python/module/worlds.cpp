@@ -1,5 +1,3 @@
-#include "tools/python/module/worlds.hpp"
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -15,6 +13,7 @@
 #include "sim/loop/driven_worlds.hpp"
 #include "tools/python/module/conversions.hpp"
 #include "tools/python/module/long_call.hpp"
+#include "tools/python/module/parts.hpp"
 
 namespace py = pybind11;
 

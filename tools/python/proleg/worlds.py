@@ -19,7 +19,7 @@ class Worlds:
 
     Robot and world are those of a scenario; its gait does not run. From a set-point on, everything is as in simulate():
     limits, servo pulses, servos, world. So the set-points of a run give the motion of that run, to the last bit. In the
-    reduced engine, worlds make their steps together: 64 are about as fast as eight one after the other.
+    reduced engine, worlds make their steps together.
 
         worlds = proleg.Worlds("caterpillar", n=64)
         observation = worlds.reset(seed=1)

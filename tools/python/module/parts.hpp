@@ -1,0 +1,24 @@
+#pragma once
+
+// The parts of the module proleg._core. Each adds its classes and functions to it.
+
+#include <pybind11/pybind11.h>
+
+namespace proleg::python {
+
+/// The exceptions, and what makes them of the errors of the rooms below: InputError (also a ValueError) of what cannot
+/// be used, FileError (an OSError) of files that cannot be written, RunError (a RuntimeError) of runs that fail. All
+/// are an Error; their text is the one line that a command prints.
+void add_errors(pybind11::module_& module);
+/// The class Scenario: the files of a robot, its gait and its world, read and checked; and what makes one.
+void add_scenario(pybind11::module_& module);
+/// The function simulate(), and the declarations of the measures.
+void add_run(pybind11::module_& module);
+/// The function evaluate(): many candidates of one scenario, on several cores.
+void add_evaluation(pybind11::module_& module);
+/// The function read_recording(): the table of a recording, and what it says of its run.
+void add_recording(pybind11::module_& module);
+/// The class Worlds: robots whose set-points come from Python, tick by tick.
+void add_worlds(pybind11::module_& module);
+
+}  // namespace proleg::python

@@ -54,12 +54,6 @@ class Motion(unittest.TestCase):
 
         np.testing.assert_array_equal(episode(1), episode(1))
 
-    def test_begins_from_the_set_points_of_reset(self):
-        worlds = proleg.Worlds("caterpillar", n=2, seconds=1)
-        worlds.reset(setpoints=[[0.0] * 5, [10.0] * 5])
-        observation, *_ = worlds.step(np.full(5, 10.0))
-        self.assertTrue((observation[1, :5] > observation[0, :5]).all())  # the one is on its way to 10 degrees from 0
-
     def test_stays_when_a_world_has_ended(self):
         worlds = proleg.Worlds("caterpillar", n=2, seconds=0.02)
         worlds.reset()

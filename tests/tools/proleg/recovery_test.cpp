@@ -22,6 +22,7 @@ using host::Remedy;
 using tools::RecoveredModule;
 using tools::Recovery;
 using tools::RecoverySettings;
+using tools::SupplyWait;
 namespace flag = broadcast::module_flag;
 
 constexpr unsigned joints = 5;
@@ -156,6 +157,8 @@ std::vector<std::uint8_t> image_with_schema(std::uint8_t schema) {
   return bytes;
 }
 
+bool begins(const SupplyWait& wait) { return wait.rest == wait.longest; }
+
 /// What proleg recover does on the bus of a robot, and what it knows then.
 class Recovered {
  public:
@@ -284,9 +287,11 @@ TEST(RecoveryTest, AProgramThatIsDeafIsReplacedWhenAPersonSwitchesTheSupplyOffAn
     settings.wait_us = 10 * second;
     std::optional<SupplySwitch> off;
     std::optional<SupplySwitch> on;
-    settings.on_wait = [&] {
-      off.emplace(robot, robot.bus.now() + second, false);
-      on.emplace(robot, robot.bus.now() + second + off_for, true);
+    settings.on_wait = [&](const SupplyWait& wait) {
+      if (begins(wait)) {
+        off.emplace(robot, robot.bus.now() + second, false);
+        on.emplace(robot, robot.bus.now() + second + off_for, true);
+      }
     };
     const Recovered recovered(robot, settings);
     ASSERT_EQ(recovered.of(1).first_faults.size(), 1U);
@@ -295,6 +300,37 @@ TEST(RecoveryTest, AProgramThatIsDeafIsReplacedWhenAPersonSwitchesTheSupplyOffAn
     for (unsigned joint = 0; joint < joints; ++joint) {
       EXPECT_EQ(robot.minor_version(joint), joint == 1 ? 2U : 1U) << "the others only start again";
       EXPECT_TRUE(robot.runs(joint));
+    }
+  }
+}
+
+TEST(RecoveryTest, AModuleThatALookHasLeftInItsBootloaderIsReplacedWhenItsProgramIsDeaf) {
+  for (const bool is_person_there : {true, false}) {
+    SickRobot robot;
+    robot.make_deaf(1);
+    std::optional<SupplySwitch> off;
+    std::optional<SupplySwitch> on;
+    unsigned waits = 0;
+    const auto switch_in_wait = [&](unsigned number) {
+      RecoverySettings settings = with_image();
+      waits = 0;
+      settings.on_wait = [&, number](const SupplyWait& wait) {
+        if (begins(wait) && ++waits == number) {
+          off.emplace(robot, robot.bus.now() + second, false);
+          on.emplace(robot, robot.bus.now() + 2 * second, true);
+        }
+      };
+      return settings;
+    };
+    static_cast<void>(Recovered(robot, switch_in_wait(1), true));
+    // In its first wait this one finds the module in its bootloader, as it finds one with a good program.
+    const Recovered recovered(robot, switch_in_wait(is_person_there ? 2 : 0));
+    EXPECT_EQ(waits, 2U);
+    EXPECT_EQ(recovered.of(1).first_faults.front().kind, ModuleFaultKind::in_bootloader);
+    EXPECT_EQ(recovered.of(1).is_present, is_person_there);
+    EXPECT_EQ(recovered.recovery.are_all_well(), is_person_there);
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      EXPECT_EQ(robot.minor_version(joint), is_person_there && joint == 1 ? 2U : 1U);
     }
   }
 }
@@ -317,7 +353,11 @@ TEST(RecoveryTest, ARobotWhoseSupplyComesOnlyThenKeepsItsProgramsUnlessAModuleIs
     settings.wait_us = 10 * second;
     const SupplySwitch off(robot, robot.bus.now(), false);
     std::optional<SupplySwitch> on;
-    settings.on_wait = [&] { on.emplace(robot, robot.bus.now() + second, true); };
+    settings.on_wait = [&](const SupplyWait& wait) {
+      if (begins(wait)) {
+        on.emplace(robot, robot.bus.now() + second, true);
+      }
+    };
     if (names) {
       settings.serials = {robot.serials[1]};
     }

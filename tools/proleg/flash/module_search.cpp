@@ -53,31 +53,26 @@ void ModuleSearch::wait() {
   }
   has_looked_ = true;
   has_seen_any_ = !modules_.empty();
-  if (settings_.wait_us == 0) {
-    return;
-  }
-  if (settings_.on_wait) {
-    settings_.on_wait();
-  }
-  search_until(bus_.connection().now() + settings_.wait_us, is_heard);
-  if (settings_.on_wait_progress) {
-    settings_.on_wait_progress(0, modules_.size());
+  if (settings_.wait_us > 0) {
+    search(settings_.wait_us, settings_.serials, is_heard);
   }
 }
 
-void ModuleSearch::search_until(Microseconds end, const std::function<bool()>& is_heard) {
+void ModuleSearch::search(Microseconds longest, const std::vector<std::uint32_t>& serials,
+                          const std::function<bool()>& is_heard) {
   TerminalLine line(std::chrono::milliseconds(0));
-  Microseconds report_at = bus_.connection().now();
-  for (Microseconds now = report_at; now < end; now = bus_.connection().now()) {
-    if (settings_.on_wait_progress && now >= report_at) {
-      settings_.on_wait_progress(end - now, modules_.size());
+  const Microseconds begin = bus_.connection().now();
+  const Microseconds end = begin + longest;
+  Microseconds report_at = begin;
+  bool have_answered = false;
+  for (Microseconds now = begin; now < end && !have_answered; now = bus_.connection().now()) {
+    if (settings_.on_wait && now >= report_at) {
+      settings_.on_wait({longest, end - now, modules_.size()});
       report_at += (now - report_at) / second * second + second;
     }
     if (!settings_.report.has_events() && line.is_due()) {
-      line.draw("waits for modules whose program does not start: " +
-                std::to_string((now + settings_.wait_us - end) / second) + " s of " +
-                std::to_string(settings_.wait_us / second) + "; " + std::to_string(modules_.size()) +
-                " modules were seen");
+      line.draw("waits for modules whose program does not start: " + std::to_string((now - begin) / second) + " s of " +
+                std::to_string(longest / second) + "; " + std::to_string(modules_.size()) + " modules were seen");
     }
     if (!is_heard()) {
       bus_.connection().run_until(std::min(end, now + second), is_heard);  // no look ends on a bus without a node
@@ -87,9 +82,10 @@ void ModuleSearch::search_until(Microseconds end, const std::function<bool()>& i
       add(found);
     }
     hold();
-    if (!settings_.serials.empty() && ask(settings_.serials)) {
-      return;
-    }
+    have_answered = !serials.empty() && ask(serials);
+  }
+  if (settings_.on_wait) {
+    settings_.on_wait({longest, 0, modules_.size()});
   }
 }
 
@@ -125,6 +121,27 @@ RecoveredModule* ModuleSearch::find(std::uint32_t serial) {
 }
 
 void ModuleSearch::look() {
+  find_present();
+  await_absent();
+  if (await_supply()) {
+    find_present();  // the supply of the others was switched, too
+  }
+  ask_all();
+  for (RecoveredModule& module : modules_) {
+    diagnose(module);
+  }
+  std::ranges::stable_sort(modules_, {}, [](const RecoveredModule& module) {
+    return module.now.node == 0 ? unsigned{canopen::host_node} : module.now.node;
+  });
+  missing_.clear();
+  for (const std::uint32_t serial : settings_.serials) {
+    if (find(serial) == nullptr) {
+      missing_.push_back(serial);
+    }
+  }
+}
+
+void ModuleSearch::find_present() {
   hold();
   FoundModules found = look_for_modules(bus_, SilentSearch::always);
   silent_ = found.silent;
@@ -139,20 +156,6 @@ void ModuleSearch::look() {
       module->is_present = true;
     } else {
       add(one);
-    }
-  }
-  await_absent();
-  ask_all();
-  for (RecoveredModule& module : modules_) {
-    diagnose(module);
-  }
-  std::ranges::stable_sort(modules_, {}, [](const RecoveredModule& module) {
-    return module.now.node == 0 ? unsigned{canopen::host_node} : module.now.node;
-  });
-  missing_.clear();
-  for (const std::uint32_t serial : settings_.serials) {
-    if (find(serial) == nullptr) {
-      missing_.push_back(serial);
     }
   }
 }
@@ -174,22 +177,46 @@ void ModuleSearch::ask_all() {
   }
 }
 
+std::vector<std::uint32_t> ModuleSearch::absent() const {
+  std::vector<std::uint32_t> serials;
+  for (const RecoveredModule& module : modules_) {
+    if (!module.is_present) {
+      serials.push_back(module.serial());
+    }
+  }
+  return serials;
+}
+
 /// A module that was seen before may have started its program again, which hangs: it comes back.
 void ModuleSearch::await_absent() {
   const Microseconds end = bus_.connection().now() + RecoverySettings{}.wait_us;
-  for (;;) {
-    std::vector<std::uint32_t> absent;
-    for (const RecoveredModule& module : modules_) {
-      if (!module.is_present) {
-        absent.push_back(module.serial());
-      }
-    }
-    if (absent.empty() || bus_.connection().now() >= end) {
-      return;
-    }
-    ask(absent);
+  for (std::vector<std::uint32_t> serials = absent(); !serials.empty() && bus_.connection().now() < end;
+       serials = absent()) {
+    ask(serials);
     hold();
   }
+}
+
+/// Such a module was in its bootloader because its supply had been switched off and on shortly before.
+bool ModuleSearch::await_supply() {
+  constexpr Microseconds shortest = 30 * second;  // for a person at the switch
+  const std::vector<std::uint32_t> serials = absent();
+  const bool is_of_use = settings_.image && std::ranges::any_of(modules_, [](const RecoveredModule& module) {
+                           return !module.is_present && module.tries.contains(Remedy::start);
+                         });
+  if (!is_of_use || has_awaited_supply_) {
+    return false;
+  }
+  has_awaited_supply_ = true;
+  for (RecoveredModule& module : modules_) {
+    if (module.is_present) {
+      module.tries.erase(Remedy::start);  // its program ran, and is to start again
+    }
+  }
+  host::StartHold start_hold(bus_.connection());
+  const host::BusAttachment attachment(bus_.connection(), start_hold);
+  search(std::max(settings_.wait_us, shortest), serials, [] { return true; });
+  return true;
 }
 
 void ModuleSearch::diagnose(RecoveredModule& module) {

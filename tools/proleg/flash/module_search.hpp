@@ -17,6 +17,13 @@
 
 namespace proleg::tools {
 
+/// How far a wait for modules is in which a person may switch the supply off and on.
+struct SupplyWait {
+  Microseconds longest = 0;  ///< it may end before
+  Microseconds rest = 0;     ///< longest at its beginning, 0 when it has ended
+  std::size_t seen = 0;      ///< number of modules that were seen
+};
+
 struct RecoverySettings {
   /// A program that hangs is started five times, a second each, before its bootloader stays on the bus for ten seconds.
   /// Between, nothing shows that there is a module.
@@ -25,11 +32,8 @@ struct RecoverySettings {
   std::optional<host::ImageFile> image;
   bool resets_settings = false;
   ProgramReport report;  ///< of what takes long
-  /// Called when the wait begins: from now on a person may switch the supply off and on.
-  std::function<void()> on_wait;
-  /// Called at once after that, then about once a second, and with the rest 0 when the wait has ended. seen: number of
-  /// modules that were seen.
-  std::function<void(Microseconds rest, std::size_t seen)> on_wait_progress;
+  /// Called when a wait begins, about once a second, and when it has ended.
+  std::function<void(const SupplyWait& wait)> on_wait;
 };
 
 struct RecoveredModule {
@@ -71,10 +75,17 @@ class ModuleSearch {
   [[nodiscard]] std::vector<std::uint8_t> taken_nodes() const;
 
  private:
-  void search_until(Microseconds end, const std::function<bool()>& is_heard);
+  /// Looks for modules, which a person may bring back by the supply, until all of these have answered; empty: until the
+  /// time is over.
+  void search(Microseconds longest, const std::vector<std::uint32_t>& serials, const std::function<bool()>& is_heard);
   void add(const host::FlashCandidate& found);
+  void find_present();
   void ask_all();
+  [[nodiscard]] std::vector<std::uint32_t> absent() const;
   void await_absent();
+  /// Waits, once, for a person who brings back the modules whose program was started and answers nothing. Whether there
+  /// was such a wait.
+  bool await_supply();
   /// The module with this serial number; null: none has it.
   [[nodiscard]] RecoveredModule* find(std::uint32_t serial);
   void diagnose(RecoveredModule& module);
@@ -85,6 +96,7 @@ class ModuleSearch {
   std::vector<std::uint32_t> missing_;
   bool has_looked_ = false;
   bool has_seen_any_ = false;  ///< at the first look
+  bool has_awaited_supply_ = false;
   std::vector<std::uint8_t> silent_;
   std::vector<std::uint8_t> others_;  ///< node ids of nodes that are no modules
 };

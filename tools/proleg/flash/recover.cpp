@@ -174,18 +174,15 @@ Json result_json(const RecoverOptions& options, BusAccess& bus, const Recovery& 
           {"well", recovery.are_all_well()},       {"modules", modules},     {"missing", missing}};
 }
 
-void report_wait(const RecoverySettings& settings) {
-  if (!settings.report.has_events()) {
-    std::cerr << "proleg recover: waits up to " << number_text(static_cast<double>(settings.wait_us) / 1e6)
+void report_wait(const ProgramReport& report, const SupplyWait& wait) {
+  if (!report.has_events() && wait.rest == wait.longest) {
+    std::cerr << "proleg recover: waits up to " << wait.longest / 1'000'000
               << " s for modules whose program does not start: they are silent most of the time; if one answers "
                  "nothing at all, switch the robot's supply off and on now\n";
   }
-}
-
-void report_wait_progress(const RecoverySettings& settings, Microseconds rest, std::size_t seen) {
-  settings.report.print_event("waits", {{"seconds", static_cast<double>(settings.wait_us) / 1e6},
-                                        {"left_s", static_cast<double>(rest) / 1e6},
-                                        {"seen", seen}});
+  report.print_event("waits", {{"seconds", static_cast<double>(wait.longest) / 1e6},
+                               {"left_s", static_cast<double>(wait.rest) / 1e6},
+                               {"seen", wait.seen}});
 }
 
 void report_found(const ProgramReport& report, const Recovery& recovery) {
@@ -203,8 +200,7 @@ void report_found(const ProgramReport& report, const Recovery& recovery) {
 
 int run(const RecoverOptions& options) {
   RecoverySettings settings = parse(options);
-  settings.on_wait = [&] { report_wait(settings); };
-  settings.on_wait_progress = [&](Microseconds rest, std::size_t seen) { report_wait_progress(settings, rest, seen); };
+  settings.on_wait = [&](const SupplyWait& wait) { report_wait(options.report, wait); };
   BusAccess bus(options);
   catch_interrupts();
   options.report.begin();

@@ -28,7 +28,7 @@ aarch64_packages=(g++-aarch64-linux-gnu qemu-user)
 # And what makes the folder of its libraries.
 arm64_packages=("${aarch64_packages[@]}" mmdebstrap)
 # These libraries, for arm64, are in that folder and not installed: some -dev packages exclude those of another processor.
-arm64_libraries=("${library_packages[@]}" libmujoco-dev libopenmpi-dev libboost-mpi-dev)
+arm64_libraries=("${library_packages[@]}" libmujoco-dev libopenmpi-dev libboost-mpi-dev pybind11-dev libpython3-dev)
 
 # Additional packages for the tests: a second compiler with its sanitizers, independent programs.
 test_packages=(

@@ -45,7 +45,9 @@ def names_of(text):
 
 
 def files_below(folder):
-    return {str(path.relative_to(folder)): path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
+    """Files by their places. Python's modules have the processor in their names."""
+    return {str(path.relative_to(folder)).replace("x86_64-linux-gnu.so", "aarch64-linux-gnu.so"): path
+            for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
 
 
 def is_program(path):
@@ -126,8 +128,9 @@ class Arm64Packages(unittest.TestCase):
 
     def test_their_control_files_differ_in_the_versions_of_libraries_alone(self):
         for package in self.debs["arm64"]:
-            # Nothing that apt or dpkg would have to run on the robot.
-            self.assertEqual(sorted(path.name for path in (self.trees["arm64"][package] / "DEBIAN").iterdir()), ["control", "md5sums"])
+            # Nothing that apt or dpkg would have to run on the robot, but what Python's modules need.
+            scripts = ["postinst", "prerm"] if package == "python3-proleg" else []
+            self.assertEqual(sorted(path.name for path in (self.trees["arm64"][package] / "DEBIAN").iterdir()), ["control", "md5sums", *scripts])
             expected, found = (self.fields(architecture, package) for architecture in ("amd64", "arm64"))
             self.assertEqual(found["Architecture"], "arm64")
             self.assertEqual({name for name in {**found, **expected} if found.get(name) != expected.get(name)} - set(OF_AN_ARCHITECTURE), set())
@@ -171,6 +174,12 @@ class Arm64Packages(unittest.TestCase):
             words = ("simulate", "caterpillar", "--seconds", "5", "--engine", engine, "--json")
             found, expected = json.loads(self.emulated("proleg", *words)), json.loads(self.here(*words))
             self.assertEqual([found[name] for name in hashes], [expected[name] for name in hashes], engine)
+
+    def test_python_has_the_bits_of_amd64(self):
+        code = "import proleg; run = proleg.simulate('caterpillar', seconds=2, engine='reduced'); print(run.setpoint_hash, run.servo_hash, run.world_hash)"
+        expected = json.loads(self.here("simulate", "caterpillar", "--seconds", "2", "--engine", "reduced", "--json"))
+        self.assertEqual(self.emulated("python3", "-c", code).split(),
+                         [str(expected[name]) for name in ("setpoint_hash", "servo_hash", "world_hash")])
 
     def test_modules_and_the_flashed_image_repeat_it_also_with_pages_of_16_kib(self):
         words = ("hil", "caterpillar", "--modules", "1=mcu", "--seconds", "0.5", "--json")

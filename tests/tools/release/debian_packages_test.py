@@ -7,6 +7,7 @@ tools/release makes the packages, unless the variable PROLEG_DEBS names a folder
 which of them is missing, and is skipped then. PROLEG_DEBIAN names a folder with a Debian that debootstrap has made before; it is used as it is.
 """
 
+import json
 import os
 import re
 import shutil
@@ -29,7 +30,7 @@ LONGEST = 1200  # s, of one command
 LARGEST = 60e6  # bytes installed
 # What apt and dpkg keep of any package, what runs, and what users write.
 NOT_OF_A_PACKAGE = ("proc", "sys", "dev", "run", "tmp", "var/cache", "var/log", "var/lib/apt", "var/lib/dpkg")
-OWN = ("proleg", "proleg-dev")  # the packages whose files must go
+OWN = ("proleg", "proleg-dev", "python3-proleg")  # the packages whose files must go
 
 
 def run(*command, **options):
@@ -81,8 +82,9 @@ class DebianPackages(unittest.TestCase):
         cls.inside("apt-get", "install", "-y", "--no-install-recommends", "man-db")
         for package in OWN:
             needed = cls.field(package, "Depends")
-            if package == "proleg-dev":  # with the compiler for modules, without the package of the programs
-                needed = re.sub(r"proleg \([^)]*\), ", "", needed) + ", " + cls.field(package, "Recommends")
+            needed = re.sub(r"proleg \([^)]*\), ", "", needed)  # without the package of the programs
+            if package == "proleg-dev":
+                needed += ", " + cls.field(package, "Recommends")  # the compiler for modules
             cls.inside("apt-get", "satisfy", "-y", "--no-install-recommends", needed)
         cls.before = cls.files()
 
@@ -156,7 +158,12 @@ class DebianPackages(unittest.TestCase):
         print(f"the algorithm in its image, with a proof of two cases: {time.monotonic() - begin:.0f} s", flush=True)
         shutil.rmtree(user.home)
 
-    def test_6_purged_it_leaves_nothing(self):
+    def test_6_python_has_the_bits_of_the_command(self):
+        code = "import proleg; run = proleg.simulate('caterpillar', seconds=5); print(run.setpoint_hash, run.servo_hash)"
+        result = json.loads(self.inside("proleg", "simulate", "caterpillar", "--seconds", "5", "--json"))
+        self.assertEqual(self.inside("python3", "-c", code).split(), [str(result[name]) for name in ("setpoint_hash", "servo_hash")])
+
+    def test_7_purged_they_leave_nothing(self):
         self.inside("apt-get", "purge", "-y", *OWN)
         self.assertEqual(sorted(self.files() ^ self.before), [])
         self.assertEqual([str(path) for path in (self.root / "var/lib/dpkg").rglob("*proleg*")], [])

@@ -95,6 +95,7 @@ ${declarations}}  // namespace proleg::user
 #define PROLEG_USER_ALGORITHMS${table}
 #include \"${tree}shared/gait/registry.cpp\"
 " @ONLY)
+  set_source_files_properties(${files} PROPERTIES COMPILE_OPTIONS -fsigned-char)
   list(JOIN names ", " listed)
   message(STATUS "Algorithms of users: ${listed}")
   set(${out} ${registry} ${files} PARENT_SCOPE)
@@ -113,8 +114,8 @@ macro(proleg_algorithm_project)
   set(CMAKE_CXX_STANDARD_REQUIRED ON)
   set(CMAKE_CXX_EXTENSIONS OFF)
   proleg_use_ccache()
-  # As the core and the images: what compiles here compiles there.
-  add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -ffp-contract=off)
+  # As the core and the images: what compiles here compiles there. Without the option, char has a sign on x86-64, and none on ARM.
+  add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -ffp-contract=off -fsigned-char)
   file(GLOB core_sources ${PROLEG_SOURCE}/shared/fixed/*.cpp ${PROLEG_SOURCE}/shared/gait/*.cpp ${PROLEG_SOURCE}/shared/kernel/*.cpp)
   add_library(proleg_core STATIC ${core_sources})
   target_include_directories(proleg_core PUBLIC ${PROLEG_SOURCE})

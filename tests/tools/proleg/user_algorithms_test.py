@@ -580,6 +580,11 @@ class Verify(unittest.TestCase):
         self.assertRegex(result.stdout, r"cost +\d+ instructions a tick at worst")
         self.assertRegex(result.stdout, r"stack +\d+ bytes at most")
 
+    def test_char_has_its_sign_on_every_processor(self):
+        self.change("next[current_phase] = add_wrapping(", "next[current_phase] = static_cast<char>(state[0]) + add_wrapping(")
+        result = proleg("verify", self.algorithm, "--cases", "2")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
     def verify_json(self, *options):
         result = proleg("verify", self.algorithm, "--json", *options)
         return result, json.loads(result.stdout)

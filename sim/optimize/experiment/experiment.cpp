@@ -90,6 +90,31 @@ std::string method_text(const PagmoSettings& method) {
       .text();
 }
 
+std::string method_text(const MapElitesSettings& method) {
+  return SettingsText()
+      .add("population", method.population)
+      .add("generations", method.generations)
+      .add("first", method.first)
+      .add("noise", method.noise)
+      .add("line", method.line)
+      .add("start", method.start)
+      .text();
+}
+
+std::string axes_text(const std::vector<MapAxis>& axes) {
+  std::string text;
+  for (const MapAxis& axis : axes) {
+    text += SettingsText()
+                .add("measure", std::string(sim::declaration_of(axis.measure).name))
+                .add("lowest", axis.lowest)
+                .add("highest", axis.highest)
+                .add("cells", axis.cells)
+                .text() +
+            "\n";
+  }
+  return text;
+}
+
 std::string space_text(const SearchSpace& space) {
   std::string text;
   for (const Dimension& dimension : space.dimensions) {
@@ -222,22 +247,27 @@ std::string terms_text(const Objective& objective) {
 }
 
 std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
-  return {{"method",
-           std::visit([&](const auto& method) { return method_name(experiment.method) + " " + method_text(method); },
-                      experiment.method)},
-          {"seed", SettingsText().add("seed", experiment.seed).text()},
-          {"search space", space_text(experiment.space)},
-          {"fitness", objectives_text(experiment)},
-          {"trials", trials_text(experiment.trials)},
-          {"racing", SettingsText().add("after", experiment.racing.after).add("keep", experiment.racing.keep).text()},
-          {"confirmation", SettingsText()
-                               .add("candidates", experiment.confirmation.candidates)
-                               .add("runs", experiment.confirmation.runs)
-                               .text()},
-          {"baseline", SettingsText().add("has_baseline", experiment.has_baseline).text()},
-          {"reuse", SettingsText().add("reuse", experiment.reuse).text()},
-          {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
-          {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
+  std::vector<ExperimentPart> parts{
+      {"method",
+       std::visit([&](const auto& method) { return method_name(experiment.method) + " " + method_text(method); },
+                  experiment.method)},
+      {"seed", SettingsText().add("seed", experiment.seed).text()},
+      {"search space", space_text(experiment.space)},
+      {"fitness", objectives_text(experiment)},
+      {"trials", trials_text(experiment.trials)},
+      {"racing", SettingsText().add("after", experiment.racing.after).add("keep", experiment.racing.keep).text()},
+      {"confirmation", SettingsText()
+                           .add("candidates", experiment.confirmation.candidates)
+                           .add("runs", experiment.confirmation.runs)
+                           .text()},
+      {"baseline", SettingsText().add("has_baseline", experiment.has_baseline).text()},
+      {"reuse", SettingsText().add("reuse", experiment.reuse).text()},
+      {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+      {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
+  if (!experiment.axes.empty()) {  // stores of other methods, which earlier versions made, have no such part
+    parts.push_back({"map", axes_text(experiment.axes)});
+  }
+  return parts;
 }
 
 void set_trials(Experiment& experiment, std::uint32_t count) {
@@ -249,12 +279,14 @@ void set_trials(Experiment& experiment, std::uint32_t count) {
 }
 
 std::uint64_t planned_evaluations(const Experiment& experiment) {
-  const auto* const settings = std::get_if<PagmoSettings>(&experiment.method);
-  if (settings == nullptr) {
+  std::uint64_t all = experiment.has_baseline ? 1 : 0;
+  if (const auto* const pagmo = std::get_if<PagmoSettings>(&experiment.method)) {
+    all += (std::uint64_t{pagmo->generations} + 1) * pagmo->population;
+  } else if (const auto* const map = std::get_if<MapElitesSettings>(&experiment.method)) {
+    all += map->first + std::uint64_t{map->generations} * map->population;
+  } else {
     return experiment.evaluations;
   }
-  const std::uint64_t all =
-      (std::uint64_t{settings->generations} + 1) * settings->population + (experiment.has_baseline ? 1 : 0);
   return experiment.evaluations == 0 ? all : std::min(all, experiment.evaluations);
 }
 

@@ -105,10 +105,36 @@ struct PagmoSettings {
   std::optional<double> mutation;   ///< sga, nsga2: their m
 };
 
+/// MAP-Elites: a map over measures of the run (Experiment::axes) keeps the best candidate of each of its cells, and new
+/// candidates are variations of those (J.-B. Mouret, J. Clune, "Illuminating search spaces by mapping elites",
+/// arXiv:1504.04909, 2015). The variation is Iso+LineDD (V. Vassiliades, J.-B. Mouret, "Discovering the elite
+/// hypervolume by leveraging interspecies correlation", GECCO 2018): of each value of one of them by noise of its own,
+/// and of all values on the line to another one.
+struct MapElitesSettings {
+  std::uint32_t population = 256;    ///< candidates of a generation
+  std::uint32_t generations = 1000;  ///< largest number of generations after the first
+  std::uint32_t first = 1000;        ///< random candidates of the first generation
+  double noise = 0.02;               ///< standard deviation of the noise, as a share of a value's range
+  double line = 0.2;                 ///< standard deviation on the line, as a share of the distance
+  Start start = Start::random;       ///< scenario: its values are among the first
+};
+
 /// The options above that an algorithm of pagmo has: sigma0, ...
 [[nodiscard]] std::vector<std::string> pagmo_options(std::string_view algorithm);
 
-using MethodSettings = std::variant<GreatDelugeSettings, GeneticSettings, PagmoSettings>;
+using MethodSettings = std::variant<GreatDelugeSettings, GeneticSettings, PagmoSettings, MapElitesSettings>;
+
+/// An axis of a map of gaits: the range of a measure in cells of equal width.
+struct MapAxis {
+  sim::Measure measure = sim::Measure::distance;
+  double lowest = 0.0;      ///< in the measure's unit; a value below is in the first cell
+  double highest = 1.0;     ///< above lowest; a value above is in the last cell
+  std::uint32_t cells = 2;  ///< 2 to max_map_cells
+};
+
+inline constexpr std::size_t min_map_axes = 2;
+inline constexpr std::size_t max_map_axes = 4;
+inline constexpr std::size_t max_map_cells = 50'000;  ///< of all axes together
 
 /// Settings that stop a candidate early if it will not come near the score it needs. Racing is possible only for one
 /// objective, which is the distance or the speed.
@@ -136,7 +162,9 @@ struct Experiment {
   sim::Scenario scenario;  ///< read from its file; its remarks include those on this file
   SearchSpace space;
   std::vector<Objective> objectives;  ///< at least one
-  double heading_deg = 0.0;           ///< direction of `speed`: 0 is that of the head at the start, 90 its left
+  /// Of MAP-Elites, otherwise none. Objective 1 + i is the measure of axis i; its `failed` marks a run without it.
+  std::vector<MapAxis> axes;
+  double heading_deg = 0.0;  ///< direction of `speed`: 0 is that of the head at the start, 90 its left
   Trials trials;
   Racing racing;
   ConfirmationSettings confirmation;
@@ -171,7 +199,7 @@ void set_trials(Experiment& experiment, std::uint32_t count);
 /// is lower. 0: unknown.
 [[nodiscard]] std::uint64_t planned_evaluations(const Experiment& experiment);
 
-/// Short name of a method: great-deluge, genetic, or pagmo's name.
+/// Short name of a method: great-deluge, genetic, map-elites, or pagmo's name.
 [[nodiscard]] std::string method_name(const MethodSettings& method);
 
 /// A part of an experiment as exact text: two experiments agree in the part if the texts are equal.

@@ -150,8 +150,15 @@ void write_properties(const ExperimentForm& form, const sim::Scenario& scenario,
   }
 }
 
+/// The axes of a form whose method was changed to one without a map are kept, and not written.
+bool has_map(const ExperimentForm& form) {
+  const auto its = std::ranges::find(methods(), form.method, &MethodDeclaration::tag);
+  return its != methods().end() && its->has_map;
+}
+
 void write_objectives(const ExperimentForm& form, Lines& lines) {
-  if (form.objectives.empty() && trimmed(form.heading).empty()) {
+  const std::size_t axes = has_map(form) ? form.axes.size() : 0;
+  if (form.objectives.empty() && axes == 0 && trimmed(form.heading).empty()) {
     return;
   }
   Attributes heading;
@@ -178,6 +185,11 @@ void write_objectives(const ExperimentForm& form, Lines& lines) {
       add_if_any(term, "weight", its.terms[k].weight);
       lines.element("term", field + ".terms." + std::to_string(k), term);
     }
+  }
+  for (std::size_t i = 0; i < axes; ++i) {
+    const AxisForm& its = form.axes[i];
+    lines.element("axis", "axes." + std::to_string(i),
+                  {{"measure", its.measure}, {"lowest", its.lowest}, {"highest", its.highest}, {"cells", its.cells}});
   }
 }
 
@@ -289,6 +301,9 @@ std::vector<ParameterForm> parameter_forms(const XmlElement& properties, const X
 std::vector<ObjectiveForm> objective_forms(const XmlElement& fitness) {
   std::vector<ObjectiveForm> objectives;
   for (const XmlElement& element : fitness.children()) {
+    if (element.is("axis")) {
+      continue;
+    }
     ObjectiveForm objective;
     objective.name = element.attribute("name").value_or("");
     objective.goal = element.attribute("goal").value_or("");
@@ -302,6 +317,17 @@ std::vector<ObjectiveForm> objective_forms(const XmlElement& fitness) {
     objectives.push_back(std::move(objective));
   }
   return objectives;
+}
+
+std::vector<AxisForm> axis_forms(const XmlElement& fitness) {
+  std::vector<AxisForm> axes;
+  for (const XmlElement& element : fitness.children()) {
+    if (element.is("axis")) {
+      const auto attribute = [&](const char* name) { return element.attribute(name).value_or(""); };
+      axes.push_back({attribute("measure"), attribute("lowest"), attribute("highest"), attribute("cells")});
+    }
+  }
+  return axes;
 }
 
 void add_runs(const XmlElement& evaluation, ExperimentForm& form) {
@@ -378,6 +404,7 @@ ExperimentForm read_experiment_form(const std::filesystem::path& path, sim::File
   if (const auto fitness = section.child("fitness")) {
     form.heading = fitness->attribute("heading").value_or("");
     form.objectives = objective_forms(*fitness);
+    form.axes = axis_forms(*fitness);
   }
   if (const auto evaluation = section.child("evaluation")) {
     add_runs(*evaluation, form);

@@ -43,6 +43,13 @@ struct ObjectiveForm {
   std::vector<TermForm> terms;
 };
 
+struct AxisForm {
+  std::string measure;
+  std::string lowest;
+  std::string highest;
+  std::string cells;
+};
+
 struct TrialsForm {
   std::string count;
   std::string aggregate;
@@ -71,6 +78,7 @@ struct ExperimentForm {
   std::vector<ParameterForm> parameters;
   std::string heading;
   std::vector<ObjectiveForm> objectives;  ///< none: the distance
+  std::vector<AxisForm> axes;             ///< of a method with a map
   std::string evaluations;
   std::string seed;
   bool reuse = true;

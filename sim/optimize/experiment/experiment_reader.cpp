@@ -120,6 +120,9 @@ Objective read_objective(const XmlElement& element) {
 std::vector<Objective> read_objectives(const XmlElement& fitness) {
   std::vector<Objective> objectives;
   for (const XmlElement& child : fitness.children()) {
+    if (child.is("axis")) {
+      continue;
+    }
     Objective objective = read_objective(child);
     if (std::ranges::find(objectives, objective.name, &Objective::name) != objectives.end()) {
       child.refuse("a second objective " + in_quotes(objective.name), "another name");
@@ -136,7 +139,41 @@ std::vector<Objective> read_objectives(const XmlElement& fitness) {
   return objectives;
 }
 
-/// The objective of a file without <fitness>: the distance, as in the thesis.
+MapAxis read_axis(const XmlElement& element) {
+  element.allow({"measure", "lowest", "highest", "cells"}, {});
+  MapAxis axis;
+  axis.measure = read_measure(element);
+  axis.lowest = read_number_attribute(element, "lowest", scores);
+  axis.highest = read_number_attribute(element, "highest", scores);
+  if (axis.highest <= axis.lowest) {
+    element.refuse("highest " + number_text(axis.highest) + " in " + element.label(),
+                   "more than lowest, which is " + number_text(axis.lowest));
+  }
+  axis.cells = static_cast<std::uint32_t>(read_whole_attribute(element, "cells", 2, max_map_cells));
+  return axis;
+}
+
+/// Reads the axes of a map, and adds their measures to the objectives.
+void read_axes(const XmlElement& fitness, Experiment& experiment) {
+  for (const XmlElement& child : fitness.children()) {
+    if (!child.is("axis")) {
+      continue;
+    }
+    const MapAxis axis = read_axis(child);
+    Objective measured;
+    measured.name = declaration_of(axis.measure).name;
+    measured.terms.push_back({axis.measure, 1.0});
+    measured.failed = scores.min;
+    if (std::ranges::find(experiment.objectives, measured.name, &Objective::name) != experiment.objectives.end()) {
+      child.refuse("a second " + in_quotes(measured.name) + " among objective and axes",
+                   "another measure, or another name for the objective");
+    }
+    experiment.axes.push_back(axis);
+    experiment.objectives.push_back(std::move(measured));
+  }
+}
+
+/// The objective of a file without <fitness>, or with axes only: the distance, as in the thesis.
 std::vector<Objective> default_objectives() {
   Objective distance;
   distance.name = declaration_of(sim::Measure::distance).name;
@@ -288,11 +325,15 @@ Experiment read(const std::filesystem::path& path, sim::FileSource& files,
   experiment.space = read_search_space(properties, section.required_child("genome"), experiment.scenario);
   experiment.objectives = default_objectives();
   if (const auto fitness = section.child("fitness")) {
-    fitness->allow({"heading"}, {"objective"});
+    constexpr std::array<std::string_view, 1> fitness_attributes{"heading"};
+    constexpr std::array<std::string_view, 2> fitness_tags{"objective", "axis"};
+    const bool has_map = std::holds_alternative<MapElitesSettings>(experiment.method);
+    fitness->allow(fitness_attributes, std::span(fitness_tags).first(has_map ? 2 : 1));
     if (fitness->attribute("heading")) {
       experiment.heading_deg = read_number_attribute(*fitness, "heading", headings);
     }
     experiment.objectives = read_objectives(*fitness);
+    read_axes(*fitness, experiment);
   }
   if (const auto evaluation = section.child("evaluation")) {
     read_evaluation(*evaluation, experiment);

@@ -111,6 +111,26 @@ void check_reevaluations(const Experiment& experiment, const GreatDelugeSettings
   }
 }
 
+/// The axes have measures of their own: only the first objective rates.
+void check_map(const Experiment& experiment) {
+  const std::size_t count = experiment.axes.size();
+  if (count < min_map_axes || count > max_map_axes) {
+    refuse(experiment, std::to_string(count) + (count == 1 ? " <axis>" : " <axis>es") + " in <fitness>", "two to four");
+  }
+  std::size_t cells = 1;
+  for (const MapAxis& axis : experiment.axes) {
+    cells *= axis.cells;
+    if (cells > max_map_cells) {
+      refuse(experiment, "more than " + std::to_string(max_map_cells) + " cells of the map", "fewer, in all");
+    }
+  }
+  const std::size_t objectives = experiment.objectives.size() - count;
+  if (objectives != 1) {
+    refuse(experiment, std::to_string(objectives) + " objectives for map-elites",
+           "one objective (a weighted sum of measures is one)");
+  }
+}
+
 }  // namespace
 
 std::span<const PagmoDeclaration> pagmo_declarations() { return pagmo_entries; }
@@ -121,6 +141,8 @@ void check_method(const Experiment& experiment) {
   } else if (const auto* deluge = std::get_if<GreatDelugeSettings>(&experiment.method)) {
     check_objectives(experiment, "great-deluge", ObjectiveCount::one);
     check_reevaluations(experiment, *deluge);
+  } else if (std::holds_alternative<MapElitesSettings>(experiment.method)) {
+    check_map(experiment);
   } else {
     check_objectives(experiment, "genetic", ObjectiveCount::one);
   }

@@ -50,12 +50,13 @@ struct MethodDeclaration {
   std::string_view title;
   std::string_view help;
   ObjectiveCount objectives;
+  bool has_map;  ///< whether it needs the axes of a map (Experiment::axes)
   std::vector<MethodSetting> settings;
 };
 
 /// The tags of the method sections: an experiment file has one as its outermost tag.
-inline constexpr std::array<std::string_view, 6> method_tags{"geneticAlgorithm",      "greatDeluge", "cmaEs",
-                                                             "differentialEvolution", "nsga2",       "pagmo"};
+inline constexpr std::array<std::string_view, 7> method_tags{
+    "geneticAlgorithm", "greatDeluge", "cmaEs", "differentialEvolution", "nsga2", "pagmo", "mapElites"};
 
 /// All methods: those with sections of their own, then the others of pagmo.
 [[nodiscard]] const std::vector<MethodDeclaration>& methods();

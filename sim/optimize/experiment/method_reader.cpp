@@ -210,6 +210,24 @@ const SettingTable<PagmoSettings>& pagmo_table(const std::string& algorithm) {
   return found == tables.end() ? unknown : found->second;
 }
 
+const SettingTable<MapElitesSettings>& map_elites_table() {
+  static const SettingTable<MapElitesSettings> table = [] {
+    using Settings = MapElitesSettings;
+    SettingTable<Settings> made{Settings{}};
+    made.add_whole("popsize", &Settings::population, 1, max_population, "candidates of a generation");
+    made.add_whole("generations", &Settings::generations, 1, max_candidates, "generations at most, after the first");
+    made.add_whole("first", &Settings::first, 1, max_candidates, "candidates of the first generation, drawn at random");
+    made.add_number("noise", &Settings::noise, probabilities,
+                    "standard deviation of the noise on each value, as a share of its range");
+    made.add_number("line", &Settings::line, probabilities,
+                    "standard deviation of the step towards or from another candidate of the map, as a share of the "
+                    "distance to it");
+    add_start(made);
+    return made;
+  }();
+  return table;
+}
+
 PagmoSettings read_pagmo(const XmlElement& properties, const std::string& algorithm) {
   PagmoSettings settings = pagmo_table(algorithm).read(properties);
   settings.algorithm = algorithm;
@@ -238,6 +256,9 @@ MethodSettings read_method(const XmlElement& section, const XmlElement& properti
   if (section.is("greatDeluge")) {
     return great_deluge_table().read(properties);
   }
+  if (section.is("mapElites")) {
+    return map_elites_table().read(properties);
+  }
   for (const auto& [tag, algorithm] : pagmo_sections) {
     if (section.is(tag)) {
       return read_pagmo(properties, std::string(algorithm));
@@ -250,7 +271,7 @@ const std::vector<MethodDeclaration>& methods() {
   static const std::vector<MethodDeclaration> all = [] {
     std::vector<MethodDeclaration> made;
     const auto add_pagmo = [&](const PagmoDeclaration& its, std::string_view tag) {
-      made.push_back({tag, tag == "pagmo" ? its.name : std::string_view(), its.title, its.help, its.objectives,
+      made.push_back({tag, tag == "pagmo" ? its.name : std::string_view(), its.title, its.help, its.objectives, false,
                       pagmo_table(std::string(its.name)).declarations()});
     };
     const auto section_of = [](const PagmoDeclaration& its) {
@@ -262,11 +283,15 @@ const std::vector<MethodDeclaration>& methods() {
     made.push_back(
         {"greatDeluge", "", "Great deluge",
          "the thesis's method: it accepts what is above a water level that rises; few settings, steady progress",
-         ObjectiveCount::one, great_deluge_table().declarations()});
+         ObjectiveCount::one, false, great_deluge_table().declarations()});
     made.push_back(
         {"geneticAlgorithm", "", "Genetic algorithm",
          "the thesis's other method, of GAlib: crosses and mutates candidates; for sets of values without an order",
-         ObjectiveCount::one, genetic_table().declarations()});
+         ObjectiveCount::one, false, genetic_table().declarations()});
+    made.push_back(
+        {"mapElites", "", "MAP-Elites",
+         "fills a map over measures of the run with the best gait of each kind: many different gaits, not one",
+         ObjectiveCount::one, true, map_elites_table().declarations()});
     for (const PagmoDeclaration& its : pagmo_declarations()) {
       if (section_of(its) == pagmo_sections.end()) {
         add_pagmo(its, "pagmo");
@@ -295,6 +320,7 @@ std::string method_name(const MethodSettings& method) {
     std::string operator()(const GreatDelugeSettings& /*settings*/) const { return "great-deluge"; }
     std::string operator()(const GeneticSettings& /*settings*/) const { return "genetic"; }
     std::string operator()(const PagmoSettings& settings) const { return settings.algorithm; }
+    std::string operator()(const MapElitesSettings& /*settings*/) const { return "map-elites"; }
   };
   return std::visit(Name(), method);
 }

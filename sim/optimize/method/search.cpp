@@ -5,6 +5,7 @@
 #include "sim/optimize/experiment/method_declaration.hpp"
 #include "sim/optimize/method/genetic.hpp"
 #include "sim/optimize/method/great_deluge.hpp"
+#include "sim/optimize/method/map_elites.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 
 namespace proleg::optimize {
@@ -31,6 +32,9 @@ std::string search(const Experiment& experiment, std::uint32_t run, FitnessSourc
   }
   if (std::holds_alternative<GeneticSettings>(experiment.method)) {
     return search_genetic(experiment, run, source);
+  }
+  if (std::holds_alternative<MapElitesSettings>(experiment.method)) {
+    return search_map_elites(experiment, run, source);
   }
   return search_with_pagmo(experiment, run, source);
 }

@@ -26,6 +26,15 @@ namespace proleg::optimize {
 [[nodiscard]] std::vector<std::size_t> pareto_front(const Experiment& experiment,
                                                     std::span<const Evaluation> evaluations);
 
+/// Draws as SVG the map of gaits of an experiment with axes: the score of each filled cell as a colour. Axes 1 and 2
+/// are those of a plot; axes 3 and 4 repeat it in columns and rows. Below are coverage and QD score (GaitMap) against
+/// evaluations.
+[[nodiscard]] std::string draw_gait_map(const Experiment& experiment, std::span<const Evaluation> evaluations);
+
+/// Table like evaluations_table(): the candidate of each filled cell of the map of gaits, by cell. The first columns
+/// are the number of the cell on each axis, from 1 ("cell:height").
+[[nodiscard]] std::string gait_map_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
+
 /// Table with tabs and a header line: each evaluation with its values, scores and measures. Numbers are the shortest
 /// that read back as the same; a measure that is not defined is an empty cell. Columns: run, evaluation, each dimension
 /// ("amplitude:J5 (deg)"), each objective ("score:distance (m)"), each measure ("distance (m)"), simulated_s, wall_s,

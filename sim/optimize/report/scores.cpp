@@ -9,6 +9,14 @@
 
 namespace proleg::optimize {
 
+GaitMap gait_map(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  GaitMap map(experiment);
+  for (std::size_t i = 0; i < evaluations.size(); ++i) {
+    map.add(i, evaluations[i].scores);
+  }
+  return map;
+}
+
 std::string with_unit(std::string_view name, std::string_view unit) {
   return std::string(name) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
 }

@@ -9,9 +9,13 @@
 
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/gait_map.hpp"
 #include "sim/record/plot_frame.hpp"
 
 namespace proleg::optimize {
+
+/// The map of an experiment with axes. Its candidates are positions in `evaluations`.
+[[nodiscard]] GaitMap gait_map(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
 /// Name and unit as text: "distance (m)".
 [[nodiscard]] std::string with_unit(std::string_view name, std::string_view unit);

@@ -68,6 +68,27 @@ std::string evaluations_table(const Experiment& experiment, std::span<const Eval
   return table;
 }
 
+std::string gait_map_table(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  TableLine header;
+  for (std::size_t axis = 0; axis < experiment.axes.size(); ++axis) {
+    header.add("cell:" + one_line(experiment.objectives[1 + axis].name));
+  }
+  add_header(experiment, header);
+  std::string table = header.finish();
+  const GaitMap map = gait_map(experiment, evaluations);
+  std::vector<GaitMap::Elite> elites = map.elites();
+  std::ranges::sort(elites, {}, &GaitMap::Elite::cell);
+  for (const GaitMap::Elite& elite : elites) {
+    TableLine line;
+    for (const std::uint32_t number : map.place(elite.cell)) {
+      line.add(number + 1);
+    }
+    add_evaluation(experiment, evaluations[elite.candidate], line);
+    table += line.finish();
+  }
+  return table;
+}
+
 std::string best_table(const Experiment& experiment, std::span<const Evaluation> evaluations, std::size_t count) {
   TableLine header;
   header.add("rank");

@@ -9,6 +9,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/report/report.hpp"
+#include "sim/optimize/report/scores.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/run_measures.hpp"
@@ -292,7 +293,10 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
   if (result != nullptr && !result->confirmations.empty()) {
     write("confirmation.tsv", optimize::confirmation_table(experiment, result->confirmations));
   }
-  if (experiment.objectives.size() > 1) {
+  if (!experiment.axes.empty()) {
+    write("map.tsv", optimize::gait_map_table(experiment, outcome.evaluations));
+    write("map.svg", optimize::draw_gait_map(experiment, outcome.evaluations));
+  } else if (experiment.objectives.size() > 1) {
     std::vector<Evaluation> front;
     for (const std::size_t position : optimize::pareto_front(experiment, outcome.evaluations)) {
       front.push_back(outcome.evaluations[position]);
@@ -309,6 +313,13 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
 void print_result(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result) {
   print_best(experiment, result);
   print_baseline(experiment, result);
+  if (!experiment.axes.empty()) {
+    const optimize::GaitMap map = optimize::gait_map(experiment, outcome.evaluations);
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), "%zu of %zu cells filled (%.1f %%), QD score %s", map.elites().size(),
+                  map.cells(), 100.0 * map.coverage(), optimize::rounded_text(map.qd_score()).c_str());
+    print_line("map", text.data());
+  }
   const optimize::SearchProgress& progress = outcome.progress;
   std::printf("%-24s %llu: %llu simulated now, %llu reused, %llu from the store\n", "evaluations",
               static_cast<unsigned long long>(progress.evaluations),

@@ -40,9 +40,9 @@ struct SearchResult {
                                      std::vector<optimize::Confirmation> confirmations);
 
 /// The files that a search writes into its folder, beside its store.
-inline constexpr std::array<std::string_view, 10> search_result_files{
-    "evaluations.tsv", "best.tsv",    "learning_curve.svg",  "confirmation.tsv",   "pareto.tsv",
-    "pareto.svg",      "result.json", "best.simulation.xml", "best.actuation.xml", "best.files"};
+inline constexpr std::array<std::string_view, 12> search_result_files{
+    "evaluations.tsv", "best.tsv", "learning_curve.svg", "confirmation.tsv",    "pareto.tsv",         "pareto.svg",
+    "map.tsv",         "map.svg",  "result.json",        "best.simulation.xml", "best.actuation.xml", "best.files"};
 
 /// Throws BadInput if a search in this folder would write over a file of its experiment.
 void refuse_overwriting(const optimize::Experiment& experiment, const std::filesystem::path& folder);

@@ -170,6 +170,10 @@ ExperimentForm read_experiment_json(const json& experiment) {
   for (const json& objective : objects_of(experiment, "objectives", optimize::max_objectives)) {
     form.objectives.push_back(objective_of(objective));
   }
+  for (const json& axis : objects_of(experiment, "axes", optimize::max_map_axes)) {
+    form.axes.push_back(
+        {member(axis, "measure"), member(axis, "lowest"), member(axis, "highest"), member(axis, "cells")});
+  }
   form.evaluations = member(experiment, "evaluations");
   form.seed = member(experiment, "seed");
   form.reuse = argument<bool>(experiment, "reuse", "true or false").value_or(true);
@@ -202,6 +206,11 @@ json experiment_json(const ExperimentForm& form) {
                           {"failed", objective.failed},
                           {"terms", std::move(terms)}});
   }
+  json axes = json::array();
+  for (const optimize::AxisForm& axis : form.axes) {
+    axes.push_back(
+        {{"measure", axis.measure}, {"lowest", axis.lowest}, {"highest", axis.highest}, {"cells", axis.cells}});
+  }
   json trials;
   if (form.trials) {
     const optimize::TrialsForm& its = *form.trials;
@@ -227,6 +236,7 @@ json experiment_json(const ExperimentForm& form) {
           {"settings", form.settings},
           {"parameters", std::move(parameters)},
           {"objectives", std::move(objectives)},
+          {"axes", std::move(axes)},
           {"heading", form.heading},
           {"evaluations", form.evaluations},
           {"seed", form.seed},
@@ -239,6 +249,9 @@ json experiment_json(const ExperimentForm& form) {
 json search_methods_json() {
   json methods = json::array();
   for (const optimize::MethodDeclaration& method : optimize::methods()) {
+    if (method.has_map) {
+      continue;  // the page has no fields for its axes
+    }
     json settings = json::array();
     for (const optimize::MethodSetting& setting : method.settings) {
       settings.push_back(setting_json(setting));

@@ -302,7 +302,7 @@ TEST(BadExperiments, AWrongOutermostTagIsRejectedWithTheKnownOnes) {
   files.texts["top.optimise.xml"] = "<hillClimbing/>";
   EXPECT_EQ(message_of(files),
             "top.optimise.xml:1: found <hillClimbing> as the outermost tag, expected <geneticAlgorithm>, "
-            "<greatDeluge>, <cmaEs>, <differentialEvolution>, <nsga2>, <pagmo>");
+            "<greatDeluge>, <cmaEs>, <differentialEvolution>, <nsga2>, <pagmo>, <mapElites>");
 }
 
 TEST(BadExperiments, AMissingFileIsNamed) {

@@ -226,6 +226,9 @@ TEST(MethodDeclarations, HaveTheDefaultsAndRangesOfTheReader) {
     form.method = method.tag;
     form.algorithm = method.algorithm;
     form.settings.clear();
+    if (method.has_map) {
+      form.axes = {{"height", "0", "0.1", "10"}, {"duty_factor", "0", "1", "10"}};
+    }
     const std::string usual = text_of(parts_of(experiment_of(form, scenario)));
     for (const MethodSetting& setting : method.settings) {
       EXPECT_FALSE(setting.help.empty()) << name << setting.tag;

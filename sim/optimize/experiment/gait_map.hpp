@@ -1,0 +1,55 @@
+#pragma once
+
+// A map of gaits: the best candidate of each cell of a grid over measures of the run (MapElitesSettings).
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/optimize/experiment/experiment.hpp"
+
+namespace proleg::optimize {
+
+class GaitMap {
+ public:
+  /// A cell that is filled.
+  struct Elite {
+    std::size_t cell = 0;       ///< place(cell) has its place on the axes
+    std::size_t candidate = 0;  ///< what add() was given
+    double score = 0.0;         ///< of the objective
+  };
+
+  /// experiment: has axes, and must outlive the map.
+  explicit GaitMap(const Experiment& experiment);
+
+  /// Puts a candidate into its cell if that is empty, or has a worse candidate; an equal one stays. candidate: any
+  /// number by which the caller knows it. scores: of all objectives. Returns whether it did; never for a run that
+  /// failed, or lacks the measure of an axis.
+  bool add(std::size_t candidate, std::span<const double> scores);
+
+  /// The filled cells, in the order in which they were filled.
+  [[nodiscard]] const std::vector<Elite>& elites() const { return elites_; }
+  [[nodiscard]] std::size_t cells() const { return positions_.size(); }
+  /// The place of a cell: its number on each axis, from 0.
+  [[nodiscard]] std::vector<std::uint32_t> place(std::size_t cell) const;
+  /// Share of the cells that are filled.
+  [[nodiscard]] double coverage() const { return static_cast<double>(elites_.size()) / static_cast<double>(cells()); }
+  /// Sum over the filled cells of how much better their scores are than that of a run that fails (QD score: J. K. Pugh,
+  /// L. B. Soros, K. O. Stanley, "Quality diversity: a new frontier for evolutionary computation", Frontiers in
+  /// Robotics and AI 3, 2016).
+  [[nodiscard]] double qd_score() const { return qd_score_; }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  [[nodiscard]] std::optional<std::size_t> cell_of(std::span<const double> scores) const;
+  [[nodiscard]] double gain(double score) const;
+
+  const Experiment& experiment_;
+  std::vector<std::size_t> positions_;  ///< in elites_, by cell; none: empty
+  std::vector<Elite> elites_;
+  double qd_score_ = 0.0;
+};
+
+}  // namespace proleg::optimize

@@ -1,0 +1,193 @@
+#include "sim/optimize/experiment/gait_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "experiment_files.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "sim/optimize/experiment/method_declaration.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+constexpr double failed = -1e12;
+
+Experiment with_axes(const std::vector<std::uint32_t>& cells, Goal goal = Goal::maximise) {
+  Experiment experiment;
+  experiment.objectives.push_back({"score", {Term{}}, goal, goal == Goal::maximise ? 0.0 : 100.0});
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    experiment.axes.push_back({sim::Measure::height, -1.0, 3.0, cells[i]});
+    experiment.objectives.push_back({"axis" + std::to_string(i), {Term{}}, Goal::maximise, failed});
+  }
+  experiment.method = MapElitesSettings{};
+  return experiment;
+}
+
+TEST(GaitMap, KeepsTheBestOfEachCellAndOfEqualsTheFirst) {
+  const Experiment experiment = with_axes({4, 2});
+  GaitMap map(experiment);
+  EXPECT_EQ(map.cells(), 8U);
+  EXPECT_TRUE(map.add(7, std::vector{1.0, -0.5, 2.0}));
+  EXPECT_FALSE(map.add(8, std::vector{1.0, -0.1, 2.5})) << "the same cell, and no better";
+  EXPECT_TRUE(map.add(9, std::vector{1.5, -0.9, 1.1}));
+  EXPECT_TRUE(map.add(10, std::vector{0.5, 2.9, -1.0}));
+  ASSERT_EQ(map.elites().size(), 2U);
+  EXPECT_EQ(map.elites()[0].candidate, 9U);
+  EXPECT_EQ(map.place(map.elites()[0].cell), (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(map.place(map.elites()[1].cell), (std::vector<std::uint32_t>{3, 0}));
+  EXPECT_EQ(map.coverage(), 0.25);
+  EXPECT_EQ(map.qd_score(), 2.0);
+}
+
+TEST(GaitMap, HasValuesBeyondAnAxisInItsOutermostCells) {
+  const Experiment experiment = with_axes({4, 2});
+  GaitMap map(experiment);
+  map.add(0, std::vector{1.0, -1e300, 1e300});
+  map.add(1, std::vector{1.0, 3.0, -1.0});
+  EXPECT_EQ(map.place(map.elites()[0].cell), (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(map.place(map.elites()[1].cell), (std::vector<std::uint32_t>{3, 0})) << "the bounds themselves";
+}
+
+TEST(GaitMap, HasNoRunThatFailedOrLacksAMeasure) {
+  const Experiment experiment = with_axes({4, 2});
+  GaitMap map(experiment);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const std::vector<double>& scores : std::vector<std::vector<double>>{
+           {0.0, 0.0, 0.0}, {1.0, failed, 0.0}, {1.0, 0.0, failed}, {nan, 0.0, 0.0}, {1.0, nan, 0.0}}) {
+    EXPECT_FALSE(map.add(0, scores));
+  }
+  EXPECT_TRUE(map.elites().empty());
+}
+
+TEST(GaitMap, HasLessAsTheBetterScoreIfThatIsTheGoal) {
+  const Experiment experiment = with_axes({2, 2}, Goal::minimise);
+  GaitMap map(experiment);
+  map.add(0, std::vector{30.0, 0.0, 0.0});
+  EXPECT_TRUE(map.add(1, std::vector{10.0, 0.0, 0.0}));
+  EXPECT_EQ(map.qd_score(), 90.0) << "how much better than a run that fails";
+}
+
+TEST(GaitMap, IsThatOfTheDefinitionInFourDimensions) {
+  const unsigned seed = 20'261;
+  std::mt19937 random(seed);
+  const Experiment experiment = with_axes({3, 2, 4, 5});
+  GaitMap map(experiment);
+  std::map<std::vector<std::uint32_t>, std::pair<double, std::size_t>> expected;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    std::vector<double> scores{1.0 + static_cast<double>(random() % 50)};
+    std::vector<std::uint32_t> place;
+    for (const MapAxis& axis : experiment.axes) {
+      place.push_back(static_cast<std::uint32_t>(random() % axis.cells));
+      scores.push_back(-1.0 + 4.0 * (place.back() + 0.5) / axis.cells);
+    }
+    const auto [found, is_new] = expected.try_emplace(place, scores.front(), i);
+    if (!is_new && scores.front() > found->second.first) {
+      found->second = {scores.front(), i};
+    }
+    map.add(i, scores);
+  }
+  ASSERT_EQ(map.elites().size(), expected.size()) << "seed " << seed;
+  double sum = 0.0;
+  for (const GaitMap::Elite& elite : map.elites()) {
+    const auto& [score, candidate] = expected.at(map.place(elite.cell));
+    EXPECT_EQ(elite.score, score);
+    EXPECT_EQ(elite.candidate, candidate);
+    sum += score;
+  }
+  EXPECT_NEAR(map.qd_score(), sum, 1e-9);
+}
+
+TEST(CheckMethod, WantsTwoToFourAxesAndOneObjective) {
+  const auto refusal = [](Experiment experiment) -> std::string {
+    experiment.path = "map.optimise.xml";
+    try {
+      check_method(experiment);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(with_axes({10, 10})), "");
+  EXPECT_EQ(refusal(with_axes({10, 10, 10, 50})), "");
+  EXPECT_EQ(refusal(with_axes({10})), "map.optimise.xml: found 1 <axis> in <fitness>, expected two to four");
+  EXPECT_EQ(refusal(with_axes({2, 2, 2, 2, 2})),
+            "map.optimise.xml: found 5 <axis>es in <fitness>, expected two to four");
+  EXPECT_EQ(refusal(with_axes({300, 300})),
+            "map.optimise.xml: found more than 50000 cells of the map, expected fewer, in all");
+  Experiment two = with_axes({2, 2});
+  two.objectives.push_back(two.objectives.front());
+  EXPECT_EQ(
+      refusal(two),
+      "map.optimise.xml: found 2 objectives for map-elites, expected one objective (a weighted sum of measures is "
+      "one)");
+}
+
+MemoryFiles small_map() {
+  MemoryFiles files = small_experiment();
+  std::string& text = files.texts["top.optimise.xml"];
+  for (const auto& [before, after] : std::vector<std::pair<std::string, std::string>>{
+           {"<greatDeluge>", "<mapElites>"},
+           {"</greatDeluge>", "</mapElites>"},
+           {"<waterLevel>0.1</waterLevel>", "<first>50</first>"},
+           {"<objective measure=\"distance\"/>",
+            "<objective measure=\"distance\"/><axis measure=\"height\" lowest=\"-0.1\" highest=\"0.2\" "
+            "cells=\"30\"/><axis measure=\"duty_factor\" lowest=\"0\" highest=\"1\" cells=\"20\"/>"}}) {
+    text.replace(text.find(before), before.size(), after);
+  }
+  const std::size_t racing = text.find("<racing");
+  text.erase(racing, text.find("/>", racing) + 2 - racing);  // it knows one measure
+  return files;
+}
+
+TEST(MapExperiment, HasTheMeasuresOfItsAxesBehindTheObjective) {
+  MemoryFiles files = small_map();
+  const Experiment experiment = read_experiment("top.optimise.xml", files);
+  EXPECT_NO_THROW(check_method(experiment));
+  EXPECT_EQ(std::get<MapElitesSettings>(experiment.method).first, 50U);
+  ASSERT_EQ(experiment.axes.size(), 2U);
+  EXPECT_EQ(experiment.axes[0].lowest, -0.1);
+  EXPECT_EQ(experiment.axes[1].cells, 20U);
+  ASSERT_EQ(experiment.objectives.size(), 3U);
+  EXPECT_EQ(experiment.objectives[1].name, "height");
+  const std::string before = experiment.fingerprint();
+  files.replace("top.optimise.xml", "cells=\"30\"", "cells=\"31\"");
+  EXPECT_NE(read_experiment("top.optimise.xml", files).fingerprint(), before);
+}
+
+TEST(MapExperiment, OfWhichAnAxisIsWrongIsRefusedWithItsLine) {
+  struct Case {
+    std::string before;
+    std::string after;
+    std::string message;
+  };
+  for (const Case& wrong : std::vector<Case>{
+           {"\"height\"", "\"hight\"", "found unknown measure 'hight', expected one of "},
+           {"\"duty_factor\"", "\"distance\"", "found a second 'distance' among objective and axes, expected "},
+           {"highest=\"0.2\"", "highest=\"-0.1\"",
+            "found highest -0.1 in <axis>, expected more than lowest, which is -0.1"},
+           {"cells=\"30\"", "cells=\"1\"", "expected "},
+           {"cells=\"30\"", "", "expected "},
+           {"lowest=\"0\"", "lowest=\"nan\"", "expected "},
+           {"<mapElites>", "<greatDeluge>", ""}}) {
+    MemoryFiles files = small_map();
+    files.replace("top.optimise.xml", wrong.before, wrong.after);
+    if (wrong.before == "<mapElites>") {  // another method has no axes
+      files.replace("top.optimise.xml", "</mapElites>", "</greatDeluge>");
+      files.replace("top.optimise.xml", "<first>50</first>", "");
+    }
+    try {
+      static_cast<void>(read_experiment("top.optimise.xml", files));
+      ADD_FAILURE() << wrong.after;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(wrong.message), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).rfind("top.optimise.xml:", 0), 0U) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace proleg::optimize

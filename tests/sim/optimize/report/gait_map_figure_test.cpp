@@ -1,0 +1,96 @@
+#include <array>
+#include <sstream>
+
+#include "made_up.hpp"
+#include "sim/optimize/report/report.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+Experiment with_axes(std::size_t axes, std::uint32_t cells) {
+  Experiment experiment = distance_experiment();
+  experiment.method = MapElitesSettings{};
+  constexpr std::array measures{sim::Measure::height, sim::Measure::duty_factor, sim::Measure::slip,
+                                sim::Measure::wave_count};
+  for (std::size_t i = 0; i < axes; ++i) {
+    experiment.axes.push_back({measures[i], 0.0, 1.0, cells});
+    experiment.objectives.push_back(objective_of(measures[i], Goal::maximise));
+    experiment.objectives.back().failed = -1e12;
+  }
+  return experiment;
+}
+
+Evaluation at(std::uint64_t number, std::vector<double> scores) {
+  Evaluation evaluation = evaluation_of(number, scores.front());
+  evaluation.scores = std::move(scores);
+  return evaluation;
+}
+
+TEST(GaitMapFigure, HasAMarkForEachFilledCellAndCountsThem) {
+  const Experiment experiment = with_axes(2, 10);
+  std::vector<Evaluation> evaluations;
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    const auto cell = static_cast<double>(i % 6);
+    evaluations.push_back(at(i, {1.0 + static_cast<double>(i), 0.05 + 0.1 * cell, 0.55}));
+  }
+  Picture picture(draw_gait_map(experiment, evaluations));
+  EXPECT_EQ(picture.marks("map"), 6U);
+  for (const char* text : {"6 of 100 cells filled (6.0 %), QD score 165, 30 evaluations", "height (m)", "duty_factor",
+                           "distance (m)", "filled cells (%)", "QD score"}) {
+    EXPECT_TRUE(picture.has_text(text)) << text;
+  }
+}
+
+TEST(GaitMapFigure, RepeatsThePlotForTheThirdAndTheFourthAxis) {
+  const Experiment experiment = with_axes(4, 3);
+  std::vector<Evaluation> evaluations;
+  for (std::uint64_t i = 0; i < 81; ++i) {
+    const auto third = [&](std::uint64_t divisor) { return (static_cast<double>(i / divisor % 3) + 0.5) / 3.0; };
+    evaluations.push_back(at(i, {1.0, third(1), third(3), third(9), third(27)}));
+  }
+  Picture picture(draw_gait_map(experiment, evaluations));
+  EXPECT_EQ(picture.marks("map"), 81U);
+  EXPECT_TRUE(picture.has_text("height (m); columns: slip from 0 to 1"));
+  EXPECT_TRUE(picture.has_text("duty_factor; rows: wave_count from 0 to 1"));
+}
+
+TEST(GaitMapFigure, IsDrawnWhateverTheEvaluationsAndStaysSmall) {
+  for (const std::size_t axes : {std::size_t{2}, std::size_t{3}}) {
+    const Experiment experiment = with_axes(axes, 4);
+    const std::vector<double> places(axes, 0.5);
+    const auto with = [&](double score) {
+      std::vector<double> scores{score};
+      scores.insert(scores.end(), places.begin(), places.end());
+      return scores;
+    };
+    for (const std::vector<Evaluation>& evaluations : std::vector<std::vector<Evaluation>>{
+             {}, {at(0, with(0.0))}, {at(0, with(1.0))}, {at(0, with(1e308)), at(1, with(-1e308))}}) {
+      EXPECT_TRUE(Picture(draw_gait_map(experiment, evaluations)).has_text("QD score"));
+    }
+  }
+  const Experiment large = with_axes(2, 223);
+  std::vector<Evaluation> evaluations;
+  for (std::uint64_t i = 0; i < 223U * 223U; ++i) {
+    evaluations.push_back(at(i, {1.0 + static_cast<double>(i % 97), (static_cast<double>(i % 223) + 0.5) / 223.0,
+                                 (static_cast<double>(i / 223) + 0.5) / 223.0}));
+  }
+  EXPECT_LT(draw_gait_map(large, evaluations).size(), 1'500'000U);
+}
+
+TEST(GaitMapTable, HasALineForEachFilledCellInTheirOrder) {
+  const Experiment experiment = with_axes(2, 10);
+  const std::vector<Evaluation> evaluations{at(0, {1.0, 0.95, 0.05}), at(1, {2.0, 0.05, 0.05}),
+                                            at(2, {3.0, 0.95, 0.01}), at(3, {0.0, 0.5, 0.5})};
+  std::istringstream table(gait_map_table(experiment, evaluations));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(table, line);) {
+    lines.push_back(line);
+  }
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0].rfind("cell:height\tcell:duty_factor\trun\tevaluation\tamplitude:J5 (deg)\t", 0), 0U) << lines[0];
+  EXPECT_EQ(lines[1].rfind("1\t1\t0\t1\t", 0), 0U) << lines[1];
+  EXPECT_EQ(lines[2].rfind("10\t1\t0\t2\t", 0), 0U) << lines[2];
+}
+
+}  // namespace
+}  // namespace proleg::optimize

@@ -15,7 +15,7 @@ VERSION = re.search(r"project\(proleg VERSION ([0-9.]+)", (SOURCE / "CMakeLists.
 
 
 class CMakeBuild(build_ext):
-    """The module is built in the checkout's build/pip, and lies with the shipped scenarios in the package."""
+    """The modules are built in the checkout's build/pip, and lie with the shipped scenarios in the package."""
 
     def build_extension(self, extension):
         build = SOURCE / "build/pip"
@@ -24,7 +24,7 @@ class CMakeBuild(build_ext):
                         ["cmake", "--build", build, "--target", "proleg_python"]):
             subprocess.run(command, cwd=SOURCE, check=True)
         package.mkdir(parents=True, exist_ok=True)
-        for module in (build / "python/proleg").glob("_core*.so"):
+        for module in (build / "python/proleg").glob("_*.so"):
             shutil.copy(module, package)
         shutil.copytree(SOURCE / "sim/scenarios", package / "scenarios", dirs_exist_ok=True)
 

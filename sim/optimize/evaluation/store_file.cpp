@@ -143,6 +143,7 @@ StoreLock::StoreLock(const std::filesystem::path& store, const std::string& fail
 
 StoreLock::~StoreLock() {
   if (descriptor_ >= 0) {
+    flock(descriptor_, LOCK_UN);  // children of this process that have inherited the file would keep the lock
     close(descriptor_);
   }
 }

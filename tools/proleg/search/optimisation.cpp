@@ -95,7 +95,6 @@ std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
 
 SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run, optimize::Workers& workers,
                          optimize::Store& store, const std::string& label) {
-  SearchOutcome outcome;
   SearchDisplay display(label, std::string(experiment.objectives.front().unit()),
                         optimize::planned_evaluations(experiment));
   const auto print_messages = [&] {
@@ -103,30 +102,43 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
       display.print("warning: " + message);
     }
   };
-  const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::SearchProgress& progress) {
-    outcome.evaluations.push_back(evaluation);
+  const auto observe = [&](const optimize::Evaluation& /*evaluation*/, const optimize::SearchProgress& progress) {
     display.show(progress);
     print_messages();
   };
   const auto stop = [&] {
     print_messages();  // also while no evaluation ends
-    return interrupted() || store.is_stop_requested();
+    return interrupted();
   };
+  try {
+    SearchOutcome outcome = run_search(experiment, run, workers, store, SearchWatch{observe, stop});
+    print_messages();
+    return outcome;
+  } catch (const std::runtime_error&) {
+    print_messages();  // the messages explain the error
+    throw;
+  }
+}
+
+SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run, optimize::Workers& workers,
+                         optimize::Store& store, const SearchWatch& watch) {
+  SearchOutcome outcome;
+  const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::SearchProgress& progress) {
+    outcome.evaluations.push_back(evaluation);
+    watch.observe(evaluation, progress);
+  };
+  const auto stop = [&] { return watch.stop() || store.is_stop_requested(); };
   optimize::Evaluator evaluator(experiment, run, workers, &store, observe, stop);
   store.start_run(run);
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = own_cpu_s();
   try {
     outcome.ending = optimize::search(experiment, run, evaluator);
-  } catch (const std::runtime_error&) {
-    print_messages();  // the messages explain the error
-    throw;
   } catch (const optimize::SearchEnded&) {
     if (evaluator.budget_spent()) {
       outcome.ending = budget_ending(experiment.evaluations);
     }
   }
-  print_messages();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.own_cpu_s = own_cpu_s() - cpu_start;
   outcome.progress = evaluator.progress();
@@ -134,6 +146,19 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
     store.finish_run(run, outcome.ending);
   }
   return outcome;
+}
+
+std::string keep_stored_evaluations(optimize::Store& store, optimize::Experiment& experiment,
+                                    std::optional<std::uint32_t> trials) {
+  std::string remark;
+  const std::uint64_t stored = store.evaluation_count(0);
+  if (experiment.evaluations > 0 && experiment.evaluations < stored) {
+    remark = "the store has " + std::to_string(stored) + " evaluations, more than " +
+             std::to_string(experiment.evaluations) + "; all of them are kept";
+    experiment.evaluations = stored;
+  }
+  store.save_search(experiment.evaluations, build_id, trials);
+  return remark;
 }
 
 bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,6 +56,21 @@ struct SearchOutcome {
 /// terminal, with a label. The store says that the run has ended, unless confirm_best() has to follow.
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
+
+/// What sees a search while it runs, and may end it.
+struct SearchWatch {
+  std::function<void(const optimize::Evaluation&, const optimize::SearchProgress&)> observe;  ///< each evaluation
+  std::function<bool()> stop;  ///< called often, also while no evaluation ends; true ends the search
+};
+
+/// The same without a display, until its method ends, its evaluations are used up, or the watch stops it.
+[[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
+                                       optimize::Workers& workers, optimize::Store& store, const SearchWatch& watch);
+
+/// Tells a store how many evaluations its search makes: a resumed search keeps all that the store has. trials: of each
+/// candidate, if not the files said so. Returns a remark for the user; empty: none.
+[[nodiscard]] std::string keep_stored_evaluations(optimize::Store& store, optimize::Experiment& experiment,
+                                                  std::optional<std::uint32_t> trials);
 
 /// Whether a run has ended. A run that has used up its evaluations goes on if the experiment now has more of them.
 [[nodiscard]] bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run);

@@ -99,18 +99,6 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
   return command + algorithm_options();
 }
 
-/// A resumed search keeps all evaluations that its store has.
-void keep_stored_evaluations(const OptimiseOptions& options, optimize::Store& store, Experiment& experiment) {
-  const std::uint64_t stored = store.evaluation_count(0);
-  if (experiment.evaluations > 0 && experiment.evaluations < stored) {
-    print_warning("proleg optimise", "the store has " + std::to_string(stored) + " evaluations, more than " +
-                                         std::to_string(experiment.evaluations) + "; all of them are kept");
-    experiment.evaluations = stored;
-  }
-  store.save_search(experiment.evaluations, build_id,
-                    options.trials ? std::optional(experiment.trials.count) : std::nullopt);
-}
-
 Experiment read_stored(const OptimiseOptions& options) {
   if (!options.resume) {
     throw BadInput("found no FILE, expected an experiment (*.optimise.xml), or --resume FOLDER");
@@ -255,7 +243,11 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
   const std::string continuation = command_to_continue(options, folder);
   try {
-    keep_stored_evaluations(options, *store, experiment);
+    const std::string remark = keep_stored_evaluations(
+        *store, experiment, options.trials ? std::optional(experiment.trials.count) : std::nullopt);
+    if (!remark.empty()) {
+      print_warning("proleg optimise", remark);
+    }
     std::error_code ignored;
     std::filesystem::remove(folder / result_file, ignored);  // it is of the time before
     return search_and_write(options, experiment, folder, *workers, *store, continuation);

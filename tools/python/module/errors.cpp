@@ -1,9 +1,13 @@
 #include <exception>
 
+#include <mutex>
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
+
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/common/command_line.hpp"
+#include "tools/python/module/long_call.hpp"
 #include "tools/python/module/parts.hpp"
 
 namespace proleg::python {
@@ -13,6 +17,8 @@ namespace {
 PyObject* input_error = nullptr;
 PyObject* file_error = nullptr;
 PyObject* run_error = nullptr;
+
+constexpr const char* lock_name = "proleg._core._solver_lock";
 
 PyObject* add(pybind11::module_& module, const char* name, const char* text, const pybind11::tuple& bases) {
   const std::string full_name = std::string("proleg.") + name;
@@ -33,7 +39,11 @@ void translate(std::exception_ptr thrown) {
     PyErr_SetString(input_error, error.what());
   } catch (const FileError& error) {
     PyErr_SetString(file_error, error.what());
+  } catch (const optimize::StoreError& error) {
+    PyErr_SetString(file_error, error.what());
   } catch (const sim::PhysicsError& error) {
+    PyErr_SetString(run_error, error.what());
+  } catch (const RunFailure& error) {
     PyErr_SetString(run_error, error.what());
   } catch (const AlgorithmFailure& error) {
     PyErr_SetString(run_error, error.what());
@@ -52,6 +62,18 @@ void add_errors(pybind11::module_& module) {
   run_error = add(module, "RunError", "A simulation failed: the robot flew off, or the engine broke down.",
                   with(PyExc_RuntimeError));
   pybind11::register_local_exception_translator(translate);
+  module.attr("_solver_lock") = pybind11::capsule(solver_lock(), lock_name);
+}
+
+void share_with_core(pybind11::module_& module) {
+  const pybind11::module_ core = pybind11::module_::import("proleg._core");
+  input_error = core.attr("InputError").ptr();  // the interpreter keeps them with the module
+  file_error = core.attr("FileError").ptr();
+  run_error = core.attr("RunError").ptr();
+  pybind11::register_local_exception_translator(translate);
+  const pybind11::capsule lock = core.attr("_solver_lock");
+  use_solver_lock(lock.get_pointer<std::timed_mutex>());
+  module.attr("_core") = core;
 }
 
 }  // namespace proleg::python

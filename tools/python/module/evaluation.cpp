@@ -3,29 +3,23 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <exception>
 #include <iterator>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/loop/simulation_batch.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/optimize/evaluation/scenario_runs.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/python/module/conversions.hpp"
-#include "tools/python/module/long_call.hpp"
 #include "tools/python/module/parts.hpp"
+#include "tools/python/module/worker_threads.hpp"
 
 namespace py = pybind11;
 
@@ -100,88 +94,12 @@ class Evaluation {
   std::vector<std::string> failures_;
 };
 
-/// Runs the parts of an evaluation in threads.
-class WorkerThreads {
- public:
-  WorkerThreads(Evaluation& evaluation, const sim::Scenario& scenario, std::size_t workers, std::size_t part)
-      : evaluation_(evaluation), scenario_(scenario), part_(part), working_(workers) {
-    for (std::size_t i = 0; i < workers; ++i) {
-      threads_.emplace_back([this] { work(); });
-    }
-  }
-  ~WorkerThreads() {
-    stop_ = true;
-    for (std::thread& thread : threads_) {
-      thread.join();
-    }
-  }
-  WorkerThreads(const WorkerThreads&) = delete;
-  WorkerThreads& operator=(const WorkerThreads&) = delete;
-
-  /// Waits until all is done. Throws what a thread threw, or what a signal handler of Python raised.
-  void wait() {
-    SignalWatch watch;
-    std::unique_lock lock(mutex_);
-    while (!done_.wait_for(lock, std::chrono::milliseconds(50), [this] { return working_ == 0; })) {
-      lock.unlock();
-      watch.check();
-      lock.lock();
-    }
-    if (thrown_) {
-      std::rethrow_exception(thrown_);
-    }
-  }
-
- private:
-  void work() {
-    try {
-      const EngineTurn turn(scenario_, nullptr, &stop_);
-      while (!stop_) {
-        const std::size_t first = next_.fetch_add(part_);
-        if (first >= evaluation_.count()) {
-          break;
-        }
-        evaluation_.run(first, std::min(first + part_, evaluation_.count()), stop_);
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      thrown_ = thrown_ ? thrown_ : std::current_exception();
-      stop_ = true;
-    }
-    const std::lock_guard lock(mutex_);
-    --working_;
-    done_.notify_one();
-  }
-
-  Evaluation& evaluation_;
-  const sim::Scenario& scenario_;
-  std::size_t part_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> stop_ = false;
-  std::mutex mutex_;
-  std::condition_variable done_;
-  std::size_t working_;
-  std::exception_ptr thrown_;
-  std::vector<std::thread> threads_;
-};
-
 sim::Measure measure_named(const std::string& name) {
   const std::optional<sim::Measure> measure = sim::find_measure(name);
   if (!measure) {
     throw InputError("measure", 0, in_quotes(name), "one of " + listed(sim::measure_names()));
   }
   return *measure;
-}
-
-/// Candidates for each part: as many as the engine steps together, and few enough for all workers to have some.
-std::size_t part_size(const sim::Scenario& scenario, std::size_t count, std::size_t workers) {
-  constexpr std::size_t lanes = 8;  // of the widest kernel; a part should fill them
-  const std::size_t most = sim::batch_size(scenario);
-  if (most == 1) {
-    return 1;
-  }
-  const std::size_t share = (count + workers - 1) / workers;
-  return std::clamp((share + lanes - 1) / lanes * lanes, lanes, most);
 }
 
 py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names,
@@ -200,7 +118,9 @@ py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names
   evaluation.check();
   if (count > 0) {
     const py::gil_scoped_release released;
-    WorkerThreads threads(evaluation, scenario, std::min(workers, count), part_size(scenario, count, workers));
+    WorkerThreads threads(
+        scenario, count, workers,
+        [&](std::size_t first, std::size_t end, const std::atomic<bool>& stop) { evaluation.run(first, end, stop); });
     threads.wait();
   }
   return py::make_tuple(array_of(evaluation.take_scores(), {count, measures.size()}), evaluation.take_failures());

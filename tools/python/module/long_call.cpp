@@ -16,7 +16,13 @@ constexpr std::chrono::milliseconds between_checks{50};
 /// the parent does not exist there.
 alignas(std::timed_mutex) std::byte storage[sizeof(std::timed_mutex)];
 
+/// That of another module, which then replaces it in a child.
+std::timed_mutex* foreign_lock = nullptr;
+
 std::timed_mutex& iterative_solver() {
+  if (foreign_lock != nullptr) {
+    return *foreign_lock;
+  }
   static const bool is_made = [] {
     new (storage) std::timed_mutex;
     pthread_atfork(nullptr, nullptr, [] { new (storage) std::timed_mutex; });
@@ -27,6 +33,9 @@ std::timed_mutex& iterative_solver() {
 }
 
 }  // namespace
+
+std::timed_mutex* solver_lock() { return &iterative_solver(); }
+void use_solver_lock(std::timed_mutex* lock) { foreign_lock = lock; }
 
 void SignalWatch::check() {
   const auto now = std::chrono::steady_clock::now();

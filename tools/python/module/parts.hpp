@@ -1,15 +1,26 @@
 #pragma once
 
-// The parts of the module proleg._core. Each adds its classes and functions to it.
+// The parts of the module proleg._core. Each adds its classes and functions to it. Other modules, which take longer to
+// load, share its exceptions, its classes and its locks.
 
 #include <pybind11/pybind11.h>
 
+#include <stdexcept>
+
 namespace proleg::python {
+
+/// Becomes a RunError, of a robot that does not move as it should.
+class RunFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// The exceptions, and what makes them of the errors of the rooms below: InputError (also a ValueError) of what cannot
 /// be used, FileError (an OSError) of files that cannot be written, RunError (a RuntimeError) of runs that fail. All
 /// are an Error; their text is the one line that a command prints.
 void add_errors(pybind11::module_& module);
+/// Imports proleg._core, and makes its exceptions and the lock of its simulations those of another module.
+void share_with_core(pybind11::module_& module);
 /// The class Scenario: the files of a robot, its gait and its world, read and checked; and what makes one.
 void add_scenario(pybind11::module_& module);
 /// The function simulate(), and the declarations of the measures.

@@ -13,6 +13,8 @@ A name that `proleg scenarios` lists stands for a shipped scenario. Angles are d
 cannot be used raises InputError with the line that the command line prints.
 """
 
+from typing import TYPE_CHECKING
+
 from proleg._core import Error, FileError, InputError, RunError, build_id
 from proleg.evaluation import Scores, evaluate
 from proleg.recording import Recording, open
@@ -20,7 +22,21 @@ from proleg.run import MEASURES, SERIES, Measure, Run, simulate
 from proleg.scenario import Parameter, Scenario, caterpillar, shipped, snake
 from proleg.worlds import Worlds
 
+if TYPE_CHECKING:
+    from proleg.search import Search
+
 __version__ = build_id.split("-")[0]
 
 __all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Recording", "Run", "RunError", "Scenario",
-           "Scores", "Worlds", "caterpillar", "evaluate", "open", "shipped", "simulate", "snake"]
+           "Scores", "Search", "Worlds", "caterpillar", "evaluate", "open", "shipped", "simulate", "snake"]
+
+#: Where names are that few programs need, and whose libraries take longer to load than all others.
+_LATER = {"Search": "proleg.search"}
+
+
+def __getattr__(name: str) -> object:
+    if name in _LATER:
+        import importlib
+
+        return getattr(importlib.import_module(_LATER[name]), name)
+    raise AttributeError(f"module 'proleg' has no attribute {name!r}")

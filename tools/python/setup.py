@@ -15,7 +15,7 @@ VERSION = re.search(r"project\(proleg VERSION ([0-9.]+)", (SOURCE / "CMakeLists.
 
 
 class CMakeBuild(build_ext):
-    """The modules are built in the checkout's build/pip, and lie with the shipped scenarios in the package."""
+    """The modules are built in the checkout's build/pip, and lie with the shipped scenarios in the package, and with the player of recordings if it was built."""
 
     def build_extension(self, extension):
         build = SOURCE / "build/pip"
@@ -26,6 +26,9 @@ class CMakeBuild(build_ext):
         package.mkdir(parents=True, exist_ok=True)
         for module in (build / "python/proleg").glob("_*.so"):
             shutil.copy(module, package)
+        if (SOURCE / "build/player/player.html").exists():  # tools/page builds it
+            (package / "player").mkdir(exist_ok=True)
+            shutil.copy(SOURCE / "build/player/player.html", package / "player")
         shutil.copytree(SOURCE / "sim/scenarios", package / "scenarios", dirs_exist_ok=True)
 
 

@@ -5,17 +5,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "shared/computer/deflate/deflate.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "sim/data_file/data_file.hpp"
@@ -30,149 +25,14 @@
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/document/recording_document.hpp"
-#include "tools/proleg/document/robot_document.hpp"
-#include "tools/proleg/document/telemetry_row.hpp"
+#include "tools/proleg/document/recording_page.hpp"
 
 namespace {
 
 using namespace proleg;
 using namespace proleg::tools;
-using nlohmann::json;
 
 using Write = std::function<void(std::string_view)>;
-
-/// Some ticks of a recording in the form of the player (docs/page-interface.md, The file of a recording): columns of
-/// differences, which compress well.
-class ColumnBlock {
- public:
-  static constexpr std::size_t max_rows = 4096;
-
-  explicit ColumnBlock(std::size_t columns) : columns_(columns) {}
-
-  /// Adds a row; the block must not be full.
-  void add(std::span<const std::int32_t> row);
-  [[nodiscard]] bool is_empty() const { return rows_ == 0; }
-  [[nodiscard]] bool is_full() const { return rows_ == max_rows; }
-  /// Takes the rows as text, in base64, and empties the block.
-  [[nodiscard]] std::string take();
-
- private:
-  std::size_t columns_;
-  std::size_t rows_ = 0;
-  std::vector<std::int32_t> values_;  ///< values row by row
-};
-
-void ColumnBlock::add(std::span<const std::int32_t> row) {
-  values_.insert(values_.end(), row.begin(), row.end());
-  ++rows_;
-}
-
-std::string ColumnBlock::take() {
-  std::string bytes;
-  bytes.reserve(values_.size() * sizeof(std::int32_t));
-  for (std::size_t column = 0; column < columns_; ++column) {
-    std::uint32_t before = 0;
-    for (std::size_t row = 0; row < rows_; ++row) {
-      const auto value = static_cast<std::uint32_t>(values_[row * columns_ + column]);
-      const std::uint32_t difference = value - before;
-      before = value;
-      for (unsigned shift = 0; shift < 32; shift += 8) {
-        bytes += static_cast<char>(difference >> shift & 0xFFU);
-      }
-    }
-  }
-  rows_ = 0;
-  values_.clear();
-  return base64(deflate(bytes));
-}
-
-constexpr std::string_view place_mark = "<!-- the recording -->";
-
-/// JSON as the text of an HTML element. Names come from files of other people: a text without "<" cannot end the
-/// element.
-std::string element_text(const json& document) {
-  std::string text;
-  for (const char character : document.dump(-1, ' ', true, json::error_handler_t::replace)) {
-    if (character == '<') {
-      text += "\\u003c";
-    } else {
-      text += character;
-    }
-  }
-  return text;
-}
-
-json documents_of(const sim::Recording& recording, const sim::Scenario& scenario, const host::SignalLayout& layout) {
-  return {{"block_rows", ColumnBlock::max_rows},
-          {"robot", robot_document(scenario, "recording")},
-          {"parameters", recorded_parameters_document(recording, scenario)},
-          {"telemetry", layout.document(recording.tick_period_us())},
-          {"recording", recording_document(recording)}};
-}
-
-/// The page that tools/page builds for recordings (host/page/source/player). It shows nothing without a recording.
-class PlayerPage {
- public:
-  /// The text at the begin of all files that write_html() writes.
-  static constexpr std::string_view first_text = "<!doctype html>\n<!-- A recording of Proleg";
-
-  /// Reads the file. Throws BadInput if it is missing, or is no player.
-  explicit PlayerPage(const std::filesystem::path& file);
-
-  [[nodiscard]] std::string_view before_recording() const { return std::string_view(text_).substr(0, place_); }
-  [[nodiscard]] std::string_view after_recording() const;
-
- private:
-  std::string text_;
-  std::size_t place_ = 0;  ///< position of the recording in the text
-};
-
-PlayerPage::PlayerPage(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  text_ = text.str();
-  place_ = text_.find(place_mark);
-  if (!stream || !text_.starts_with(first_text) || place_ == std::string::npos) {
-    throw BadInput("found no player in " + file.string() + ", expected one that tools/page has built");
-  }
-}
-
-std::string_view PlayerPage::after_recording() const {
-  return std::string_view(text_).substr(place_ + place_mark.size());
-}
-
-/// Writes the page with the recording in it (docs/page-interface.md, The file of a recording). scenario: scenario_of()
-/// the recording. after_tick: called after each tick. It needs memory for some thousand ticks, independently of the
-/// recording's length.
-void write_html(const sim::Recording& recording, const sim::Scenario& scenario, const PlayerPage& player,
-                const std::function<void(std::string_view)>& write,
-                const std::function<void(std::uint32_t tick)>& after_tick) {
-  const host::SignalLayout layout(signals_of(scenario));
-  write(player.before_recording());
-  write("<script type=\"application/json\" id=\"documents\">");
-  write(element_text(documents_of(recording, scenario, layout)));
-  write("</script>\n");
-  ColumnBlock block(layout.row_size());
-  const auto write_block = [&] {
-    write("<script type=\"text/plain\" class=\"ticks\">");
-    write(block.take());
-    write("</script>\n");
-  };
-  std::vector<std::int32_t> row;
-  recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const sim::RecordedTick& tick) {
-    fill_row(tick, scenario, row);
-    block.add(row);
-    if (block.is_full()) {
-      write_block();
-    }
-    after_tick(tick.tick);
-  });
-  if (!block.is_empty()) {
-    write_block();
-  }
-  write(player.after_recording());
-}
 
 struct Options {
   std::string recording;

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from proleg._core import Error, FileError, InputError, RunError, build_id
 from proleg.evaluation import Scores, evaluate
+from proleg.player import Player
 from proleg.recording import Recording, open
 from proleg.run import MEASURES, SERIES, Measure, Run, simulate
 from proleg.scenario import Parameter, Scenario, caterpillar, shipped, snake
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 __version__ = build_id.split("-")[0]
 
-__all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Recording", "Run", "RunError", "Scenario",
+__all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Player", "Recording", "Run", "RunError", "Scenario",
            "Scores", "Search", "Worlds", "caterpillar", "evaluate", "open", "shipped", "simulate", "snake"]
 
 #: Where names are that few programs need, and whose libraries take longer to load than all others.

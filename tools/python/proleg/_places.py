@@ -1,4 +1,4 @@
-"""Where the package finds the scenarios that ship with Proleg."""
+"""Where the package finds what ships with Proleg."""
 
 from __future__ import annotations
 
@@ -16,4 +16,14 @@ def shipped_folder() -> str | None:
         for below in ("scenarios" if folder == package else "share/proleg/scenarios", "sim/scenarios"):
             if (folder / below / "travelling_wave").is_dir():
                 return str(folder / below)
+    return None
+
+
+def player_file() -> str | None:
+    """The page that plays recordings: beside the package (pip), installed with the programs, or built by tools/page."""
+    package = Path(__file__).absolute().parent
+    for folder in (package, *package.parents):
+        for below in ("player", "share/proleg/player"):
+            if (folder / below / "player.html").is_file():
+                return str(folder / below / "player.html")
     return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -12,19 +13,29 @@ from numpy.typing import NDArray
 
 from proleg import _core
 from proleg._checks import path
+from proleg.player import Shown
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import]
 
 
 @dataclass(frozen=True)
-class Recording:
-    """A recording as it was when it was opened (docs/recordings.md)."""
+class Recording(Shown):
+    """A recording as it was when it was opened (docs/recordings.md).
+
+    A notebook shows its results and its picture; `player()` is the page that plays it. Both read the file again.
+    """
 
     file: str
     finished: bool  #: False for a run that was interrupted, or is still running
     results: Mapping[str, str] = field(repr=False)  #: texts by name, such as "displacement_m" and "setpoint_hash"
     _table: Mapping[str, NDArray[np.float64]] = field(repr=False)
+
+    def _recording(self) -> AbstractContextManager[str]:
+        return nullcontext(self.file)
+
+    def _facts(self) -> Mapping[str, str]:
+        return {"recording": self.file, **({} if self.finished else {"state": "interrupted, or still running"}), **self.results}
 
     def table(self) -> pandas.DataFrame | Mapping[str, NDArray[np.float64]]:
         """A row for each tick: a pandas table if pandas is installed, otherwise columns() ."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 
 from proleg import _core
 from proleg._checks import path, text, texts
+from proleg.player import Shown, temporary_recording
 from proleg.scenario import Scenario
 
 #: Names of the series that a run can keep, for `keep`.
@@ -32,10 +35,13 @@ MEASURES: Mapping[str, Measure] = {measure[0]: Measure(*measure) for measure in 
 
 
 @dataclass(frozen=True)
-class Run:
+class Run(Shown):
     """The result of simulate(). Arrays have a row for each tick; joints and links count from the head.
 
     A series that was not kept is an empty array of shape (0,).
+
+    A notebook shows its measures and its picture; `player()` is the page that plays it. Both simulate the run once more, with
+    the same bits, because a run keeps no recording.
     """
 
     scenario: Scenario = field(repr=False)  #: as it was when the run began
@@ -48,6 +54,23 @@ class Run:
     lost_frames: int = field(repr=False)
     clipped_ticks: list[int] = field(repr=False)  #: by joint: ticks in which its limits cut the set-point
     _series: Mapping[str, NDArray[Any]] = field(repr=False)
+    _losses: str | None = field(repr=False)
+
+    def _recording(self) -> AbstractContextManager[str]:
+        def write(file: str) -> None:
+            again = _core.simulate(self.scenario._state, [], self._losses, file)
+            if again["servo_hash"] != self.servo_hash or again["displacement"] != self.displacement:
+                raise _core.RunError(f"{self.scenario.file}: found another motion than before, expected the same: a file of losses has "
+                                     "changed, or the engine does not repeat")
+
+        return temporary_recording(Path(self.scenario.file).name.removesuffix(".simulation.xml"), write)
+
+    def _facts(self) -> Mapping[str, str]:
+        facts = {"scenario": self.scenario.file, "engine": self.scenario.engine, "duration": f"{self.duration:g} s",
+                 "displacement": f"{self.displacement:.4g} m"}
+        for name in ("speed", "cost_of_transport"):
+            facts[name.replace("_", " ")] = f"{self.measures[name]:.4g} {MEASURES[name].unit}"
+        return {**facts, "set-points": self.setpoint_hash}
 
     def _of(self, name: str) -> NDArray[Any]:
         return self._series.get(name, np.empty(0))
@@ -118,12 +141,12 @@ def simulate(scenario: Scenario | str | os.PathLike[str], seconds: float | None 
     FileError if the recording cannot be written.
     """
     start = _scenario(scenario).replace(engine=engine, seed=seed, seconds=seconds)
-    result = _core.simulate(start._state, texts("keep", keep), None if losses is None else text("losses", losses),
-                            None if record is None else path("record", record))
+    lost = None if losses is None else text("losses", losses)
+    result = _core.simulate(start._state, texts("keep", keep), lost, None if record is None else path("record", record))
     series = result.pop("series")
     for numbers in series.values():
         numbers.flags.writeable = False
-    return Run(scenario=start, _series=series, **result)
+    return Run(scenario=start, _series=series, _losses=lost, **result)
 
 
 def _scenario(given: object) -> Scenario:

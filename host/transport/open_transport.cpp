@@ -13,6 +13,8 @@
 namespace proleg::host {
 namespace {
 
+std::string other_folder;  ///< of use_programs_of()
+
 class DescriptorLink final : public Link {
  public:
   explicit DescriptorLink(int descriptor) : descriptor_(descriptor) {}
@@ -76,7 +78,12 @@ std::string Link::end_text(int error) {
 
 std::unique_ptr<Link> make_descriptor_link(int descriptor) { return std::make_unique<DescriptorLink>(descriptor); }
 
+void use_programs_of(const std::string& folder) { other_folder = folder + "/"; }
+
 std::string program_folder() {
+  if (!other_folder.empty()) {
+    return other_folder;
+  }
   std::array<char, 4'096> path{};
   const ssize_t length = readlink("/proc/self/exe", path.data(), path.size());
   const std::string program(path.data(), length > 0 ? static_cast<std::size_t>(length) : 0U);

@@ -54,8 +54,10 @@ class Link {
 /// descriptor is closed, it receives SIGTERM, and after two seconds SIGKILL.
 [[nodiscard]] std::unique_ptr<Link> make_program_link(const std::string& program, std::vector<std::string> arguments);
 
-/// The folder of the program that runs, with a slash at the end.
+/// The folder of the program that runs, or the one of use_programs_of(), with a slash at the end.
 [[nodiscard]] std::string program_folder();
+/// For a program that is not in the folder of the others, such as an interpreter: where these are.
+void use_programs_of(const std::string& folder);
 
 /// Opens a bus and returns when it is connected. The listener may be called before. Throws TransportError with one
 /// line that begins with the address. The caller handles `auto`, because it can examine the bus behind each adapter.

@@ -24,15 +24,16 @@ from proleg.scenario import Parameter, Scenario, caterpillar, shipped, snake
 from proleg.worlds import Worlds
 
 if TYPE_CHECKING:
+    from proleg.robot import Robot
     from proleg.search import Search
 
 __version__ = build_id.split("-")[0]
 
-__all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Player", "Recording", "Run", "RunError", "Scenario",
+__all__ = ["MEASURES", "SERIES", "Error", "FileError", "InputError", "Measure", "Parameter", "Player", "Recording", "Robot", "Run", "RunError", "Scenario",
            "Scores", "Search", "Worlds", "caterpillar", "evaluate", "open", "shipped", "simulate", "snake"]
 
 #: Where names are that few programs need, and whose libraries take longer to load than all others.
-_LATER = {"Search": "proleg.search"}
+_LATER = {"Robot": "proleg.robot", "Search": "proleg.search"}
 
 
 def __getattr__(name: str) -> object:

@@ -21,9 +21,19 @@ def shipped_folder() -> str | None:
 
 def player_file() -> str | None:
     """The page that plays recordings: beside the package (pip), installed with the programs, or built by tools/page."""
+    return _find("player/player.html", "share/proleg/player/player.html")
+
+
+def bus_program() -> str | None:
+    """The program `proleg-bus`, which simulates a robot of modules: installed, or of the build in which the package is."""
+    return _find("lib/proleg/bin/proleg-bus", "bin/proleg-bus")
+
+
+def _find(*places: str) -> str | None:
+    """The first of some files that is in the folder of the package or in one above it."""
     package = Path(__file__).absolute().parent
     for folder in (package, *package.parents):
-        for below in ("player", "share/proleg/player"):
-            if (folder / below / "player.html").is_file():
-                return str(folder / below / "player.html")
+        for place in places:
+            if (folder / place).is_file():
+                return str(folder / place)
     return None

@@ -7,6 +7,7 @@ library_packages=(
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
   libassimp-dev libqhull-dev  # meshes of links and worlds
+  liburdfdom-dev  # robots in URDF
   libboost-dev  # Boost.Asio: serial lines, sockets
   libevdev-dev  # gamepads
   libssl-dev    # TLS of the page; SHA-256
@@ -45,6 +46,7 @@ test_packages=(
   qemu-system-arm   # another model of the CPU, to compare with
   "${aarch64_packages[@]}"  # another processor, which must compute the same
   libmujoco-dev     # the engine MuJoCo
+  liburdfdom-tools  # check_urdf, which reads an exported robot
   libbenchmark-dev  # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster
 )

@@ -28,6 +28,14 @@ std::string unescaped(std::string_view value, char quote) {
 
 }  // namespace
 
+std::string comment_text(std::string_view text) {
+  std::string line = one_line(text);
+  for (std::size_t at = line.find("--"); at != std::string::npos; at = line.find("--", at)) {
+    line.replace(at, 2, "- -");
+  }
+  return line;
+}
+
 void apply(const TextPatch& patch, std::string& text) {
   text.replace(patch.position, patch.removed.size(), patch.inserted);
 }

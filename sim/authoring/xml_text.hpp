@@ -13,6 +13,9 @@
 
 namespace proleg::sim {
 
+/// The text as part of an XML comment, in one line: two hyphens would end it.
+[[nodiscard]] std::string comment_text(std::string_view text);
+
 /// A change of a text: at the position the bytes `removed` stand, and `inserted` takes their place.
 struct TextPatch {
   std::size_t position = 0;

@@ -155,7 +155,7 @@ def kind_of(argument):
         return "scenario", None
     if argument.value == "FOLDER" or argument.value == "TEXT" and re.search(r"^folder\b|\bthis folder\b", meaning):
         return "folder", None
-    if argument.value in ("FILE", "IMAGE", "BODY", "RUN", "LIBRARY") or argument.value == "TEXT" and re.search(
+    if argument.value in ("FILE", "IMAGE", "BODY", "RUN", "LIBRARY", "ROBOT") or argument.value == "TEXT" and re.search(
             r"\binto this file\b|^(?:FILE|ELF|RECORDING)\b|\bor a file\b", meaning):
         ends = re.findall(r"(?<![\w*])\*?(\.[a-z][\w.]*\w) file|\*(\.[a-z][\w.]*\w)", meaning)
         ends = sorted({one or other for one, other in ends})

@@ -21,14 +21,6 @@ namespace {
 using namespace proleg;
 using namespace proleg::tools;
 
-void create_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
-  }
-}
-
 struct NewOptions {
   std::string what;
   RobotOptions robot;
@@ -50,24 +42,6 @@ int write_robot(const NewOptions& options) {
 }
 
 }  // namespace
-
-void proleg::tools::write_new_files(const std::filesystem::path& folder, std::span<const sim::SourceFile> files) {
-  if (folder.empty()) {
-    throw InputError("--out", 0, "an empty name", "the name of a folder");
-  }
-  for (const sim::SourceFile& file : files) {
-    if (std::filesystem::exists(folder / file.path)) {
-      throw BadInput((folder / file.path).string() +
-                     ": found an existing file, expected none; --out FOLDER names another folder");
-    }
-  }
-  for (const sim::SourceFile& file : files) {
-    const std::filesystem::path path = folder / file.path;
-    create_folder(path.parent_path());
-    write_file(path, file.text);
-    std::cout << "written  " << path.string() << '\n';
-  }
-}
 
 int main(int argc, char** argv) {
   const std::string_view what = argc > 1 ? argv[1] : "";

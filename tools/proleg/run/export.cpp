@@ -1,5 +1,5 @@
 // proleg export: writes a recording as a table for other programs, as a data file of the thesis, or as a page that
-// plays it; writes a data file as a table.
+// plays it; writes a data file as a table, and the robot of a scenario for other simulators.
 
 #include <array>
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -26,6 +27,7 @@
 #include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/document/recording_document.hpp"
 #include "tools/proleg/document/recording_page.hpp"
+#include "tools/proleg/run/export_robot.hpp"
 
 namespace {
 
@@ -203,12 +205,19 @@ int main(int argc, char** argv) {
       "file of the 2013 thesis (XML); or as a page that plays it in a browser, without a server. Such a data file, "
       "whole\n"
       "or cut, can be written as a table, too. Prints the name of the file.\n"
+      "With --urdf or --mjcf it writes the robot of a scenario (or of a recording) for other simulators, and prints "
+      "what\n"
+      "they have not ('lost').\n"
       "Columns: tick; time_s; for each joint setpoint_deg, servo_us, angle_deg, torque_Nm and current_mA (means over "
       "the\n"
       "tick) and its internal values; for each link x_m, y_m, z_m, its orientation qw, qx, qy, qz, contact_rear,\n"
       "contact_front, contact_N. Joint and link names follow the dot (setpoint_deg.J1).");
   Options options;
-  command_line.add_option("RUN", options.recording, "the recording, or a data file").required().value_name("");
+  RobotExportOptions robot;
+  command_line
+      .add_option("RUN", options.recording, "the recording, or a data file; with --urdf or --mjcf also a scenario")
+      .required()
+      .value_name("");
   command_line.add_flag("--tsv", options.tsv, "write tab-separated values, as without this option");
   command_line
       .add_flag("--html", options.html, "write a page that plays the recording in 3D, one file; prints its size too")
@@ -216,13 +225,32 @@ int main(int argc, char** argv) {
   command_line.add_flag("--thesis", options.thesis, "write a data file of the thesis (listing B.8; docs/recordings.md)")
       .excludes("--tsv")
       .excludes("--html");
+  for (const auto& [name, file, help] :
+       {std::tuple("--urdf", &robot.urdf,
+                   "write the robot as URDF, for ROS, Gazebo and Webots, with its meshes in a folder beside it; - for\n"
+                   "standard output"),
+        std::tuple("--mjcf", &robot.mjcf, "write robot and world as a model of MuJoCo; - for standard output")}) {
+    command_line.add_option(name, *file, help)
+        .value_name("FILE")
+        .excludes("--tsv")
+        .excludes("--html")
+        .excludes("--thesis");
+  }
   command_line
       .add_option(
           "--out", options.out,
           "the file; by default run.tsv, run.data.xml or run.html for run.proleg, run.1.tsv for run.1; - for standard\n"
           "output")
-      .value_name("FILE");
-  command_line.add_flag("--json", options.json, "print one JSON object");
+      .value_name("FILE")
+      .excludes("--urdf")
+      .excludes("--mjcf");
+  command_line.add_flag("--json", options.json, "print one JSON object").excludes("--urdf").excludes("--mjcf");
   command_line.add_algorithms_option();
-  return command_line.run(argc, argv, [&] { return export_recording(command_line, options); });
+  return command_line.run(argc, argv, [&] {
+    if (robot.urdf.empty() && robot.mjcf.empty()) {
+      return export_recording(command_line, options);
+    }
+    robot.source = options.recording;
+    return export_robot(robot);
+  });
 }

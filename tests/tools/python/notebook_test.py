@@ -57,11 +57,9 @@ class InAFolder(unittest.TestCase):
 
 class Shown(InAFolder):
     def test_of_a_run_is_that_of_the_command_line(self):
-        words = ["--engine", "reduced", "--seconds", "3", "--losses", "7:5%"]
-        run_program(PROGRAMS / "proleg-simulate", "caterpillar", *words, "--record", "uniform.proleg")
+        run = proleg.simulate("caterpillar", 3, engine="reduced", losses="7:5%", record="uniform.proleg")
         run_program(PROGRAMS / "proleg-plot", "uniform.proleg")
         run_program("host/bin/proleg-export", "uniform.proleg", "--html")
-        run = proleg.simulate("caterpillar", 3, engine="reduced", losses="7:5%")
         recording = proleg.open("uniform.proleg")
         for shown in (run, recording):
             with self.subTest(type(shown).__name__):

@@ -3,11 +3,13 @@
 // person or a browser drives then waits that much longer for them than it does for a user, and needs as much less of a
 // busy computer. The calendar is as it is.
 //
-// For programs that wait by poll, select, epoll, sleep, timer descriptors, or condition variables with a steady clock.
+// For programs that wait by poll, select, epoll, sleep, timer descriptors, or condition variables and semaphores with a
+// steady clock.
 
 #include <dlfcn.h>
 #include <poll.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <sys/epoll.h>
 #include <sys/select.h>
 #include <sys/syscall.h>
@@ -141,6 +143,12 @@ int timerfd_settime(int descriptor, int flags, const itimerspec* time, itimerspe
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
   const timespec limit = is_slow(clock) ? longer(*until) : *until;
   return PROLEG_REAL(pthread_cond_clockwait)(condition, mutex, clock, &limit);
+}
+
+// The locks of Python.
+int sem_clockwait(sem_t* semaphore, clockid_t clock, const timespec* until) {
+  const timespec limit = is_slow(clock) ? longer(*until) : *until;
+  return PROLEG_REAL(sem_clockwait)(semaphore, clock, &limit);
 }
 
 }  // extern "C"

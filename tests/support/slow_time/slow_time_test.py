@@ -10,6 +10,7 @@ import select
 import socket
 import subprocess
 import sys
+import threading
 import time
 import unittest
 
@@ -58,6 +59,10 @@ def wait_for_a_condition(seconds):
     C_LIBRARY.pthread_mutex_unlock(mutex)
 
 
+def wait_for_a_lock(seconds):
+    threading.Event().wait(seconds)
+
+
 class SlowTime(unittest.TestCase):
     def test_every_kind_of_wait_is_so_many_times_as_long_on_the_computers_calendar(self):
         reader, writer = os.pipe()
@@ -74,7 +79,7 @@ class SlowTime(unittest.TestCase):
 
         for function, *arguments in ((time.sleep, WAIT_S), (poll.poll, WAIT_S * 1000), (epoll.poll, WAIT_S),
                                      (select.select, [reader], [], [], WAIT_S), (wait_for_the_line,),
-                                     (wait_for_a_duration, WAIT_S), (wait_for_a_time, WAIT_S), (wait_for_a_condition, WAIT_S)):
+                                     (wait_for_a_duration, WAIT_S), (wait_for_a_time, WAIT_S), (wait_for_a_condition, WAIT_S), (wait_for_a_lock, WAIT_S)):
             with self.subTest(wait=function.__name__):
                 begin, calendar = time.monotonic_ns(), time.time_ns()
                 function(*arguments)

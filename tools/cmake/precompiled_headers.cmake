@@ -22,7 +22,7 @@ if(PROLEG_SANITIZE)
   set(PROLEG_LIGHT_ROOMS "^(tools|host/(remote|robot|robot_control|server|transport)|sim/(data_file|record|scenario|optimize/(confirm|evaluation|experiment|mpi|report|sweep)))(/|$)")
   set(PROLEG_LIGHT_OPTION -O0)
 else()
-  set(PROLEG_LIGHT_ROOMS "^(tools|host)(/|$)")
+  set(PROLEG_LIGHT_ROOMS "^(tools|host|sim/(authoring|mjcf|scenario|urdf|optimize/(confirm|experiment|report|sweep)))(/|$)")
   set(PROLEG_LIGHT_OPTION -Os)
 endif()
 

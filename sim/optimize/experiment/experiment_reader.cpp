@@ -25,7 +25,7 @@ using sim::XmlElement;
 using sim::XmlElement;
 
 constexpr sim::Range weights{-1e9, 1e9, ""};
-constexpr sim::Range scores{-1e12, 1e12, ""};
+constexpr sim::Range score_range{-1e12, 1e12, ""};
 constexpr double worst_cost = 1e6;
 
 sim::Measure read_measure(const XmlElement& element) {
@@ -111,7 +111,7 @@ Objective read_objective(const XmlElement& element) {
     objective.name =
         objective.terms.size() == 1 ? std::string(declaration_of(objective.terms.front().measure).name) : "score";
   }
-  objective.failed = element.attribute("failed") ? read_number_attribute(element, "failed", scores)
+  objective.failed = element.attribute("failed") ? read_number_attribute(element, "failed", score_range)
                                                  : natural_failed(element, objective);
   return objective;
 }
@@ -143,8 +143,8 @@ MapAxis read_axis(const XmlElement& element) {
   element.allow({"measure", "lowest", "highest", "cells"}, {});
   MapAxis axis;
   axis.measure = read_measure(element);
-  axis.lowest = read_number_attribute(element, "lowest", scores);
-  axis.highest = read_number_attribute(element, "highest", scores);
+  axis.lowest = read_number_attribute(element, "lowest", score_range);
+  axis.highest = read_number_attribute(element, "highest", score_range);
   if (axis.highest <= axis.lowest) {
     element.refuse("highest " + number_text(axis.highest) + " in " + element.label(),
                    "more than lowest, which is " + number_text(axis.lowest));
@@ -163,7 +163,7 @@ void read_axes(const XmlElement& fitness, Experiment& experiment) {
     Objective measured;
     measured.name = declaration_of(axis.measure).name;
     measured.terms.push_back({axis.measure, 1.0});
-    measured.failed = scores.min;
+    measured.failed = score_range.min;
     if (std::ranges::find(experiment.objectives, measured.name, &Objective::name) != experiment.objectives.end()) {
       child.refuse("a second " + in_quotes(measured.name) + " among objective and axes",
                    "another measure, or another name for the objective");

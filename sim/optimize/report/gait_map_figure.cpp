@@ -27,8 +27,8 @@ constexpr double map_page_height = map_bottom + 2.0 * (small_height + small_gap)
 constexpr const char* curve_style = R"(stroke="#0072b2" stroke-width="1.6" stroke-linejoin="round")";
 constexpr const char* empty_style = R"(fill="#f2f2f2")";
 
-/// Scores are drawn in this number of colours, so that a picture with many cells stays small.
-constexpr std::size_t colours = 24;
+/// Number of colours of the scores: few, so that a picture with many cells stays small.
+constexpr std::size_t colour_count = 24;
 
 using Colour = std::array<double, 3>;
 /// From low to high; its lightness rises, so that it also shows without colour.
@@ -36,7 +36,7 @@ constexpr std::array<Colour, 5> ramp{{{44, 26, 82}, {49, 84, 148}, {33, 145, 140
 
 /// attribute: "fill" or "stroke".
 std::string colour_style(const char* attribute, std::size_t number) {
-  const double place = static_cast<double>(number) / (colours - 1) * (ramp.size() - 1);
+  const double place = static_cast<double>(number) / (colour_count - 1) * (ramp.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(place), ramp.size() - 2);
   std::array<char, 32> text{};
   Colour mixed{};
@@ -65,10 +65,10 @@ class MapPlot {
   }
 
   void draw(Svg& svg, const GaitMap& map, const Axis& scale) const {
-    std::array<Polyline, colours> starts;
+    std::array<Polyline, colour_count> starts;
     for (const GaitMap::Elite& elite : map.elites()) {
       const double share = (elite.score - scale.low) / (scale.high - scale.low);
-      const auto number = static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * (colours - 1)));
+      const auto number = static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * (colour_count - 1)));
       starts[number].push_back(start(map.place(elite.cell)));
     }
     for (std::uint32_t column = 0; column < cells_[2]; ++column) {
@@ -80,7 +80,7 @@ class MapPlot {
     const std::string cell = "h" + sim::plain_number(plot_width_ / cells_[0] + overlap, 2);
     const std::string height = " stroke-width=\"" + sim::plain_number(plot_height_ / cells_[1] + overlap, 2) + "\"";
     svg.begin_group("map");
-    for (std::size_t number = 0; number < colours; ++number) {
+    for (std::size_t number = 0; number < colour_count; ++number) {
       svg.marks(starts[number], cell, colour_style("stroke", number) + height);
     }
     svg.end_group();
@@ -143,8 +143,8 @@ class MapPlot {
 
 void draw_colours(Svg& svg, const Axis& scale, std::string_view name) {
   const double left = map_right + 24.0;
-  const double height = (map_bottom - sim::first_panel_top) / colours;
-  for (std::size_t number = 0; number < colours; ++number) {
+  const double height = (map_bottom - sim::first_panel_top) / colour_count;
+  for (std::size_t number = 0; number < colour_count; ++number) {
     svg.rectangle({left, map_bottom - (static_cast<double>(number) + 1.0) * height}, bar_width, height,
                   colour_style("fill", number));
   }

@@ -17,6 +17,7 @@
 #include "shared/computer/algorithm_library/guard_signals.hpp"
 #include "shared/computer/algorithm_library/kept_signals.hpp"
 #include "shared/computer/algorithm_library/program_end.hpp"
+#include "shared/computer/threads/quiet_thread.hpp"
 
 namespace proleg {
 namespace {
@@ -114,20 +115,13 @@ class Watchdog {
   }
 
   void start() {
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all);
-    for (const int signal : ending_signals) {
-      sigdelset(&all, signal);  // it takes these if a library blocks them in all other threads
-    }
-    pthread_sigmask(SIG_SETMASK, &all, &before);
     try {
-      std::thread([this] { run(); }).detach();
+      // The thread takes these signals if a library blocks them in all other threads.
+      start_quiet_thread([this] { run(); }, ending_signals).detach();
       runs_ = true;
     } catch (const std::system_error&) {
       // Without a thread an endless loop is not found; all else works.
     }
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 
   void run() {

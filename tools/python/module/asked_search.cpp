@@ -6,10 +6,10 @@
 #include <variant>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/threads/quiet_thread.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/search/optimisation.hpp"
 #include "tools/proleg/search/search_result.hpp"
-#include "tools/python/module/quiet_thread.hpp"
 
 namespace proleg::python {
 namespace {

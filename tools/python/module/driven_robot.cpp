@@ -6,9 +6,9 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "shared/computer/threads/quiet_thread.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
-#include "tools/python/module/quiet_thread.hpp"
 
 namespace proleg::python {
 namespace {

@@ -39,9 +39,12 @@ endif()
 # all of them.
 if(NOT PROLEG_TARGET AND NOT PROLEG_SANITIZE)
   add_compile_options(-ffunction-sections -fdata-sections)
+  add_link_options(LINKER:--gc-sections)
+endif()
+
+if(NOT PROLEG_TARGET)
   # A room may become a part of a library that a program loads (tools/python), whose functions no other library replaces.
   add_compile_options(-fPIC -fno-semantic-interposition)
-  add_link_options(LINKER:--gc-sections)
 endif()
 
 # tools/check makes unity builds: CMake compiles each target as one source, so templates that several of its sources use are

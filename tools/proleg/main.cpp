@@ -40,6 +40,7 @@ constexpr std::array subcommands{
     Subcommand{"export", "write a recording as a table or a page, or a robot for other simulators"},
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
     Subcommand{"optimise", "search for the parameters of a gait"},
+    Subcommand{"atlas", "fill a map of many different gaits, and write the scenario of any of them"},
     Subcommand{"confirm", "say whether a gait is real or lives on an error of the physics"},
     Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
     Subcommand{"bus", "serve a simulated robot that other programs reach as a real one"},

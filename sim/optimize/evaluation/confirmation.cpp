@@ -20,9 +20,14 @@ Task fresh_run(const Experiment& experiment, const Evaluation& finalist, std::ui
   return {finalist.run, finalist.number, experiment.trials.count + run, finalist.candidate, {}};
 }
 
-Confirmation summary_of(const Experiment& experiment, const Evaluation& finalist, std::vector<double> scores) {
+Confirmation summary_of(const Experiment& experiment, const Evaluation& finalist, std::span<const TrialResult> runs) {
   const Objective& objective = experiment.objectives.front();
-  Confirmation confirmation{finalist, std::move(scores)};
+  Confirmation confirmation;
+  confirmation.evaluation = finalist;
+  confirmation.fresh = rate(experiment, finalist.run, finalist.number, finalist.candidate, runs);
+  for (const TrialResult& run : runs) {
+    confirmation.scores.push_back(objective.score(run.measures));
+  }
   const auto count = static_cast<double>(confirmation.scores.size());
   confirmation.worst = confirmation.scores.front();
   for (const double score : confirmation.scores) {
@@ -109,12 +114,11 @@ std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const 
   }
   std::vector<Confirmation> confirmations;
   for (const Evaluation& finalist : finalists) {
-    std::vector<double> scores;
+    std::vector<TrialResult> results;
     for (std::uint32_t run = 0; run < runs; ++run) {
-      const TrialResult result = pipeline.claim_result(fresh_run(experiment, finalist, run)).result;
-      scores.push_back(experiment.objectives.front().score(result.measures));
+      results.push_back(pipeline.claim_result(fresh_run(experiment, finalist, run)).result);
     }
-    confirmations.push_back(summary_of(experiment, finalist, std::move(scores)));
+    confirmations.push_back(summary_of(experiment, finalist, results));
   }
   std::ranges::stable_sort(confirmations, [&](const Confirmation& left, const Confirmation& right) {
     const Objective& objective = experiment.objectives.front();

@@ -22,6 +22,7 @@ struct Confirmation {
   double mean = 0.0;
   double standard_deviation = 0.0;  ///< of the runs (divisor n - 1); 0 for one run
   double worst = 0.0;
+  Evaluation fresh{};  ///< the candidate as the fresh runs alone rate it
 };
 
 /// Whether the search is judged; or its result depends on random numbers, and the experiment asks for fresh runs.

@@ -153,12 +153,17 @@ void require_engine(const Experiment& experiment) {
   static_cast<void>(sim::Simulation(scenario));
 }
 
-sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation) {
+sim::Scenario searched_world(const Experiment& experiment, const Evaluation& evaluation) {
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply(evaluation.candidate, scenario);
   if (depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread)) {
     scenario.kernel.seed = seed_of(experiment, {evaluation.run, evaluation.number, 0, evaluation.candidate, {}});
   }
+  return scenario;
+}
+
+sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation) {
+  sim::Scenario scenario = searched_world(experiment, evaluation);
   if (is_judged(experiment)) {
     set_engine(scenario, judging_engine);
   }

@@ -69,10 +69,13 @@ struct Evaluation {
   bool after_restart = false;  ///< the first one after the search started again from another population
 };
 
-/// The scenario that a search writes for a candidate: the experiment's, with the candidate's values and without the
-/// variations of trials. Its engine is the judging one. If a run depends on the seed, it has the seed of the
-/// evaluation's first trial. Therefore, with one trial that varies nothing, its run is that trial, or its fresh run if
-/// the search is judged.
+/// The scenario in which a search has simulated a candidate: the experiment's, with its engine, the candidate's values
+/// and without the variations of trials. If a run depends on the seed, it has the seed of the evaluation's first trial.
+/// Therefore, with one trial that varies nothing, its run is that trial.
+[[nodiscard]] sim::Scenario searched_world(const Experiment& experiment, const Evaluation& evaluation);
+
+/// The scenario that a search writes for a candidate: its searched_world() with the judging engine. With one trial that
+/// varies nothing its run is therefore that trial, or its fresh run if the search is judged.
 [[nodiscard]] sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation);
 
 /// Simulates the own_world() of an evaluation.

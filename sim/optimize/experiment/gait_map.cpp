@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace proleg::optimize {
 namespace {
@@ -51,13 +53,29 @@ std::vector<std::uint32_t> GaitMap::place(std::size_t cell) const {
   return place;
 }
 
-/// The first axis has neighbouring cells.
-std::optional<std::size_t> GaitMap::cell_of(std::span<const double> scores) const {
-  if (!std::isfinite(scores.front()) || scores.front() == experiment_.objectives.front().failed) {
+std::optional<std::size_t> GaitMap::cell_at(std::span<const std::uint32_t> place) const {
+  if (place.size() != experiment_.axes.size()) {
     return std::nullopt;
   }
   std::size_t cell = 0;
   std::size_t stride = 1;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const MapAxis& axis = experiment_.axes[i];
+    if (place[i] >= axis.cells) {
+      return std::nullopt;
+    }
+    cell += stride * place[i];
+    stride *= axis.cells;
+  }
+  return cell;
+}
+
+/// Cells that follow each other are neighbours on the first axis.
+std::optional<std::size_t> GaitMap::cell_of(std::span<const double> scores) const {
+  if (!std::isfinite(scores.front()) || scores.front() == experiment_.objectives.front().failed) {
+    return std::nullopt;
+  }
+  std::vector<std::uint32_t> place;
   for (std::size_t i = 0; i < experiment_.axes.size(); ++i) {
     const MapAxis& axis = experiment_.axes[i];
     const double value = scores[1 + i];
@@ -65,10 +83,69 @@ std::optional<std::size_t> GaitMap::cell_of(std::span<const double> scores) cons
       return std::nullopt;
     }
     const double position = (value - axis.lowest) / (axis.highest - axis.lowest) * axis.cells;
-    cell += stride * static_cast<std::size_t>(std::clamp(position, 0.0, axis.cells - 1.0));
-    stride *= axis.cells;
+    place.push_back(static_cast<std::uint32_t>(std::clamp(position, 0.0, axis.cells - 1.0)));
   }
-  return cell;
+  return cell_at(place);
+}
+
+std::vector<double> GaitMap::middle(std::size_t cell) const {
+  const std::vector<std::uint32_t> its_place = place(cell);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < its_place.size(); ++i) {
+    const MapAxis& axis = experiment_.axes[i];
+    values.push_back(std::lerp(axis.lowest, axis.highest, (its_place[i] + 0.5) / axis.cells));
+  }
+  return values;
+}
+
+const GaitMap::Elite* GaitMap::elite_of(std::size_t cell) const {
+  const std::size_t position = positions_[cell];
+  return position == none ? nullptr : &elites_[position];
+}
+
+std::vector<GaitMap::Elite> GaitMap::nearest(std::span<const std::optional<double>> values, std::size_t count) const {
+  std::vector<std::pair<double, Elite>> order;
+  for (const Elite& elite : elites_) {
+    order.emplace_back(distance(elite.cell, values), elite);
+  }
+  const Objective& objective = experiment_.objectives.front();
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(std::min(count, order.size()));
+  std::ranges::partial_sort(order, middle, {}, [&](const std::pair<double, Elite>& item) {
+    return std::tuple(item.first, objective.cost(item.second.score), item.second.cell);
+  });
+  std::vector<Elite> nearest;
+  for (auto item = order.begin(); item != middle; ++item) {
+    nearest.push_back(item->second);
+  }
+  return nearest;
+}
+
+bool GaitMap::are_neighbours(std::size_t cell, std::size_t other) const {
+  const std::vector<std::uint32_t> a = place(cell);
+  const std::vector<std::uint32_t> b = place(other);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::max(a[i], b[i]) - std::min(a[i], b[i]) > 1) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The square of a cell's distance to some values.
+double GaitMap::distance(std::size_t cell, std::span<const std::optional<double>> values) const {
+  const std::vector<std::uint32_t> its_place = place(cell);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!values[i]) {
+      continue;
+    }
+    const MapAxis& axis = experiment_.axes[i];
+    const double value = std::clamp((*values[i] - axis.lowest) / (axis.highest - axis.lowest), 0.0, 1.0);
+    const double nearest_in_cell =
+        std::clamp(value, static_cast<double>(its_place[i]) / axis.cells, (its_place[i] + 1.0) / axis.cells);
+    squares += (value - nearest_in_cell) * (value - nearest_in_cell);
+  }
+  return squares;
 }
 
 double GaitMap::gain(double score) const {

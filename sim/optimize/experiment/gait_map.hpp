@@ -3,6 +3,7 @@
 // A map of gaits: the best candidate of each cell of a grid over measures of the run (MapElitesSettings).
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,6 +34,23 @@ class GaitMap {
   [[nodiscard]] std::size_t cells() const { return positions_.size(); }
   /// The place of a cell: its number on each axis, from 0.
   [[nodiscard]] std::vector<std::uint32_t> place(std::size_t cell) const;
+  /// The cell with this place; nothing if the map has none there.
+  [[nodiscard]] std::optional<std::size_t> cell_at(std::span<const std::uint32_t> place) const;
+  /// The cell of a run; nothing if it failed, or lacks the measure of an axis. scores: of all objectives.
+  [[nodiscard]] std::optional<std::size_t> cell_of(std::span<const double> scores) const;
+  /// The middle of a cell: a value of each axis, in its unit.
+  [[nodiscard]] std::vector<double> middle(std::size_t cell) const;
+  /// The candidate of a cell; null if it is empty.
+  [[nodiscard]] const Elite* elite_of(std::size_t cell) const;
+
+  /// The filled cells that are nearest to some values, at most `count`, the nearest first; of equally near ones the
+  /// better. values: of each axis, in its unit; nothing: any. Each axis counts from 0 (lowest) to 1 (highest), values
+  /// beyond it as its ends, and a cell is as far as its nearest point.
+  [[nodiscard]] std::vector<Elite> nearest(std::span<const std::optional<double>> values, std::size_t count) const;
+
+  /// Whether two cells are the same or touch each other, also at a corner.
+  [[nodiscard]] bool are_neighbours(std::size_t cell, std::size_t other) const;
+
   /// Share of the cells that are filled.
   [[nodiscard]] double coverage() const { return static_cast<double>(elites_.size()) / static_cast<double>(cells()); }
   /// Sum over the filled cells of how much better their scores are than that of a run that fails (QD score: J. K. Pugh,
@@ -43,7 +61,7 @@ class GaitMap {
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-  [[nodiscard]] std::optional<std::size_t> cell_of(std::span<const double> scores) const;
+  [[nodiscard]] double distance(std::size_t cell, std::span<const std::optional<double>> values) const;
   [[nodiscard]] double gain(double score) const;
 
   const Experiment& experiment_;

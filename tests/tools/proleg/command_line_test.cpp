@@ -16,12 +16,12 @@ TEST_F(CommandLine, HelpListsTheSubcommands) {
     const Finished finished = proleg({word});
     EXPECT_EQ(finished.status, 0);
     for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "receipt", "export",
-                             "plot", "optimise", "confirm", "experiment", "objects"}) {
+                             "plot", "optimise", "atlas", "confirm", "experiment", "objects"}) {
       EXPECT_NE(finished.out.find(name), std::string::npos);
     }
   }
   for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "receipt", "export",
-                           "plot", "optimise", "confirm", "experiment", "objects"}) {
+                           "plot", "optimise", "atlas", "confirm", "experiment", "objects"}) {
     const Finished finished = proleg({name, "--help"});
     EXPECT_EQ(finished.status, 0);
     EXPECT_NE(finished.out.find(std::string("Usage: proleg ") + name), std::string::npos) << finished.out;

@@ -41,5 +41,17 @@ TEST(ProgressText, OfASearchWithoutAScoreSaysSo) {
   EXPECT_EQ(progress_text("cmaes", "m", 0, progress_of(100, 0), 20.0), "cmaes: 100, all failed, 150 x real time");
 }
 
+TEST(ProgressText, OfASearchForAMapSaysHowMuchIsFilled) {
+  optimize::Experiment experiment;
+  experiment.objectives = {{"distance", {optimize::Term{}}}, {"x", {optimize::Term{}}}, {"y", {optimize::Term{}}}};
+  experiment.axes = {{sim::Measure::height, 0.0, 1.0, 4}, {sim::Measure::slip, 0.0, 1.0, 2}};
+  optimize::GaitMap map(experiment);
+  map.add(0, std::vector{1.25, 0.5, 0.5});
+  optimize::SearchProgress progress = progress_of(100, 100);
+  progress.best.emplace().scores = {1.25, 0.5, 0.5};
+  EXPECT_EQ(progress_text("map-elites", "m", 0, progress, 20.0, &map),
+            "map-elites: 100, best 1.25 m, mean 0.5, 12.5 % filled, QD score 1.25, 150 x real time");
+}
+
 }  // namespace
 }  // namespace proleg::tools

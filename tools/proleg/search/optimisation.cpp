@@ -102,8 +102,15 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
       display.print("warning: " + message);
     }
   };
-  const auto observe = [&](const optimize::Evaluation& /*evaluation*/, const optimize::SearchProgress& progress) {
-    display.show(progress);
+  std::optional<optimize::GaitMap> map;
+  if (!experiment.axes.empty()) {
+    map.emplace(experiment);
+  }
+  const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::SearchProgress& progress) {
+    if (map) {
+      map->add(evaluation.number, evaluation.scores);
+    }
+    display.show(progress, map ? &*map : nullptr);
     print_messages();
   };
   const auto stop = [&] {
@@ -169,12 +176,18 @@ bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, s
 }
 
 std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment, optimize::Workers& workers,
-                                                 optimize::Store& store, SearchOutcome& outcome) {
+                                                 optimize::Store& store, SearchOutcome& outcome,
+                                                 std::span<const optimize::Evaluation> others) {
   if (outcome.ending.empty() || !optimize::needs_confirmation(experiment)) {
     return {};
   }
   try {
-    const std::vector<optimize::Evaluation> finalists = optimize::choose_finalists(experiment, outcome.evaluations);
+    std::vector<optimize::Evaluation> finalists = optimize::choose_finalists(experiment, outcome.evaluations);
+    for (const optimize::Evaluation& other : others) {
+      if (std::ranges::count(finalists, other.candidate, &optimize::Evaluation::candidate) == 0) {
+        finalists.push_back(other);
+      }
+    }
     CountProgress progress(
         "fresh runs of the best candidates" +
             (optimize::is_judged(experiment) ? " in " + std::string(sim::name_of(optimize::judging_engine)) : ""),
@@ -214,10 +227,10 @@ SearchDisplay::SearchDisplay(std::string label, std::string unit, std::uint64_t 
       terminal_line_(std::chrono::milliseconds(0)),
       log_interval_(std::chrono::steady_clock::now(), std::chrono::seconds(10)) {}
 
-void SearchDisplay::show(const optimize::SearchProgress& progress) {
+void SearchDisplay::show(const optimize::SearchProgress& progress, const optimize::GaitMap* map) {
   if (!terminal_line_.is_visible()) {
     if (log_interval_.is_due(std::chrono::steady_clock::now())) {
-      print(progress_text(label_, unit_, budget_, progress, terminal_line_.elapsed_s()));
+      print(progress_text(label_, unit_, budget_, progress, terminal_line_.elapsed_s(), map));
     }
     return;
   }
@@ -227,7 +240,7 @@ void SearchDisplay::show(const optimize::SearchProgress& progress) {
   if (!terminal_line_.is_due()) {
     return;
   }
-  const std::string line = progress_text(label_, unit_, budget_, progress, terminal_line_.elapsed_s());
+  const std::string line = progress_text(label_, unit_, budget_, progress, terminal_line_.elapsed_s(), map);
   const std::size_t width = TerminalLine::max_width();
   const std::size_t rest = width > line.size() + 2 ? width - line.size() - 2 : 0;
   terminal_line_.draw(line.substr(0, width) + (rest > 0 ? "  " : "") +
@@ -240,7 +253,7 @@ void SearchDisplay::print(const std::string& line) {
 }
 
 std::string progress_text(const std::string& label, const std::string& unit, std::uint64_t budget,
-                          const optimize::SearchProgress& progress, double elapsed_s) {
+                          const optimize::SearchProgress& progress, double elapsed_s, const optimize::GaitMap* map) {
   const auto done = static_cast<double>(progress.evaluations);
   std::string line = label + ": " + std::to_string(progress.evaluations);
   if (budget > 0) {
@@ -248,12 +261,18 @@ std::string progress_text(const std::string& label, const std::string& unit, std
   }
   std::array<char, 160> figures{};
   if (progress.best) {
-    std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f x real time",
-                  progress.best->scores.front(), unit.empty() ? "" : " ", unit.c_str(), progress.score_sum / done,
-                  progress.simulated_s / elapsed_s);
+    std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g", progress.best->scores.front(),
+                  unit.empty() ? "" : " ", unit.c_str(), progress.score_sum / done);
+    line += figures.data();
   } else {
-    std::snprintf(figures.data(), figures.size(), ", all failed, %.0f x real time", progress.simulated_s / elapsed_s);
+    line += ", all failed";
   }
+  if (map != nullptr) {
+    std::snprintf(figures.data(), figures.size(), ", %.1f %% filled, QD score %.4g", 100.0 * map->coverage(),
+                  map->qd_score());
+    line += figures.data();
+  }
+  std::snprintf(figures.data(), figures.size(), ", %.0f x real time", progress.simulated_s / elapsed_s);
   line += figures.data();
   // Restored evaluations took no time, so they are no measure of the remaining time.
   const auto made_now = done - static_cast<double>(progress.restored);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/workers.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/gait_map.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/terminal.hpp"
@@ -77,10 +79,11 @@ struct SearchWatch {
 
 /// Rates the best candidates of a search again, if it has ended and needs_confirmation(), and returns them best first;
 /// otherwise returns none. Then the store says that the run has ended. If the user interrupts, the result is empty, and
-/// the search counts as interrupted.
+/// the search counts as interrupted. others: candidates of the search that are rated with them.
 [[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,
                                                                optimize::Workers& workers, optimize::Store& store,
-                                                               SearchOutcome& outcome);
+                                                               SearchOutcome& outcome,
+                                                               std::span<const optimize::Evaluation> others = {});
 
 /// Share of optimiser, store and scheduling in all processor time.
 [[nodiscard]] double overhead(const SearchOutcome& outcome);
@@ -97,8 +100,8 @@ class SearchDisplay {
   /// evaluations; 0: unknown.
   SearchDisplay(std::string label, std::string unit, std::uint64_t budget);
 
-  /// Redraws at most ten times a second, or prints a line every ten seconds.
-  void show(const optimize::SearchProgress& progress);
+  /// Redraws at most ten times a second, or prints a line every ten seconds. map: of a search that fills one.
+  void show(const optimize::SearchProgress& progress, const optimize::GaitMap* map = nullptr);
   /// Prints a line above the display, also if standard error is not a terminal.
   void print(const std::string& line);
 
@@ -111,9 +114,11 @@ class SearchDisplay {
   std::vector<double> best_so_far_;
 };
 
-/// Evaluations, scores, speed and remaining time of a search in one line. elapsed_s: time since its start; above 0.
+/// Evaluations, scores, map, speed and remaining time of a search in one line. elapsed_s: time since its start; above
+/// 0. map: null for a search without one.
 [[nodiscard]] std::string progress_text(const std::string& label, const std::string& unit, std::uint64_t budget,
-                                        const optimize::SearchProgress& progress, double elapsed_s);
+                                        const optimize::SearchProgress& progress, double elapsed_s,
+                                        const optimize::GaitMap* map = nullptr);
 
 /// The values as block characters, at most `width`; empty without values.
 [[nodiscard]] std::string spark_line(const std::vector<double>& values, std::size_t width);

@@ -1,4 +1,4 @@
-// proleg optimise: searches for the parameters of a gait.
+// proleg optimise: searches for the parameters of a gait. proleg atlas does the same for a map of gaits.
 
 #include "tools/proleg/search/optimise.hpp"
 
@@ -7,13 +7,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <span>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/method/search.hpp"
+#include "sim/optimize/report/judged_cells.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
@@ -25,6 +29,7 @@
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/search/map_result.hpp"
 #include "tools/proleg/search/search_estimate.hpp"
 #include "tools/proleg/search/search_result.hpp"
 
@@ -34,10 +39,12 @@ namespace {
 using optimize::Experiment;
 
 constexpr const char* result_file = "result.json";
+constexpr const char* judged_file = "judged.tsv";
 
 /// What --json prints.
 Json result_object(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
-                   const std::filesystem::path& folder, std::uint32_t workers) {
+                   std::span<const optimize::Confirmation> sample, const std::filesystem::path& folder,
+                   std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
   Json object{
       {"experiment", experiment.path},
@@ -46,7 +53,10 @@ Json result_object(const Experiment& experiment, const SearchOutcome& outcome, c
       {"judge", optimize::is_judged(experiment) ? Json(std::string(sim::name_of(optimize::judging_engine))) : Json()},
       {"trials", experiment.trials.count},
       {"seed", experiment.seed}};
-  add_result(experiment, result, object);
+  add_result(experiment, outcome, result, object);
+  if (!sample.empty()) {
+    object.add("judged_cells", agreement_object(experiment, sample, result.best));
+  }
   object.add("evaluations", progress.evaluations);
   object.add("simulated", progress.simulated);
   object.add("reused", progress.reused);
@@ -67,8 +77,12 @@ Json result_object(const Experiment& experiment, const SearchOutcome& outcome, c
 }
 
 void print_text(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
-                const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
+                std::span<const optimize::Confirmation> sample, const std::vector<std::filesystem::path>& files,
+                std::uint32_t workers) {
   print_result(experiment, outcome, result);
+  if (!sample.empty()) {
+    print_agreement(experiment, sample, result.best);
+  }
   const optimize::SearchProgress& progress = outcome.progress;
   std::printf("%-24s %s\n", "engine", std::string(sim::name_of(experiment.scenario.environment.engine)).c_str());
   std::printf("%-24s %.1f s, %.0f x real time; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
@@ -84,7 +98,7 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
 
 /// The command that continues this search, with all options that its store depends on.
 std::string command_to_continue(const OptimiseOptions& options, const std::filesystem::path& folder) {
-  std::string command = "proleg optimise" + (options.file ? " " + shell_argument(*options.file) : "");
+  std::string command = options.program + (options.file ? " " + shell_argument(*options.file) : "");
   const auto add = [&](const char* option, const std::optional<std::string>& value) {
     if (value) {
       command += std::string(" ") + option + " " + shell_argument(*value);
@@ -95,6 +109,7 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
   add("--trials", options.trials);
   add("--evaluations", options.evaluations);
   add("--seed", options.seed);
+  add("--judge", options.judge);
   add("--resume", folder.string());
   return command + algorithm_options();
 }
@@ -118,7 +133,7 @@ Experiment read_stored(const OptimiseOptions& options) {
 
 /// Runs the best scenario once more and warns as `proleg simulate` does: the measures of a search are means over the
 /// joints, and do not say whether the limits cut the gait.
-void print_warnings_on(const std::filesystem::path& best) {
+void print_warnings_on(const std::string& program, const std::filesystem::path& best) {
   sim::DiskFiles files;
   const sim::Scenario scenario = sim::read_scenario(best, files);
   sim::Simulation simulation(scenario);
@@ -129,40 +144,73 @@ void print_warnings_on(const std::filesystem::path& best) {
   } catch (const sim::PhysicsError&) {
     return;
   }
-  print_warning_on_servos("proleg optimise", measures_of(simulation.plant().meter()), scenario.robot);
-  print_warning_on_clipping("proleg optimise", scenario, simulation.chain().clipped_ticks(), simulation.tick());
+  print_warning_on_servos(program, measures_of(simulation.plant().meter()), scenario.robot);
+  print_warning_on_clipping(program, scenario, simulation.chain().clipped_ticks(), simulation.tick());
 }
 
-/// Returns the exit status. continuation: the command that continues the search.
+/// Number of cells of the map that the judging engine simulates again. Throws InputError.
+std::size_t judged_cells(const OptimiseOptions& options, const Experiment& experiment) {
+  if (!options.fills_atlas) {
+    return 0;
+  }
+  const std::optional<std::uint32_t> asked =
+      options.judge ? parse_whole<std::uint32_t>(*options.judge) : usual_judged_cells;
+  if (!asked || *asked > optimize::max_map_cells) {
+    throw InputError("--judge", 0, in_quotes(*options.judge),
+                     "a whole number from 0 to " + std::to_string(optimize::max_map_cells));
+  }
+  if (optimize::is_judged(experiment)) {
+    return *asked;
+  }
+  if (options.judge && *asked > 0) {
+    throw InputError("--judge", 0, "a search in " + std::string(sim::name_of(optimize::judging_engine)),
+                     "one in another engine");
+  }
+  return 0;
+}
+
+/// Returns the exit status. judged: number of cells (judged_cells()). continuation: the command that continues the
+/// search.
 int search_and_write(const OptimiseOptions& options, const Experiment& experiment, const std::filesystem::path& folder,
-                     optimize::Workers& workers, optimize::Store& store, const std::string& continuation) {
+                     optimize::Workers& workers, optimize::Store& store, std::size_t judged,
+                     const std::string& continuation) {
   SearchOutcome outcome = run_search(experiment, 0, workers, store, optimize::method_name(experiment.method));
   if (outcome.progress.evaluations == 0) {
-    std::cerr << "proleg optimise: interrupted before the first evaluation; continue with: " << continuation << '\n';
+    std::cerr << options.program << ": interrupted before the first evaluation; continue with: " << continuation
+              << '\n';
     return exit_failed;
   }
   const bool has_score = outcome.progress.best.has_value();
   if (!has_score) {
     write_results(experiment, outcome, nullptr, folder);
-    std::cerr << "proleg optimise: none of " << outcome.progress.evaluations
+    std::cerr << options.program << ": none of " << outcome.progress.evaluations
               << " evaluations has a score, so there is no best scenario; the first failure: "
               << outcome.progress.first_failure << '\n';
   } else {
-    std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, workers, store, outcome);
+    const std::vector<optimize::Evaluation> cells =
+        judged > 0 ? optimize::choose_cells(experiment, outcome.evaluations, judged)
+                   : std::vector<optimize::Evaluation>();
+    std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, workers, store, outcome, cells);
+    const std::vector<optimize::Confirmation> sample = confirmations_of(cells, confirmations);
     const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
     std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
-    const std::string object = result_object(experiment, outcome, result, folder, workers.count()).text() + '\n';
+    if (!sample.empty()) {
+      files.push_back(folder / judged_file);
+      write_file(files.back(), optimize::judged_table(experiment, sample));
+    }
+    const std::string object =
+        result_object(experiment, outcome, result, sample, folder, workers.count()).text() + '\n';
     files.push_back(folder / result_file);
     write_file(files.back(), object);
     if (options.json) {
       std::cout << object;
     } else {
-      print_text(experiment, outcome, result, files, workers.count());
+      print_text(experiment, outcome, result, sample, files, workers.count());
     }
-    print_warnings_on(folder / "best.simulation.xml");
+    print_warnings_on(options.program, folder / "best.simulation.xml");
   }
   if (outcome.ending.empty()) {
-    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
+    std::cerr << options.program << ": interrupted after " << outcome.progress.evaluations
               << " evaluations; continue with: " << continuation << '\n';
   }
   return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
@@ -182,7 +230,7 @@ int stop(const OptimiseOptions& options) {
   const auto end = std::chrono::steady_clock::now() + longest;
   while (optimize::is_being_written(store) && !interrupted()) {
     if (std::chrono::steady_clock::now() >= end) {
-      std::cerr << "proleg optimise: " << store.string() << ": the program that writes to it has not stopped in "
+      std::cerr << options.program << ": " << store.string() << ": the program that writes to it has not stopped in "
                 << longest.count() << " minutes; it may be suspended, or be another program\n";
       return exit_failed;
     }
@@ -193,9 +241,10 @@ int stop(const OptimiseOptions& options) {
 
 int estimate(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const Experiment experiment = read_experiment(options);
+  const std::size_t judged = judged_cells(options, experiment);
   catch_interrupts();
   const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
-  const SearchEstimate estimate = estimate_search(experiment, *workers);
+  const SearchEstimate estimate = estimate_search(experiment, *workers, judged);
   if (interrupted()) {
     return exit_failed;
   }
@@ -215,6 +264,8 @@ int estimate(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   return exit_success;
 }
 
+}  // namespace
+
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   if (options.stop) {
     return stop(options);
@@ -223,8 +274,9 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     return estimate(options, make_workers);
   }
   Experiment experiment = read_experiment(options);
+  const std::size_t judged = judged_cells(options, experiment);
   const std::filesystem::path folder = chosen_folder(options.out, options.resume, experiment.title(), "search");
-  print_warnings("proleg optimise", experiment.scenario);
+  print_warnings(options.program, experiment.scenario);
   refuse_overwriting(experiment, folder);
   if (!options.resume &&
       !std::filesystem::exists(store_path(folder))) {  // otherwise the store has the command to continue
@@ -246,17 +298,24 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     const std::string remark = keep_stored_evaluations(
         *store, experiment, options.trials ? std::optional(experiment.trials.count) : std::nullopt);
     if (!remark.empty()) {
-      print_warning("proleg optimise", remark);
+      print_warning(options.program, remark);
     }
     std::error_code ignored;
-    std::filesystem::remove(folder / result_file, ignored);  // it is of the time before
-    return search_and_write(options, experiment, folder, *workers, *store, continuation);
+    for (const char* file : {result_file, judged_file}) {
+      std::filesystem::remove(folder / file, ignored);  // it is of the time before
+    }
+    return search_and_write(options, experiment, folder, *workers, *store, judged, continuation);
   } catch (const optimize::StoreError& error) {
     throw std::runtime_error(std::string(error.what()) + "; continue with: " + continuation);
   }
 }
 
-}  // namespace
+void require_map(const optimize::Experiment& experiment) {
+  if (!std::holds_alternative<optimize::MapElitesSettings>(experiment.method)) {
+    throw InputError(experiment.path, experiment.method_line, "the method " + optimize::method_name(experiment.method),
+                     "<mapElites>, which fills a map");
+  }
+}
 
 optimize::Experiment read_experiment(const OptimiseOptions& options) {
   if (options.file) {
@@ -268,7 +327,14 @@ optimize::Experiment read_experiment(const OptimiseOptions& options) {
   sim::DiskFiles files;
   optimize::Experiment experiment =
       options.file ? optimize::read_experiment(*options.file, files, options.simulation) : read_stored(options);
-  apply_options(options, experiment);
+  ExperimentOptions changes = options;
+  if (options.fills_atlas) {
+    require_map(experiment);
+    if (options.file && !changes.engine) {
+      changes.engine = sim::name_of(sim::PhysicsEngine::reduced);
+    }
+  }
+  apply_options(changes, experiment);
   return experiment;
 }
 

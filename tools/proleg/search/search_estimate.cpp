@@ -62,7 +62,7 @@ std::optional<double> SearchEstimate::seconds() const {
   return planned ? std::optional(static_cast<double>(*planned) * evaluation_s + confirmation_s) : std::nullopt;
 }
 
-SearchEstimate estimate_search(const optimize::Experiment& experiment, optimize::Workers& workers) {
+SearchEstimate estimate_search(const optimize::Experiment& experiment, optimize::Workers& workers, std::size_t others) {
   SearchEstimate estimate;
   const std::uint64_t planned = optimize::planned_evaluations(experiment);
   estimate.planned = planned > 0 ? std::optional(planned) : std::nullopt;
@@ -76,7 +76,7 @@ SearchEstimate estimate_search(const optimize::Experiment& experiment, optimize:
   estimate.confirmation_s = own_run;  // the best scenario is run for the warnings on it
   if (optimize::needs_confirmation(experiment)) {
     const optimize::ConfirmationSettings settings = optimize::fresh_runs(experiment);
-    const std::uint64_t finalists = settings.candidates + (experiment.has_baseline ? 1 : 0);
+    const std::uint64_t finalists = settings.candidates + (experiment.has_baseline ? 1 : 0) + others;
     const std::uint64_t runs = finalists * settings.runs;
     const std::uint64_t rounds = (runs + workers.count() - 1) / workers.count();
     estimate.confirmation_s += own_run * static_cast<double>(rounds);

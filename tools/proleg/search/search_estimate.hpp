@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -18,7 +19,9 @@ struct SearchEstimate {
   [[nodiscard]] std::optional<double> seconds() const;
 };
 
-/// Makes the search without a store for some seconds, and measures what an evaluation and a fresh run take.
-[[nodiscard]] SearchEstimate estimate_search(const optimize::Experiment& experiment, optimize::Workers& workers);
+/// Makes the search without a store for some seconds, and measures what an evaluation and a fresh run take. others:
+/// number of candidates that are rated with the best ones (confirm_best()).
+[[nodiscard]] SearchEstimate estimate_search(const optimize::Experiment& experiment, optimize::Workers& workers,
+                                             std::size_t others = 0);
 
 }  // namespace proleg::tools

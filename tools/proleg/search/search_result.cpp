@@ -13,6 +13,7 @@
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/run_measures.hpp"
+#include "tools/proleg/search/map_result.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -109,10 +110,6 @@ std::string confirmation_text(const Experiment& experiment, const Confirmation& 
   std::snprintf(runs.data(), runs.size(), "standard deviation %.2g, worst %.6g, %zu fresh runs",
                 confirmation.standard_deviation, confirmation.worst, confirmation.scores.size());
   return "mean " + number_text(confirmation.mean, unit) + ", " + runs.data() + judge_text(experiment);
-}
-
-void print_line(const std::string& name, const std::string& text) {
-  std::printf("%-24s %s\n", name.c_str(), text.c_str());
 }
 
 void print_baseline(const Experiment& experiment, const SearchResult& result) {
@@ -263,10 +260,11 @@ SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcom
   return result;
 }
 
-void refuse_overwriting(const Experiment& experiment, const std::filesystem::path& folder) {
-  const auto is_written = [](const std::filesystem::path& inside) {
+void refuse_overwriting(const Experiment& experiment, const std::filesystem::path& folder,
+                        std::span<const std::string_view> files) {
+  const auto is_written = [&](const std::filesystem::path& inside) {
     const std::string name = inside.empty() ? std::string() : inside.begin()->string();
-    return name.starts_with("store.sqlite") || std::ranges::count(search_result_files, name) > 0;
+    return name.starts_with("store.sqlite") || std::ranges::count(files, name) > 0;
   };
   for (const sim::SourceFile& source : experiment.sources) {
     const std::filesystem::path path = std::filesystem::weakly_canonical(source.path);
@@ -314,11 +312,7 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome, co
   print_best(experiment, result);
   print_baseline(experiment, result);
   if (!experiment.axes.empty()) {
-    const optimize::GaitMap map = optimize::gait_map(experiment, outcome.evaluations);
-    std::array<char, 80> text{};
-    std::snprintf(text.data(), text.size(), "%zu of %zu cells filled (%.1f %%), QD score %s", map.elites().size(),
-                  map.cells(), 100.0 * map.coverage(), optimize::rounded_text(map.qd_score()).c_str());
-    print_line("map", text.data());
+    print_line("map", map_text(optimize::gait_map(experiment, outcome.evaluations)));
   }
   const optimize::SearchProgress& progress = outcome.progress;
   std::printf("%-24s %llu: %llu simulated now, %llu reused, %llu from the store\n", "evaluations",
@@ -331,7 +325,7 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome, co
   print_line("ended", outcome.ending.empty() ? "interrupted" : outcome.ending);
 }
 
-void add_result(const Experiment& experiment, const SearchResult& result, Json& object) {
+void add_result(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result, Json& object) {
   const Evaluation& best = result.best;
   const bool is_decided = own_run_decided(experiment, result);
   const std::vector<double>& scores = is_decided ? result.own_scores : best.scores;
@@ -361,6 +355,9 @@ void add_result(const Experiment& experiment, const SearchResult& result, Json& 
                    {"bound", bound.is_highest ? "highest" : "lowest"}});
   }
   object.add("at_bounds", bounds);
+  if (!experiment.axes.empty()) {
+    object.add("map", map_object(optimize::gait_map(experiment, outcome.evaluations)));
+  }
 }
 
 }  // namespace proleg::tools

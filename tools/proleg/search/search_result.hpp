@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,12 +41,23 @@ struct SearchResult {
                                      std::vector<optimize::Confirmation> confirmations);
 
 /// The files that a search writes into its folder, beside its store.
-inline constexpr std::array<std::string_view, 12> search_result_files{
-    "evaluations.tsv", "best.tsv", "learning_curve.svg", "confirmation.tsv",    "pareto.tsv",         "pareto.svg",
-    "map.tsv",         "map.svg",  "result.json",        "best.simulation.xml", "best.actuation.xml", "best.files"};
+inline constexpr std::array<std::string_view, 13> search_result_files{"evaluations.tsv",
+                                                                      "best.tsv",
+                                                                      "learning_curve.svg",
+                                                                      "confirmation.tsv",
+                                                                      "pareto.tsv",
+                                                                      "pareto.svg",
+                                                                      "map.tsv",
+                                                                      "map.svg",
+                                                                      "judged.tsv",
+                                                                      "result.json",
+                                                                      "best.simulation.xml",
+                                                                      "best.actuation.xml",
+                                                                      "best.files"};
 
-/// Throws BadInput if a search in this folder would write over a file of its experiment.
-void refuse_overwriting(const optimize::Experiment& experiment, const std::filesystem::path& folder);
+/// Throws BadInput if these files in the folder, or a store there, would replace a file of the experiment.
+void refuse_overwriting(const optimize::Experiment& experiment, const std::filesystem::path& folder,
+                        std::span<const std::string_view> files = search_result_files);
 
 /// Writes tables, figures and the best scenario for people. result: null if no evaluation has a score; then no scenario
 /// is written.
@@ -55,6 +67,7 @@ std::vector<std::filesystem::path> write_results(const optimize::Experiment& exp
 void print_result(const optimize::Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result);
 
 /// Adds the result to a JSON object.
-void add_result(const optimize::Experiment& experiment, const SearchResult& result, Json& object);
+void add_result(const optimize::Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+                Json& object);
 
 }  // namespace proleg::tools

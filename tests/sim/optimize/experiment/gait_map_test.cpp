@@ -52,6 +52,62 @@ TEST(GaitMap, HasValuesBeyondAnAxisInItsOutermostCells) {
   EXPECT_EQ(map.place(map.elites()[1].cell), (std::vector<std::uint32_t>{3, 0})) << "the bounds themselves";
 }
 
+TEST(GaitMap, FindsACellByItsPlaceAndByAValueAtItsMiddle) {
+  const Experiment experiment = with_axes({4, 2, 3});
+  GaitMap map(experiment);
+  for (std::size_t cell = 0; cell < map.cells(); ++cell) {
+    EXPECT_EQ(map.cell_at(map.place(cell)), cell);
+    std::vector<double> scores = map.middle(cell);
+    scores.insert(scores.begin(), 1.0);
+    EXPECT_EQ(map.cell_of(scores), cell);
+    EXPECT_EQ(map.elite_of(cell), nullptr);
+    map.add(cell, scores);
+    ASSERT_NE(map.elite_of(cell), nullptr);
+    EXPECT_EQ(map.elite_of(cell)->candidate, cell);
+  }
+  EXPECT_EQ(map.middle(0), (std::vector{-0.5, 0.0, -1.0 + 2.0 / 3.0}));
+  for (const std::vector<std::uint32_t>& place : std::vector<std::vector<std::uint32_t>>{
+           {4, 0, 0}, {0, 2, 0}, {0, 0, 3}, {0, 0}, {0, 0, 0, 0}, {0, 0, 0xFFFFFFFF}}) {
+    EXPECT_FALSE(map.cell_at(place));
+  }
+}
+
+/// Candidates of the filled cells that are nearest to some values.
+std::vector<std::size_t> nearest(const GaitMap& map, const std::vector<std::optional<double>>& values,
+                                 std::size_t count) {
+  std::vector<std::size_t> candidates;
+  for (const GaitMap::Elite& elite : map.nearest(values, count)) {
+    candidates.push_back(elite.candidate);
+  }
+  return candidates;
+}
+
+TEST(GaitMap, NamesTheFilledCellsThatAreNearestToSomeValues) {
+  const Experiment experiment = with_axes({4, 2});  // cells of 1 x 2 from -1 to 3
+  GaitMap map(experiment);
+  map.add(0, std::vector{1.0, -0.5, 0.0});
+  map.add(1, std::vector{2.0, -0.5, 2.0});
+  map.add(2, std::vector{3.0, 2.5, 2.0});
+  using Candidates = std::vector<std::size_t>;
+  EXPECT_EQ(nearest(map, {-0.9, 0.9}, 9), (Candidates{0, 1, 2})) << "the cell of the values is first";
+  EXPECT_EQ(nearest(map, {-0.9, 1.1}, 1), (Candidates{1}));
+  EXPECT_EQ(nearest(map, {1.9, 2.0}, 2), (Candidates{2, 1}));
+  EXPECT_EQ(nearest(map, {100.0, 100.0}, 1), (Candidates{2})) << "values beyond an axis are its end";
+  EXPECT_EQ(nearest(map, {-0.5, std::nullopt}, 3), (Candidates{1, 0, 2})) << "of equally near cells the better";
+  EXPECT_EQ(nearest(map, {std::nullopt, std::nullopt}, 3), (Candidates{2, 1, 0}));
+}
+
+TEST(GaitMap, HasNeighboursAlsoAtCorners) {
+  const Experiment experiment = with_axes({4, 3});
+  const GaitMap map(experiment);
+  const auto cell = [&](std::uint32_t x, std::uint32_t y) { return map.cell_at(std::vector{x, y}).value(); };
+  EXPECT_TRUE(map.are_neighbours(cell(1, 1), cell(1, 1)));
+  EXPECT_TRUE(map.are_neighbours(cell(1, 1), cell(2, 2)));
+  EXPECT_TRUE(map.are_neighbours(cell(1, 1), cell(0, 1)));
+  EXPECT_FALSE(map.are_neighbours(cell(1, 1), cell(3, 1)));
+  EXPECT_FALSE(map.are_neighbours(cell(3, 0), cell(0, 1))) << "their numbers follow each other";
+}
+
 TEST(GaitMap, HasNoRunThatFailedOrLacksAMeasure) {
   const Experiment experiment = with_axes({4, 2});
   GaitMap map(experiment);

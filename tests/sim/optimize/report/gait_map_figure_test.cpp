@@ -1,4 +1,3 @@
-#include <array>
 #include <sstream>
 
 #include "made_up.hpp"
@@ -7,31 +6,12 @@
 namespace proleg::optimize {
 namespace {
 
-Experiment with_axes(std::size_t axes, std::uint32_t cells) {
-  Experiment experiment = distance_experiment();
-  experiment.method = MapElitesSettings{};
-  constexpr std::array measures{sim::Measure::height, sim::Measure::duty_factor, sim::Measure::slip,
-                                sim::Measure::wave_count};
-  for (std::size_t i = 0; i < axes; ++i) {
-    experiment.axes.push_back({measures[i], 0.0, 1.0, cells});
-    experiment.objectives.push_back(objective_of(measures[i], Goal::maximise));
-    experiment.objectives.back().failed = -1e12;
-  }
-  return experiment;
-}
-
-Evaluation at(std::uint64_t number, std::vector<double> scores) {
-  Evaluation evaluation = evaluation_of(number, scores.front());
-  evaluation.scores = std::move(scores);
-  return evaluation;
-}
-
 TEST(GaitMapFigure, HasAMarkForEachFilledCellAndCountsThem) {
-  const Experiment experiment = with_axes(2, 10);
+  const Experiment experiment = map_experiment(2, 10);
   std::vector<Evaluation> evaluations;
   for (std::uint64_t i = 0; i < 30; ++i) {
     const auto cell = static_cast<double>(i % 6);
-    evaluations.push_back(at(i, {1.0 + static_cast<double>(i), 0.05 + 0.1 * cell, 0.55}));
+    evaluations.push_back(evaluation_at(i, {1.0 + static_cast<double>(i), 0.05 + 0.1 * cell, 0.55}));
   }
   Picture picture(draw_gait_map(experiment, evaluations));
   EXPECT_EQ(picture.marks("map"), 6U);
@@ -42,11 +22,11 @@ TEST(GaitMapFigure, HasAMarkForEachFilledCellAndCountsThem) {
 }
 
 TEST(GaitMapFigure, RepeatsThePlotForTheThirdAndTheFourthAxis) {
-  const Experiment experiment = with_axes(4, 3);
+  const Experiment experiment = map_experiment(4, 3);
   std::vector<Evaluation> evaluations;
   for (std::uint64_t i = 0; i < 81; ++i) {
     const auto third = [&](std::uint64_t divisor) { return (static_cast<double>(i / divisor % 3) + 0.5) / 3.0; };
-    evaluations.push_back(at(i, {1.0, third(1), third(3), third(9), third(27)}));
+    evaluations.push_back(evaluation_at(i, {1.0, third(1), third(3), third(9), third(27)}));
   }
   Picture picture(draw_gait_map(experiment, evaluations));
   EXPECT_EQ(picture.marks("map"), 81U);
@@ -56,31 +36,35 @@ TEST(GaitMapFigure, RepeatsThePlotForTheThirdAndTheFourthAxis) {
 
 TEST(GaitMapFigure, IsDrawnWhateverTheEvaluationsAndStaysSmall) {
   for (const std::size_t axes : {std::size_t{2}, std::size_t{3}}) {
-    const Experiment experiment = with_axes(axes, 4);
+    const Experiment experiment = map_experiment(axes, 4);
     const std::vector<double> places(axes, 0.5);
     const auto with = [&](double score) {
       std::vector<double> scores{score};
       scores.insert(scores.end(), places.begin(), places.end());
       return scores;
     };
-    for (const std::vector<Evaluation>& evaluations : std::vector<std::vector<Evaluation>>{
-             {}, {at(0, with(0.0))}, {at(0, with(1.0))}, {at(0, with(1e308)), at(1, with(-1e308))}}) {
+    for (const std::vector<Evaluation>& evaluations :
+         std::vector<std::vector<Evaluation>>{{},
+                                              {evaluation_at(0, with(0.0))},
+                                              {evaluation_at(0, with(1.0))},
+                                              {evaluation_at(0, with(1e308)), evaluation_at(1, with(-1e308))}}) {
       EXPECT_TRUE(Picture(draw_gait_map(experiment, evaluations)).has_text("QD score"));
     }
   }
-  const Experiment large = with_axes(2, 223);
+  const Experiment large = map_experiment(2, 223);
   std::vector<Evaluation> evaluations;
   for (std::uint64_t i = 0; i < 223U * 223U; ++i) {
-    evaluations.push_back(at(i, {1.0 + static_cast<double>(i % 97), (static_cast<double>(i % 223) + 0.5) / 223.0,
-                                 (static_cast<double>(i / 223) + 0.5) / 223.0}));
+    evaluations.push_back(
+        evaluation_at(i, {1.0 + static_cast<double>(i % 97), (static_cast<double>(i % 223) + 0.5) / 223.0,
+                          (static_cast<double>(i / 223) + 0.5) / 223.0}));
   }
   EXPECT_LT(draw_gait_map(large, evaluations).size(), 1'500'000U);
 }
 
 TEST(GaitMapTable, HasALineForEachFilledCellInTheirOrder) {
-  const Experiment experiment = with_axes(2, 10);
-  const std::vector<Evaluation> evaluations{at(0, {1.0, 0.95, 0.05}), at(1, {2.0, 0.05, 0.05}),
-                                            at(2, {3.0, 0.95, 0.01}), at(3, {0.0, 0.5, 0.5})};
+  const Experiment experiment = map_experiment(2, 10);
+  const std::vector<Evaluation> evaluations{evaluation_at(0, {1.0, 0.95, 0.05}), evaluation_at(1, {2.0, 0.05, 0.05}),
+                                            evaluation_at(2, {3.0, 0.95, 0.01}), evaluation_at(3, {0.0, 0.5, 0.5})};
   std::istringstream table(gait_map_table(experiment, evaluations));
   std::vector<std::string> lines;
   for (std::string line; std::getline(table, line);) {

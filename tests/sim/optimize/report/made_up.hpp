@@ -6,6 +6,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -57,6 +58,32 @@ namespace proleg::optimize {
   evaluation.candidate = {160, 159, static_cast<std::uint32_t>(number % 161), 158, 0};
   evaluation.scores = {distance};
   evaluation.measures[sim::Measure::distance] = distance;
+  return evaluation;
+}
+
+/// An experiment with a map: so many axes from 0 to 1, each with so many cells.
+[[nodiscard]] inline Experiment map_experiment(std::size_t axes, std::uint32_t cells) {
+  Experiment experiment = distance_experiment();
+  experiment.method = MapElitesSettings{};
+  constexpr std::array measures{sim::Measure::height, sim::Measure::duty_factor, sim::Measure::slip,
+                                sim::Measure::wave_count};
+  for (std::size_t i = 0; i < axes; ++i) {
+    experiment.axes.push_back({measures[i], 0.0, 1.0, cells});
+    experiment.objectives.push_back(objective_of(measures[i], Goal::maximise));
+    experiment.objectives.back().failed = -1e12;
+  }
+  return experiment;
+}
+
+/// An evaluation with the scores of all objectives of an experiment with a map.
+[[nodiscard]] inline Evaluation evaluation_at(std::uint64_t number, std::vector<double> scores) {
+  Evaluation evaluation = evaluation_of(number, scores.front());
+  constexpr std::array measures{sim::Measure::distance, sim::Measure::height, sim::Measure::duty_factor,
+                                sim::Measure::slip, sim::Measure::wave_count};
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    evaluation.measures[measures[i]] = scores[i];
+  }
+  evaluation.scores = std::move(scores);
   return evaluation;
 }
 

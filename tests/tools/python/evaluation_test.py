@@ -164,6 +164,7 @@ class RandomArguments(unittest.TestCase):
                 pass
 
 
+@unittest.skipIf("ASAN_OPTIONS" in os.environ, "the sanitizer keeps memory that is free")
 class Memory(unittest.TestCase):
     def test_stays_the_same_in_a_loop(self):
         scenario = proleg.Scenario("caterpillar", engine="reduced")

@@ -5,6 +5,7 @@
 
 #include "shared/fixed/random.hpp"
 #include "sim/optimize/experiment/search_space.hpp"
+#include "sim/scenario/damage.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/settings.hpp"
 
@@ -16,30 +17,6 @@ double draw(Pcg32& random) { return (random.next() + 0.5) / 4294967296.0; }
 
 /// Draws a uniform factor between 1 - spread and 1 + spread.
 double draw_factor(Pcg32& random, double spread) { return 1.0 + spread * (2.0 * draw(random) - 1.0); }
-
-void scale_friction(std::vector<sim::Geometry>& geometries, double factor) {
-  for (sim::Geometry& geometry : geometries) {
-    if (geometry.friction) {
-      *geometry.friction *= factor;
-    }
-    if (geometry.friction_across) {
-      *geometry.friction_across *= factor;
-    }
-  }
-}
-
-void perturb_friction(sim::Scenario& scenario, double factor) {
-  scenario.environment.unspecified_friction *= factor;
-  for (sim::StaticObject& object : scenario.environment.objects) {
-    scale_friction(object.geometries, factor);
-  }
-  for (sim::MovingObject& object : scenario.environment.moving_objects) {
-    scale_friction(object.geometries, factor);
-  }
-  for (sim::Link& link : scenario.robot.links) {
-    scale_friction(link.geometries, factor);
-  }
-}
 
 /// The dimension that sets a parameter of a joint, or null.
 const Dimension* find_dimension(const SearchSpace& space, const Setting& place) {
@@ -84,7 +61,7 @@ bool starts_with_noise(const sim::Scenario& scenario, const SearchSpace& space, 
 
 void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed) {
   Pcg32 friction(seed, sim::random_stream::friction);
-  perturb_friction(scenario, draw_factor(friction, spread.friction));
+  sim::scale_friction(scenario, draw_factor(friction, spread.friction));
 
   Pcg32 mass(seed, sim::random_stream::mass);
   for (sim::Link& link : scenario.robot.links) {

@@ -53,6 +53,15 @@ std::vector<std::uint32_t> GaitMap::place(std::size_t cell) const {
   return place;
 }
 
+std::vector<double> GaitMap::point(std::size_t cell) const {
+  std::vector<double> point;
+  for (const std::uint32_t number : place(cell)) {
+    point.push_back((number + 0.5) / experiment_.axes[point.size()].cells);
+  }
+  return point;
+}
+
+/// Cells that follow each other are neighbours on the first axis.
 std::optional<std::size_t> GaitMap::cell_at(std::span<const std::uint32_t> place) const {
   if (place.size() != experiment_.axes.size()) {
     return std::nullopt;
@@ -70,7 +79,6 @@ std::optional<std::size_t> GaitMap::cell_at(std::span<const std::uint32_t> place
   return cell;
 }
 
-/// Cells that follow each other are neighbours on the first axis.
 std::optional<std::size_t> GaitMap::cell_of(std::span<const double> scores) const {
   if (!std::isfinite(scores.front()) || scores.front() == experiment_.objectives.front().failed) {
     return std::nullopt;

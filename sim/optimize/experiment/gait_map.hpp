@@ -40,6 +40,8 @@ class GaitMap {
   [[nodiscard]] std::optional<std::size_t> cell_of(std::span<const double> scores) const;
   /// The middle of a cell: a value of each axis, in its unit.
   [[nodiscard]] std::vector<double> middle(std::size_t cell) const;
+  /// The middle of a cell as shares of its axes: 0 at the lowest, 1 at the highest value.
+  [[nodiscard]] std::vector<double> point(std::size_t cell) const;
   /// The candidate of a cell; null if it is empty.
   [[nodiscard]] const Elite* elite_of(std::size_t cell) const;
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -64,9 +65,10 @@ class MapPlot {
     plot_height_ = (map_bottom - sim::first_panel_top - gap * (cells_[3] - 1.0)) / cells_[3];
   }
 
-  void draw(Svg& svg, const GaitMap& map, const Axis& scale) const {
+  /// elites: filled cells of the map.
+  void draw(Svg& svg, const GaitMap& map, std::span<const GaitMap::Elite> elites, const Axis& scale) const {
     std::array<Polyline, colour_count> starts;
-    for (const GaitMap::Elite& elite : map.elites()) {
+    for (const GaitMap::Elite& elite : elites) {
       const double share = (elite.score - scale.low) / (scale.high - scale.low);
       const auto number = static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * (colour_count - 1)));
       starts[number].push_back(start(map.place(elite.cell)));
@@ -85,6 +87,18 @@ class MapPlot {
     }
     svg.end_group();
     draw_names(svg);
+  }
+
+  /// Writes a text onto a cell.
+  void mark(Svg& svg, const GaitMap& map, std::size_t cell, std::string_view text, bool is_best) const {
+    const Point left = start(map.place(cell));
+    const Point middle{left.x + plot_width_ / cells_[0] / 2.0, left.y};
+    if (is_best) {
+      svg.circle(middle, 11.0, R"(fill="none" stroke="#ffffff" stroke-width="4")");
+      svg.circle(middle, 11.0, R"(fill="none" stroke="#d55e00" stroke-width="2")");
+    }
+    svg.text({middle.x, middle.y + 4.0}, text, sim::TextAnchor::middle, sim::label_size, sim::ink,
+             R"(font-weight="bold" stroke="#ffffff" stroke-width="3" paint-order="stroke")");
   }
 
  private:
@@ -155,6 +169,17 @@ void draw_colours(Svg& svg, const Axis& scale, std::string_view name) {
   svg.text({sim::page_right, sim::first_panel_top - 12.0}, name, sim::TextAnchor::end, sim::label_size, sim::ink);
 }
 
+Axis colour_scale(std::span<const GaitMap::Elite> elites) {
+  double lowest = 0.0;
+  double highest = 0.0;
+  if (!elites.empty()) {
+    const auto [min, max] = std::ranges::minmax(elites, {}, &GaitMap::Elite::score);
+    lowest = drawable(min.score);
+    highest = drawable(max.score);
+  }
+  return sim::axis_over(lowest, highest, map_bottom, sim::first_panel_top);
+}
+
 void draw_small(Svg& svg, double top, const Polyline& line, std::string_view name) {
   const double end = line.empty() ? 1.0 : line.back().x;
   double highest = 0.0;
@@ -180,14 +205,7 @@ std::string draw_gait_map(const Experiment& experiment, std::span<const Evaluati
     coverage.push_back({number, 100.0 * map.coverage()});
     qd_score.push_back({number, drawable(map.qd_score())});
   }
-  double lowest = 0.0;
-  double highest = 0.0;
-  if (!map.elites().empty()) {
-    const auto [min, max] = std::ranges::minmax(map.elites(), {}, &GaitMap::Elite::score);
-    lowest = drawable(min.score);
-    highest = drawable(max.score);
-  }
-  const Axis scale = sim::axis_over(lowest, highest, map_bottom, sim::first_panel_top);
+  const Axis scale = colour_scale(map.elites());
   const Objective& objective = experiment.objectives.front();
 
   Svg svg(sim::page_width, map_page_height, experiment.title(),
@@ -197,11 +215,35 @@ std::string draw_gait_map(const Experiment& experiment, std::span<const Evaluati
                 map.elites().size(), map.cells(), 100.0 * map.coverage(), rounded_text(map.qd_score()).c_str(),
                 evaluations.size());
   sim::draw_title(svg, experiment.title(), subtitle.data());
-  MapPlot(experiment).draw(svg, map, scale);
+  MapPlot(experiment).draw(svg, map, map.elites(), scale);
   draw_colours(svg, scale, with_unit(objective.name, objective.unit()));
   const double first_small = map_bottom + small_gap;
   draw_small(svg, first_small, coverage, "filled cells (%)");
   draw_small(svg, first_small + small_height + small_gap, qd_score, "QD score");
+  return svg.finish();
+}
+
+std::string draw_map_with_trials(const Experiment& experiment, std::span<const GaitMap::Elite> cells,
+                                 std::span<const std::size_t> tried, std::size_t best, std::string_view subtitle) {
+  const GaitMap map(experiment);
+  const Axis scale = colour_scale(cells);
+  const Objective& objective = experiment.objectives.front();
+  Svg svg(sim::page_width, map_bottom + 56.0, experiment.title(),
+          "A map of gaits: what is expected of each cell after trials, whose numbers are on their cells.");
+  sim::draw_title(svg, experiment.title(), subtitle);
+  const MapPlot plot(experiment);
+  plot.draw(svg, map, cells, scale);
+  draw_colours(svg, scale, "expected " + with_unit(objective.name, objective.unit()));
+  std::map<std::size_t, std::string> numbers;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    std::string& text = numbers[tried[i]];
+    text += (text.empty() ? "" : ",") + std::to_string(i + 1);
+  }
+  svg.begin_group("trials");
+  for (const auto& [cell, text] : numbers) {
+    plot.mark(svg, map, cell, text, !tried.empty() && cell == tried[best]);
+  }
+  svg.end_group();
   return svg.finish();
 }
 

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/optimize/evaluation/confirmation.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/gait_map.hpp"
 
 namespace proleg::optimize {
 
@@ -30,6 +32,13 @@ namespace proleg::optimize {
 /// are those of a plot; axes 3 and 4 repeat it in columns and rows. Below are coverage and QD score (GaitMap) against
 /// evaluations.
 [[nodiscard]] std::string draw_gait_map(const Experiment& experiment, std::span<const Evaluation> evaluations);
+
+/// Draws as SVG a map of gaits with other scores than those of a search, such as those that are expected after trials.
+/// cells: filled cells with their scores. tried: the cell of each trial; the picture has its number, from 1, there.
+/// best: position of the best trial in `tried`, which has a ring.
+[[nodiscard]] std::string draw_map_with_trials(const Experiment& experiment, std::span<const GaitMap::Elite> cells,
+                                               std::span<const std::size_t> tried, std::size_t best,
+                                               std::string_view subtitle);
 
 /// Table like evaluations_table(): the candidate of each filled cell of the map of gaits, by cell. The first columns
 /// are the number of the cell on each axis, from 1 ("cell:height").

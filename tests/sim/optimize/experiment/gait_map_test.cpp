@@ -108,6 +108,13 @@ TEST(GaitMap, HasNeighboursAlsoAtCorners) {
   EXPECT_FALSE(map.are_neighbours(cell(3, 0), cell(0, 1))) << "their numbers follow each other";
 }
 
+TEST(GaitMap, HasTheMiddleOfACellAsSharesOfItsAxes) {
+  const Experiment experiment = with_axes({4, 2});
+  const GaitMap map(experiment);
+  EXPECT_EQ(map.point(0), (std::vector<double>{0.125, 0.25}));
+  EXPECT_EQ(map.point(7), (std::vector<double>{0.875, 0.75}));
+}
+
 TEST(GaitMap, HasNoRunThatFailedOrLacksAMeasure) {
   const Experiment experiment = with_axes({4, 2});
   GaitMap map(experiment);

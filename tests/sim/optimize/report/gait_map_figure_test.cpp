@@ -61,6 +61,19 @@ TEST(GaitMapFigure, IsDrawnWhateverTheEvaluationsAndStaysSmall) {
   EXPECT_LT(draw_gait_map(large, evaluations).size(), 1'500'000U);
 }
 
+TEST(GaitMapFigure, ShowsTheNumbersOfTrialsOnTheirCells) {
+  const Experiment experiment = with_axes(2, 10);
+  const std::vector<GaitMap::Elite> cells{{7, 0, -1.5}, {42, 1, 3.25}, {99, 2, 0.5}};
+  const std::vector<std::size_t> tried{42, 99, 42};
+  Picture picture(draw_map_with_trials(experiment, cells, tried, 1, "after 3 trials"));
+  EXPECT_EQ(picture.marks("map"), 3U);
+  for (const char* text : {"after 3 trials", "1,3", "2", "expected distance (m)"}) {
+    EXPECT_TRUE(picture.has_text(text)) << text;
+  }
+  Picture without(draw_map_with_trials(experiment, cells, {}, 0, "before the first trial"));
+  EXPECT_EQ(without.marks("map"), 3U);
+}
+
 TEST(GaitMapTable, HasALineForEachFilledCellInTheirOrder) {
   const Experiment experiment = map_experiment(2, 10);
   const std::vector<Evaluation> evaluations{evaluation_at(0, {1.0, 0.95, 0.05}), evaluation_at(1, {2.0, 0.05, 0.05}),

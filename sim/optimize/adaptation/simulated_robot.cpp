@@ -1,0 +1,39 @@
+#include "sim/optimize/adaptation/simulated_robot.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "sim/loop/simulation.hpp"
+#include "sim/optimize/evaluation/fitness_source.hpp"
+#include "sim/physics/physics_error.hpp"
+
+namespace proleg::optimize {
+
+SimulatedRobot::SimulatedRobot(const Experiment& experiment, sim::Scenario reality, sim::Losses losses,
+                               std::function<bool()> stop)
+    : experiment_(experiment), reality_(std::move(reality)), losses_(std::move(losses)), stop_(std::move(stop)) {}
+
+TrialOutcome SimulatedRobot::try_gait(const Candidate& candidate) {
+  sim::Scenario scenario = reality_;
+  experiment_.space.apply(candidate, scenario);
+  const Objective& objective = experiment_.objectives.front();
+  try {
+    sim::Simulation simulation(scenario, &losses_);
+    simulation.leave_out_hashes();
+    while (simulation.tick() < sim::tick_count(scenario)) {
+      if (stop_()) {
+        throw SearchEnded();
+      }
+      simulation.advance();
+    }
+    const double score = objective.score(simulation.measures(experiment_.heading_deg));
+    if (score != objective.failed) {
+      return {score, {}};
+    }
+    return {score, "the run does not define " + objective.name};
+  } catch (const sim::PhysicsError& error) {
+    return {objective.failed, error.what()};
+  }
+}
+
+}  // namespace proleg::optimize

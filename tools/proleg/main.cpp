@@ -42,6 +42,7 @@ constexpr std::array subcommands{
     Subcommand{"optimise", "search for the parameters of a gait"},
     Subcommand{"atlas", "fill a map of many different gaits, and write the scenario of any of them"},
     Subcommand{"confirm", "say whether a gait is real or lives on an error of the physics"},
+    Subcommand{"adapt", "find a gait that a damaged robot can do, in a few trials"},
     Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
     Subcommand{"bus", "serve a simulated robot that other programs reach as a real one"},
     Subcommand{"drive", "move a robot of modules as its scenario says"},

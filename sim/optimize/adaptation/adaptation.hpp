@@ -17,14 +17,14 @@ namespace proleg::optimize {
 
 /// A filled cell of the map.
 struct AdaptationCell {
-  std::vector<double> point;  ///< place in the map; the same number of coordinates for all cells
+  std::vector<double> point;  ///< nearby points have similar values; the same number of coordinates for all cells
   double prior = 0.0;         ///< value that the map expects; the higher, the better
 };
 
 struct AdaptationSettings {
   double alpha = 0.9;         ///< the best value that ends the trials, as a share of the best that is expected; 0 to 1
   double kappa = 0.05;        ///< weight of the deviation in the choice of the next cell; not negative
-  double length = 0.1;        ///< of the kernel; above 0
+  double length = 0.3;        ///< of the kernel; above 0
   double noise = 0.03;        ///< standard deviation of a trial, as a share of the deviation from the map; not negative
   std::uint32_t trials = 12;  ///< largest number of trials; at least 1
 };

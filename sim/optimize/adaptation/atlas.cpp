@@ -88,6 +88,10 @@ std::vector<AdaptationCell> Atlas::cells() const {
   std::vector<AdaptationCell> cells;
   for (const AtlasGait& gait : gaits) {
     cells.push_back({gait.point, -experiment.objectives.front().cost(gait.score)});
+    for (std::size_t i = 0; i < gait.candidate.size(); ++i) {
+      const std::size_t count = experiment.space.dimensions[i].values.size();
+      cells.back().point.push_back(count > 1 ? gait.candidate[i] / static_cast<double>(count - 1) : 0.0);
+    }
   }
   return cells;
 }

@@ -26,7 +26,9 @@ struct Atlas {
   Experiment experiment;         ///< has axes
   std::vector<AtlasGait> gaits;  ///< at least one
 
-  /// The cells for an adaptation, in the order of the gaits; the higher a value, the better.
+  /// The cells for an adaptation, in the order of the gaits; the higher a value, the better. The point of a gait is the
+  /// middle of its cell, and its values, each from 0 at the first to 1 at the last of its dimension: measures of the
+  /// whole robot do not tell which joints a gait uses, and so which gaits a damage of one joint concerns.
   [[nodiscard]] std::vector<AdaptationCell> cells() const;
   /// The middle of a gait's cell on an axis, in the unit of its measure.
   [[nodiscard]] double descriptor(const AtlasGait& gait, std::size_t axis) const;

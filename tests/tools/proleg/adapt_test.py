@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""proleg adapt with a small atlas: what it finds, writes and refuses, and how it continues.
+
+Usage: adapt_test.py SOURCE_FOLDER PROGRAM_FOLDER
+"""
+
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
+WAVE = SOURCE / "sim" / "scenarios" / "travelling_wave"
+SCENARIO = WAVE / "uniform.simulation.xml"
+OTHER_ROBOT = SOURCE / "sim" / "scenarios" / "long_chain" / "twenty.simulation.xml"
+
+
+def run(command, *arguments):
+    return subprocess.run([PROGRAMS / f"proleg-{command}", *map(str, arguments)], capture_output=True, text=True)
+
+
+class Adapt(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.atlas = cls.folder / "atlas"
+        cls.search(300)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def search(cls, evaluations, *options):
+        made = run("optimise", WAVE / "gait_map.optimise.xml", "--engine", "reduced", "--workers", 1, "--evaluations",
+                   evaluations, *(options or ("--out", cls.atlas)))
+        assert made.returncode == 0, made.stderr
+
+    def adapt(self, name, *options, scenario=SCENARIO, status=0):
+        result = run("adapt", scenario, "--atlas", self.atlas, "--out", self.folder / name, "--json", *options)
+        self.assertEqual(result.returncode, status, result.stderr)
+        return json.loads(result.stdout)
+
+    def refused(self, *arguments):
+        """The one line with which bad input is refused."""
+        result = run("adapt", *arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        return result.stderr
+
+    def test_an_intact_robot_needs_few_trials(self):
+        result = self.adapt("intact")
+        self.assertEqual(result["ended"], "good enough")
+        self.assertLessEqual(len(result["trials"]), 3)
+        first = result["trials"][0]
+        self.assertAlmostEqual(first["measured"] / first["expected"], 1, delta=0.15)  # ODE, the reduced engine
+
+    def test_the_gait_that_is_written_goes_as_far_as_was_measured(self):
+        result = self.adapt("written", "--trials", 4, "--alpha", 1, "--length", 0.05)
+        self.assertEqual(result["best"], max(trial["measured"] for trial in result["trials"]))
+        self.assertEqual(result["best"], result["trials"][result["best_trial"] - 1]["measured"])
+        simulated = json.loads(run("simulate", self.folder / "written" / "adapted.simulation.xml", "--json").stdout)
+        self.assertEqual(simulated["measures"]["distance"], result["best"])
+
+    def test_a_jammed_joint_is_worked_around(self):
+        result = self.adapt("jammed", "--damage", "jammed:J3=20")
+        self.assertLessEqual(len(result["trials"]), 12)
+        first = result["trials"][0]
+        self.assertLess(first["measured"], 0.9 * first["expected"])  # the atlas does not know of the jam
+        self.assertGreaterEqual(result["best"], first["measured"])
+        cells = [line.split("\t") for line in (self.folder / "jammed" / "trials.tsv").read_text().splitlines()[2:]]
+        self.assertEqual([int(line[1]) for line in cells], [trial["cell"] for trial in result["trials"]])
+        picture = ElementTree.parse(self.folder / "jammed" / "trials.svg").getroot()
+        group = next(g for g in picture.iter("{http://www.w3.org/2000/svg}g") if g.get("class") == "trials")
+        numbers = {n for text in group.iter("{http://www.w3.org/2000/svg}text") for n in text.text.split(",")}
+        self.assertEqual(numbers, {str(i + 1) for i in range(len(result["trials"]))})
+
+    def test_every_damage_changes_the_trials(self):
+        intact = self.adapt("as_it_is", "--trials", 1)["best"]
+        for damage in ("jammed:J3", "torque:J3=40", "powerless:J3", "lost:J3", "friction=50%", "mass:Head=300"):
+            with self.subTest(damage=damage):
+                result = self.adapt("damage_" + damage.replace(":", "_"), "--trials", 1, "--damage", damage)
+                self.assertNotEqual(result["best"], intact)
+                self.assertEqual(result["damage"], [damage])
+
+    def test_it_continues_where_it_was(self):
+        options = ["--damage", "jammed:J3=20", "--alpha", 1, "--length", 0.05]
+        whole = self.adapt("whole", *options, "--trials", 5)
+        self.adapt("parts", *options, "--trials", 2)
+        rest = run("adapt", SCENARIO, "--atlas", self.atlas, *options, "--trials", 5, "--resume", self.folder / "parts",
+                   "--json")
+        self.assertEqual(rest.returncode, 0, rest.stderr)
+        rest = json.loads(rest.stdout)
+        self.assertEqual(rest["resumed"], 2)
+        self.assertEqual(rest["trials"], whole["trials"])
+        for name in ("trials.tsv", "trials.svg"):
+            self.assertEqual((self.folder / "parts" / name).read_text(), (self.folder / "whole" / name).read_text())
+
+    def test_other_inputs_do_not_continue(self):
+        self.adapt("refused", "--trials", 1, "--damage", "jammed:J2")
+        resume = ["--resume", self.folder / "refused", "--atlas", self.atlas]
+        for options in (["--damage", "jammed:J3"], ["--damage", "jammed:J2", "--seconds", 11],
+                        ["--damage", "jammed:J2", "--friction", 0.4]):
+            self.assertIn("trials.tsv:1: found trials of another atlas, scenario or program",
+                          self.refused(SCENARIO, *resume, *options))
+        self.assertIn("nothing to resume",
+                      self.refused(SCENARIO, "--atlas", self.atlas, "--resume", self.folder / "nowhere"))
+        self.assertFalse((self.folder / "nowhere").exists())
+
+    def test_control_c_keeps_what_was_learned(self):
+        folder = self.folder / "interrupted"
+        command = [PROGRAMS / "proleg-adapt", SCENARIO, "--atlas", self.atlas, "--damage", "jammed:J3", "--seconds",
+                   "30", "--alpha", "1"]
+        program = subprocess.Popen([*command, "--trials", "1000", "--out", folder], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.assertTrue(program.stdout.readline().startswith("trial 1 "))
+        program.send_signal(signal.SIGINT)
+        _, errors = program.communicate()
+        self.assertEqual(program.returncode, 1, errors)
+        self.assertIn("--resume", errors)
+        made = len((folder / "trials.tsv").read_text().splitlines()) - 2
+        self.assertGreaterEqual(made, 1)
+        self.assertTrue((folder / "adapted.simulation.xml").exists())
+        resumed = subprocess.run([*command, "--trials", str(made), "--resume", folder, "--json"], capture_output=True,
+                                 text=True)
+        self.assertEqual(resumed.returncode, 0, resumed.stderr)
+        self.assertEqual(json.loads(resumed.stdout)["resumed"], made)
+
+    def test_bad_input_is_refused_in_one_line(self):
+        out = ["--out", self.folder / "none"]
+        atlas = ["--atlas", self.atlas]
+        self.assertIn("--damage: found", self.refused(SCENARIO, *atlas, *out, "--damage", "jammed:J9"))
+        self.assertIn("--trials", self.refused(SCENARIO, *atlas, *out, "--trials", 0))
+        self.assertIn("--alpha", self.refused(SCENARIO, *atlas, *out, "--alpha", "nan"))
+        self.assertIn("--seconds", self.refused(SCENARIO, *atlas, *out, "--seconds", 0))
+        self.assertIn("store.sqlite", self.refused(SCENARIO, "--atlas", self.folder, *out))
+        self.assertIn("found 20 joints, expected 5 joints as in the atlas", self.refused(OTHER_ROBOT, *atlas, *out))
+        self.assertIn("found another frequency", self.refused(SCENARIO, *atlas, *out, "--set", "frequency=0.7"))
+        self.assertFalse((self.folder / "none").exists())
+        self.adapt("twice", "--trials", 1)
+        self.assertIn("found an existing file", self.refused(SCENARIO, *atlas, "--out", self.folder / "twice"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -21,6 +21,8 @@ from pathlib import Path
 IN_PROGRAMS = ["libboost-dev", "libcli11-dev", "libeigen3-dev", "nlohmann-json3-dev"]
 IN_IMAGES = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "libstdc++-arm-none-eabi-newlib"]
 IN_PYTHON = ["pybind11-dev"]
+# What loads the modules of Python. The build for another architecture does not use them: their versions are those of this computer.
+OF_PYTHON = ["python3", "python3-numpy"]
 IN_DOCUMENTS = ["mkdocs-material"]
 NONE = "NOASSERTION"
 
@@ -102,16 +104,17 @@ def bill(source, version, commit, debs):
             packages[found["SPDXID"]] = found
             relations.append((root["SPDXID"], relation, found["SPDXID"]))
 
+    here = Debian(source, architecture_here())
     for architecture, own in sorted(by_architecture(debs).items()):
         if architecture == "all":
             continue  # no programs
         debian = Debian(source, architecture)
         for name in sorted(set().union(*map(dependencies, own))):
-            add(debian.package(name), "DYNAMIC_LINK")
+            add((here if name in OF_PYTHON else debian).package(name), "DYNAMIC_LINK")
         for name in IN_PROGRAMS + (IN_IMAGES + IN_PYTHON if architecture == architecture_here() else []):
             add(debian.package(name), "STATIC_LINK")
     for name in IN_DOCUMENTS:
-        add(Debian(source, architecture_here()).package(name), "CONTAINS")
+        add(here.package(name), "CONTAINS")
     for found in npm_packages(source / "host/page/package-lock.json"):
         add(found, "CONTAINS")
     created = datetime.fromtimestamp(int(os.environ["SOURCE_DATE_EPOCH"]), timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")

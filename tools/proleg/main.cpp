@@ -1,8 +1,9 @@
-// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...` in the same folder. Each subcommand is a separate
-// program, so that none needs the libraries of another.
+// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...` in the same folder. Subcommands are separate
+// programs, so that none needs the libraries of another; those that need the same ones are one program.
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -22,6 +23,8 @@ namespace {
 struct Subcommand {
   std::string_view name;
   std::string_view summary;
+  /// What follows "proleg-" in the name of its program; empty: its own name. The program gets the name as argument 0.
+  std::string_view program = {};
 };
 
 constexpr std::array subcommands{
@@ -40,9 +43,9 @@ constexpr std::array subcommands{
     Subcommand{"export", "write a recording as a table or a page, or a robot for other simulators"},
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
     Subcommand{"optimise", "search for the parameters of a gait"},
-    Subcommand{"atlas", "fill a map of many different gaits, and write the scenario of any of them"},
+    Subcommand{"atlas", "fill a map of many different gaits, and write the scenario of any of them", "optimise"},
     Subcommand{"confirm", "say whether a gait is real or lives on an error of the physics"},
-    Subcommand{"adapt", "find a gait that a damaged robot can do, in a few trials"},
+    Subcommand{"adapt", "find a gait that a damaged robot can do, in a few trials", "optimise"},
     Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
     Subcommand{"bus", "serve a simulated robot that other programs reach as a real one"},
     Subcommand{"drive", "move a robot of modules as its scenario says"},
@@ -115,18 +118,15 @@ int main(int argc, char** argv) {
     std::cout << "proleg " << proleg::tools::build_id << '\n';
     return finish_output();
   }
-  bool known = false;
-  for (const Subcommand& subcommand : subcommands) {
-    known = known || subcommand.name == word;
-  }
-  if (!known) {
+  const auto subcommand = std::ranges::find(subcommands, word, &Subcommand::name);
+  if (subcommand == subcommands.end()) {
     std::cerr << "proleg: found unknown subcommand " << proleg::one_line(proleg::in_quotes(word))
               << ", expected one that 'proleg --help' lists" << hint(word) << '\n';
     return 2;
   }
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  const std::string name = "proleg-" + std::string(word);
+  const std::string name = "proleg-" + std::string(subcommand->program.empty() ? word : subcommand->program);
   const std::string program = (folder / name).string();
   std::vector<char*> arguments(argv + 1, argv + argc);
   arguments.push_back(nullptr);

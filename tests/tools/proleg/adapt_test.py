@@ -20,7 +20,7 @@ OTHER_ROBOT = SOURCE / "sim" / "scenarios" / "long_chain" / "twenty.simulation.x
 
 
 def run(command, *arguments):
-    return subprocess.run([PROGRAMS / f"proleg-{command}", *map(str, arguments)], capture_output=True, text=True)
+    return subprocess.run([PROGRAMS / "proleg", command, *map(str, arguments)], capture_output=True, text=True)
 
 
 class Adapt(unittest.TestCase):
@@ -115,7 +115,7 @@ class Adapt(unittest.TestCase):
 
     def test_control_c_keeps_what_was_learned(self):
         folder = self.folder / "interrupted"
-        command = [PROGRAMS / "proleg-adapt", SCENARIO, "--atlas", self.atlas, "--damage", "jammed:J3", "--seconds",
+        command = [PROGRAMS / "proleg", "adapt", SCENARIO, "--atlas", self.atlas, "--damage", "jammed:J3", "--seconds",
                    "30", "--alpha", "1"]
         program = subprocess.Popen([*command, "--trials", "1000", "--out", folder], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)

@@ -36,11 +36,11 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/search/optimise.hpp"
 
+namespace proleg::tools {
 namespace {
 
-using namespace proleg;
-using namespace proleg::tools;
 using optimize::Adaptation;
 using optimize::Atlas;
 using optimize::AtlasGait;
@@ -375,7 +375,7 @@ int adapt(AdaptOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int adapt_command(int argc, char** argv) {
   CommandLine command_line("proleg adapt",
                            "Finds a gait for a robot that is damaged, or in a world that differs, in a few trials. An "
                            "atlas (a map of gaits of the intact robot)\nsays what to expect of each gait; each trial "
@@ -421,3 +421,5 @@ int main(int argc, char** argv) {
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return adapt(options); });
 }
+
+}  // namespace proleg::tools

@@ -27,10 +27,9 @@
 #include "tools/proleg/search/optimise.hpp"
 #include "tools/proleg/search/search_result.hpp"
 
+namespace proleg::tools {
 namespace {
 
-using namespace proleg;
-using namespace proleg::tools;
 using optimize::Evaluation;
 using optimize::Experiment;
 using optimize::GaitMap;
@@ -194,7 +193,7 @@ int atlas(const AtlasOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int atlas_command(int argc, char** argv) {
   AtlasOptions options;
   options.program = "proleg atlas";
   options.fills_atlas = true;
@@ -220,3 +219,5 @@ int main(int argc, char** argv) {
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return atlas(options); });
 }
+
+}  // namespace proleg::tools

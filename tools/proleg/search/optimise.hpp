@@ -51,4 +51,10 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers);
 /// Runs `proleg optimise` with the workers that `make_workers` makes.
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers);
 
+/// Runs `proleg atlas`.
+int atlas_command(int argc, char** argv);
+
+/// Runs `proleg adapt`.
+int adapt_command(int argc, char** argv);
+
 }  // namespace proleg::tools

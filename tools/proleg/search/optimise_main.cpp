@@ -1,5 +1,5 @@
-// proleg optimise on this computer. Under mpirun it starts the program beside it with the same name and -mpi, which
-// needs Open MPI.
+// proleg optimise on this computer, and the commands that are the same program: proleg atlas, proleg adapt. Under
+// mpirun it starts the program beside it with the same name and -mpi, which needs Open MPI.
 
 #include <unistd.h>
 
@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <string_view>
 
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -28,6 +29,13 @@ void run_over_mpi(char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::string_view command = argc > 0 ? argv[0] : "";  // of the dispatcher
+  if (command == "adapt") {
+    return proleg::tools::adapt_command(argc, argv);
+  }
+  if (command == "atlas") {
+    return proleg::tools::atlas_command(argc, argv);
+  }
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {  // set by Open MPI's mpirun
     run_over_mpi(argv);
     return proleg::tools::exit_failed;

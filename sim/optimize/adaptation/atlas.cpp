@@ -20,8 +20,7 @@ namespace proleg::optimize {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found) {
-  throw StoreError(path.string() + ": found " + found +
-                   ", expected a map of gaits: the folder of `proleg optimise` with <mapElites>");
+  throw StoreError(path.string() + ": found " + found + ", expected a map of gaits: the folder of `proleg atlas`");
 }
 
 std::string joint_count_text(std::size_t count) { return std::to_string(count) + (count == 1 ? " joint" : " joints"); }

@@ -6,6 +6,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/unit.hpp"
+#include "sim/optimize/experiment/gait_map.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/scenario/settings.hpp"
 
@@ -42,14 +43,14 @@ std::vector<std::string_view> columns_of(std::string_view line) {
 }
 
 /// A trial of a line; nothing if it is damaged.
-std::optional<MadeTrial> read_trial(const Atlas& atlas, std::string_view line, std::size_t number) {
+std::optional<MadeTrial> read_trial(const Atlas& atlas, const GaitMap& map, std::string_view line, std::size_t number) {
   const std::vector<std::string_view> columns = columns_of(line);
   const std::size_t scores = 2 + atlas.experiment.axes.size() + atlas.experiment.space.dimensions.size();
   if (columns.size() != scores + 4 || parse_whole<std::size_t>(columns[0]) != number) {
     return std::nullopt;
   }
-  const auto cell = parse_whole<std::size_t>(columns[1]);
-  const auto gait = std::ranges::find_if(atlas.gaits, [&](const AtlasGait& one) { return one.cell == cell; });
+  const auto gait =
+      std::ranges::find_if(atlas.gaits, [&](const AtlasGait& one) { return map.place_text(one.cell) == columns[1]; });
   const std::optional<double> expected = parse_number(columns[scores]);
   const std::optional<double> deviation = parse_number(columns[scores + 1]);
   const std::optional<double> measured = parse_number(columns[scores + 2]);
@@ -63,11 +64,12 @@ std::optional<MadeTrial> read_trial(const Atlas& atlas, std::string_view line, s
 }  // namespace
 
 std::string trial_table(const Atlas& atlas, const std::string& inputs, const std::vector<MadeTrial>& trials) {
+  const GaitMap map(atlas.experiment);
   std::string text = std::string(inputs_comment) + inputs + '\n' + head_of(atlas) + '\n';
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const MadeTrial& trial = trials[i];
     const AtlasGait& gait = atlas.gaits[trial.gait];
-    text += std::to_string(i + 1) + '\t' + std::to_string(gait.cell);
+    text += std::to_string(i + 1) + '\t' + map.place_text(gait.cell);
     for (std::size_t axis = 0; axis < gait.point.size(); ++axis) {
       text += '\t' + rounded_text(atlas.descriptor(gait, axis));
     }
@@ -96,12 +98,13 @@ std::vector<MadeTrial> read_trial_table(const Atlas& atlas, const std::string& i
   if (const std::optional<std::string_view> head = lines.next(); !head || *head != head_of(atlas)) {
     throw InputError(name, 2, "another head", "that of the table of these trials");
   }
+  const GaitMap map(atlas.experiment);
   std::vector<MadeTrial> trials;
   while (const std::optional<std::string_view> line = lines.next()) {
     if (line->empty()) {
       continue;
     }
-    const std::optional<MadeTrial> trial = read_trial(atlas, *line, trials.size() + 1);
+    const std::optional<MadeTrial> trial = read_trial(atlas, map, *line, trials.size() + 1);
     if (!trial) {
       throw InputError(name, lines.number(), in_quotes(*line),
                        "trial " + std::to_string(trials.size() + 1) + " in the columns of the head");

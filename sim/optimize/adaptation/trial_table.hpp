@@ -20,7 +20,7 @@ struct MadeTrial {
   std::string failure;    ///< why it has no score of its own; empty: it has one
 };
 
-/// A comment with the inputs; a head; and a line for each trial: its number from 1, number and middle of its cell,
+/// A comment with the inputs; a head; and a line for each trial: its number from 1, place and middle of its cell,
 /// the gait's values, expected score and its standard deviation, measured score, failure. Columns are separated by
 /// tabs. inputs: a text without line ends that tells adaptations apart, such as a fingerprint.
 [[nodiscard]] std::string trial_table(const Atlas& atlas, const std::string& inputs,

@@ -53,6 +53,14 @@ std::vector<std::uint32_t> GaitMap::place(std::size_t cell) const {
   return place;
 }
 
+std::string GaitMap::place_text(std::size_t cell) const {
+  std::string text;
+  for (const std::uint32_t number : place(cell)) {
+    text += (text.empty() ? "" : ",") + std::to_string(number + 1);
+  }
+  return text;
+}
+
 std::vector<double> GaitMap::point(std::size_t cell) const {
   std::vector<double> point;
   for (const std::uint32_t number : place(cell)) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim/optimize/experiment/experiment.hpp"
@@ -34,6 +35,8 @@ class GaitMap {
   [[nodiscard]] std::size_t cells() const { return positions_.size(); }
   /// The place of a cell: its number on each axis, from 0.
   [[nodiscard]] std::vector<std::uint32_t> place(std::size_t cell) const;
+  /// The place as files and commands have it, with numbers from 1: "3,7".
+  [[nodiscard]] std::string place_text(std::size_t cell) const;
   /// The cell with this place; nothing if the map has none there.
   [[nodiscard]] std::optional<std::size_t> cell_at(std::span<const std::uint32_t> place) const;
   /// The cell of a run; nothing if it failed, or lacks the measure of an axis. scores: of all objectives.

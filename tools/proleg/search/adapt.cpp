@@ -36,6 +36,7 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/search/map_result.hpp"
 #include "tools/proleg/search/optimise.hpp"
 
 namespace proleg::tools {
@@ -131,6 +132,7 @@ class Run {
   Run(const AdaptOptions& options, const Atlas& atlas, const sim::Scenario& intact, std::filesystem::path folder)
       : options_(options),
         atlas_(atlas),
+        map_(atlas.experiment),
         objective_(atlas.experiment.objectives.front()),
         intact_(intact),
         folder_(std::move(folder)),
@@ -227,7 +229,7 @@ class Run {
   [[nodiscard]] std::string line_of(std::size_t position) const {
     const MadeTrial& trial = made_[position];
     const AtlasGait& gait = atlas_.gaits[trial.gait];
-    return "trial " + std::to_string(position + 1) + "  cell " + std::to_string(gait.cell) + " (" +
+    return "trial " + std::to_string(position + 1) + "  cell " + map_.place_text(gait.cell) + " (" +
            descriptor_text(gait) + "): expected " + with_unit_text(trial.expected, objective_.unit()) + ", measured " +
            with_unit_text(trial.measured, objective_.unit()) +
            (trial.failure.empty() ? "" : ", failed: " + one_line(trial.failure));
@@ -295,7 +297,7 @@ class Run {
     for (std::size_t d = 0; d < gait.candidate.size(); ++d) {
       values.add(atlas_.experiment.space.dimensions[d].name, atlas_.experiment.space.value(gait.candidate, d));
     }
-    return {{"cell", gait.cell}, {"descriptor", descriptor}, {"values", values}};
+    return {{"cell", place_object(map_, gait.cell)}, {"descriptor", descriptor}, {"values", values}};
   }
 
   [[nodiscard]] Json json(const MadeTrial* best) const {
@@ -332,6 +334,7 @@ class Run {
 
   const AdaptOptions& options_;
   const Atlas& atlas_;
+  const optimize::GaitMap map_;  ///< for the places of its cells
   const optimize::Objective& objective_;
   const sim::Scenario& intact_;  ///< without the damages of the command line
   std::filesystem::path folder_;
@@ -383,9 +386,7 @@ int adapt_command(int argc, char** argv) {
   AdaptOptions options;
   options.scenario.seconds = "10";
   add_scenario(command_line, options.scenario.file, "scenario of the robot as it is now, and of its world").required();
-  command_line
-      .add_option("--atlas", options.atlas,
-                  "map of gaits of the intact robot: the folder of `proleg optimise` with <mapElites>")
+  command_line.add_option("--atlas", options.atlas, "map of gaits of the intact robot: the folder of `proleg atlas`")
       .value_name("FOLDER")
       .required();
   command_line

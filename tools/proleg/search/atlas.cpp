@@ -80,9 +80,9 @@ GaitMap::Elite named_cell(const Experiment& experiment, const GaitMap& map, cons
   constexpr std::size_t named = 3;
   for (const GaitMap::Elite& elite :
        map.nearest(std::vector<std::optional<double>>(middle.begin(), middle.end()), named)) {
-    nearest += (nearest.empty() ? "" : " ") + place_text(map, elite.cell);
+    nearest += (nearest.empty() ? "" : " ") + map.place_text(elite.cell);
   }
-  throw InputError("--cell", 0, "the empty cell " + place_text(map, *cell), "a filled one; the nearest: " + nearest);
+  throw InputError("--cell", 0, "the empty cell " + map.place_text(*cell), "a filled one; the nearest: " + nearest);
 }
 
 /// The filled cell that is nearest to the values of --near.
@@ -123,7 +123,7 @@ Json object_of(const Experiment& experiment, const GaitMap& map, std::size_t cel
 
 void print_cell(const Experiment& experiment, const GaitMap& map, std::size_t cell, const Evaluation& evaluation,
                 const std::filesystem::path& file) {
-  print_line("cell", place_text(map, cell));
+  print_line("cell", map.place_text(cell));
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     const std::string_view unit = experiment.objectives[i].unit();
     print_line("  " + experiment.objectives[i].name,
@@ -151,7 +151,7 @@ int write_cell(const AtlasOptions& options) {
   const GaitMap::Elite elite =
       options.cell ? named_cell(experiment, map, *options.cell) : nearest_cell(experiment, map, *options.near);
   const Evaluation& evaluation = evaluations[elite.candidate];
-  const std::string place = place_text(map, elite.cell);
+  const std::string place = map.place_text(elite.cell);
   std::string name = "cell_" + place;
   std::ranges::replace(name, ',', '_');
   const std::filesystem::path out(options.out.value_or(folder.string()));

@@ -45,14 +45,6 @@ Json map_object(const GaitMap& map) {
           {"qd_score", map.qd_score()}};
 }
 
-std::string place_text(const GaitMap& map, std::size_t cell) {
-  std::string text;
-  for (const std::uint32_t number : map.place(cell)) {
-    text += (text.empty() ? "" : ",") + std::to_string(number + 1);
-  }
-  return text;
-}
-
 Json place_object(const GaitMap& map, std::size_t cell) {
   Json place = Json::empty_array();
   for (const std::uint32_t number : map.place(cell)) {
@@ -94,7 +86,7 @@ void print_agreement(const Experiment& experiment, std::span<const Confirmation>
                            " in the same one, " + std::to_string(agreement.near_it) + " there or next to it");
   const GaitMap map(experiment);
   if (const std::optional<std::size_t> cell = map.cell_of(best.scores)) {
-    print_line("  best cell", place_text(map, *cell));
+    print_line("  best cell", map.place_text(*cell));
   }
 }
 

@@ -21,8 +21,7 @@ void print_line(const std::string& name, const std::string& text);
 [[nodiscard]] std::string map_text(const optimize::GaitMap& map);
 [[nodiscard]] Json map_object(const optimize::GaitMap& map);
 
-/// The place of a cell as map.tsv and the option --cell have it, numbers from 1: "3,7".
-[[nodiscard]] std::string place_text(const optimize::GaitMap& map, std::size_t cell);
+/// The place of a cell, with numbers from 1.
 [[nodiscard]] Json place_object(const optimize::GaitMap& map, std::size_t cell);
 
 /// Those of the confirmations that belong to the candidates of some cells, in the order of the cells.

@@ -26,8 +26,8 @@ TEST(TrialTable, SaysOfEachTrialItsCellGaitAndScores) {
             "# inputs: abc\n"
             "trial\tcell\theight (m)\tduty_factor\tamplitude:J5 (deg)\tamplitude:J4 (deg)\tamplitude:J3 (deg)\t"
             "amplitude:J2 (deg)\tamplitude:J1 (deg)\texpected (m)\tdeviation (m)\tmeasured (m)\tfailure\n"
-            "1\t499\t0.049\t0.395\t30\t30\t30\t30\t30\t0.75\t0.125\t0.1\t\n"
-            "2\t0\t0.001\t0.205\t10\t10\t10\t10\t10\t1.2\t1.25\t0\tthe robot fell\n");
+            "1\t25,20\t0.049\t0.395\t30\t30\t30\t30\t30\t0.75\t0.125\t0.1\t\n"
+            "2\t1,1\t0.001\t0.205\t10\t10\t10\t10\t10\t1.2\t1.25\t0\tthe robot fell\n");
 }
 
 TEST(TrialTable, IsReadBack) {
@@ -54,8 +54,8 @@ TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
     return message_of("abc", changed);
   };
   EXPECT_NE(with("trial\tcell", "trail\tcell").find("trials.tsv:2:"), std::string::npos);
-  EXPECT_NE(with("\n2\t0\t", "\n2\t7\t").find("trials.tsv:4:"), std::string::npos) << "no gait in this cell";
-  EXPECT_NE(with("\n2\t0\t", "\n3\t0\t").find("trials.tsv:4:"), std::string::npos) << "trial 2 is missing";
+  EXPECT_NE(with("\n2\t1,1\t", "\n2\t8,1\t").find("trials.tsv:4:"), std::string::npos) << "no gait in this cell";
+  EXPECT_NE(with("\n2\t1,1\t", "\n3\t1,1\t").find("trials.tsv:4:"), std::string::npos) << "trial 2 is missing";
   EXPECT_NE(with("0.125\t0.1\t", "0.125\tinf\t").find("trials.tsv:3:"), std::string::npos);
   EXPECT_NE(with("0.125\t0.1\t", "0.125\t").find("trials.tsv:3:"), std::string::npos);
 }

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import unittest
 
-WITHOUT_MODULES = ["atlas", "confirm", "experiment", "optimise", "receipt", "replay", "simulate", "sweep"]
+WITHOUT_MODULES = ["confirm", "experiment", "optimise", "receipt", "replay", "simulate", "sweep"]
 ROOMS_OF_MODULES = re.compile(
     r"CMakeFiles/((?:firmware|host|sim_mcu)_\w+|shared_(?:broadcast|can|canopen|image|computer_master)"
     r"|sim_(?:bus|fault|hardware_loop|live|serial))\.dir/")

@@ -62,7 +62,7 @@ TEST(GaitMapFigure, IsDrawnWhateverTheEvaluationsAndStaysSmall) {
 }
 
 TEST(GaitMapFigure, ShowsTheNumbersOfTrialsOnTheirCells) {
-  const Experiment experiment = with_axes(2, 10);
+  const Experiment experiment = map_experiment(2, 10);
   const std::vector<GaitMap::Elite> cells{{7, 0, -1.5}, {42, 1, 3.25}, {99, 2, 0.5}};
   const std::vector<std::size_t> tried{42, 99, 42};
   Picture picture(draw_map_with_trials(experiment, cells, tried, 1, "after 3 trials"));

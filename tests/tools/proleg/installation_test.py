@@ -58,7 +58,7 @@ class Installation(unittest.TestCase):
         names = re.findall(r"^  (\w+) ", self.proleg("--help").stdout, re.MULTILINE)
         self.assertGreater(len(names), 30)
         for name in names:
-            self.assertTrue((self.prefix / "lib/proleg/bin" / f"proleg-{name}").exists(), name)
+            self.assertIn(f"proleg {name}", self.proleg(name, "--help").stdout)
             self.assertTrue((self.prefix / "share/man/man1" / f"proleg-{name}.1").exists(), name)
         self.assertTrue((self.prefix / "share/bash-completion/completions/proleg").exists())
 

@@ -179,8 +179,8 @@ class Arm64Packages(unittest.TestCase):
         code = "import proleg; run = proleg.simulate('caterpillar', seconds=2, engine='reduced'); print(run.setpoint_hash, run.servo_hash, run.world_hash)"
         expected = json.loads(self.here("simulate", "caterpillar", "--seconds", "2", "--engine", "reduced", "--json"))
         # The scripts of packages have not run here: no links name the libraries that update-alternatives chooses.
-        of_numpy = "LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu/blas:/usr/lib/aarch64-linux-gnu/lapack"
-        self.assertEqual(self.emulated("env", of_numpy, "python3", "-c", code).split(),
+        of_numpy = {**ENVIRONMENT, "LD_LIBRARY_PATH": "/usr/lib/aarch64-linux-gnu/blas:/usr/lib/aarch64-linux-gnu/lapack"}
+        self.assertEqual(run(*self.command("python3", "-c", code), env=of_numpy).split(),
                          [str(expected[name]) for name in ("setpoint_hash", "servo_hash", "world_hash")])
 
     def test_modules_and_the_flashed_image_repeat_it_also_with_pages_of_16_kib(self):

@@ -15,7 +15,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
+# This interpreter runs them: a version manager may put a script before it that takes longer than they do.
 TOOLS = Path(__file__).resolve().parents[3] / "tools"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(TOOLS))
+from content_hash import ContentHash  # noqa: E402
 
 PROGRAM = """
 #include <cstdlib>
@@ -45,20 +49,31 @@ class Folder(unittest.TestCase):
 
 
 class TestResults(Folder):
+    @classmethod
+    def setUpClass(cls):
+        cls.built = Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.built)
+        (cls.built / "program.cpp").write_text(PROGRAM)
+        (cls.built / "limit.hpp").write_text("#define LIMIT 3\n")
+        (cls.built / "golden.tsv").write_text("right\n")
+        (cls.built / "reader").write_text("#!/bin/sh\nexit 0\n")
+        (cls.built / "reader").chmod(0o755)
+        cls.build_in(cls.built)
+
     def setUp(self):
         super().setUp()
-        self.write("program.cpp", PROGRAM)
-        self.write("limit.hpp", "#define LIMIT 3\n")
-        self.write("golden.tsv", "right\n")
-        self.write("reader", "#!/bin/sh\nexit 0\n").chmod(0o755)
-        self.build()
+        shutil.copytree(self.built, self.folder, dirs_exist_ok=True)
+
+    @staticmethod
+    def build_in(folder, *flags):
+        subprocess.run(["g++", "-DMINIMUM=1", *flags, "program.cpp", "-o", "program"], cwd=folder, check=True)
 
     def build(self, *flags):
-        subprocess.run(["g++", "-DMINIMUM=1", *flags, "program.cpp", "-o", "program"], cwd=self.folder, check=True)
+        self.build_in(self.folder, *flags)
 
     def run_test(self, *options, **environment):
         return subprocess.run(
-            [TOOLS / "run_test", "--name", "room/subject", "--results", "results", "--program", "reader",
+            [sys.executable, TOOLS / "run_test", "--name", "room/subject", "--results", "results", "--program", "reader",
              "--data", "golden.tsv", *options, "--", "./program"],
             cwd=self.folder, capture_output=True, text=True, check=False,
             env={**os.environ, "PROLEG_REUSE_RESULTS": "1", "PROLEG_AUDIT_INPUTS": "0", **environment})
@@ -87,8 +102,8 @@ class TestResults(Folder):
     def test_a_test_does_not_see_what_the_programs_of_the_user_keep(self):
         (self.folder / "print").write_text("#!/bin/sh\necho state:$XDG_STATE_HOME\n")
         (self.folder / "print").chmod(0o755)
-        finished = subprocess.run([TOOLS / "run_test", "--name", "state", "--results", "results", "--", "./print"], cwd=self.folder,
-                                  capture_output=True, text=True, check=True, env={**os.environ, "XDG_STATE_HOME": str(self.folder)})
+        finished = subprocess.run([sys.executable, TOOLS / "run_test", "--name", "state", "--results", "results", "--", "./print"],
+                                  cwd=self.folder, capture_output=True, text=True, check=True, env={**os.environ, "XDG_STATE_HOME": str(self.folder)})
         state = Path(re.search("state:(.*)", finished.stdout)[1])
         self.assertTrue(state.is_absolute() and state != self.folder)
         self.assertFalse(state.exists(), "it is removed at the end")
@@ -174,7 +189,7 @@ class TestResults(Folder):
         shutil.copytree(TOOLS, checkout / "tools")
         (checkout / "docs").mkdir()
         (checkout / "docs" / "page.md").write_text("text")
-        command = [checkout / "tools" / "run_test", "--name", "reads", "--results", "results"]
+        command = [sys.executable, checkout / "tools" / "run_test", "--name", "reads", "--results", "results"]
         reads = ["--", shutil.which("cat"), str(checkout / "docs" / "page.md")]
         environment = {**os.environ, "PROLEG_AUDIT_INPUTS": "1"}
 
@@ -203,8 +218,20 @@ class TidySources(Folder):
     CHECKS += "HeaderFilterRegex: '.*'\n"
     FINDING = "inline int* pointer() { return 0; }"
 
+    @classmethod
+    def setUpClass(cls):
+        """clang-tidy and its libraries, 200 MB, are read once: each test begins with their hashes in its memory."""
+        folder = Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.memory = folder / "files"
+        hashes = ContentHash(cls.memory)
+        hashes.program(shutil.which("clang-tidy-14") or "clang-tidy")
+        hashes.save()
+
     def setUp(self):
         super().setUp()
+        (self.folder / "build/clean").mkdir(parents=True)
+        shutil.copy(self.memory, self.folder / "build/clean")
         self.write(".clang-tidy", self.CHECKS)
         self.write(".gitignore", "/build/\n/bin/\n")
         self.write("shared/pointer.hpp", "inline int* pointer() { return nullptr; }\n")
@@ -223,12 +250,14 @@ class TidySources(Folder):
     def git(self, *arguments):
         subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=b", *arguments], cwd=self.folder, check=True)
 
-    def commit(self):
+    def commit(self, count=1):
+        """The changes, and commits without changes after them."""
         self.git("add", ".")
-        self.git("commit", "--quiet", "--allow-empty", "--message", "commit")
+        for _ in range(count):
+            self.git("commit", "--quiet", "--allow-empty", "--message", "commit")
 
     def tidy(self, *options, **environment):
-        finished = subprocess.run([TOOLS / "tidy", "--build", "build", *options],
+        finished = subprocess.run([sys.executable, TOOLS / "tidy", "--build", "build", *options],
                                   cwd=self.folder, capture_output=True, text=True, check=False,
                                   env={**os.environ, "PROLEG_REUSE_RESULTS": "1", **environment})
         return finished.returncode, finished.stdout
@@ -297,9 +326,7 @@ class TidyChanges(TidySources):
     def setUp(self):
         super().setUp()
         self.write("shared/two.cpp", "int* two() { return 0; }\n")
-        self.commit()
-        for _ in range(20):
-            self.commit()
+        self.commit(21)
 
     def test_a_file_that_did_not_change_is_left_to_the_slow_suite(self):
         self.expect_clean(read=0, reused=0)
@@ -325,8 +352,7 @@ class TidyChanges(TidySources):
         self.git("branch", "upstream")
         self.git("branch", "--quiet", "--set-upstream-to", "upstream")
         self.write("shared/one.cpp", "int* one() { return 0; }\n")
-        for _ in range(30):
-            self.commit()
+        self.commit(30)
         self.expect_finding("one.cpp:1")
 
     def test_a_fresh_clone_reads_its_last_commits(self):

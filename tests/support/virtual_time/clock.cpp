@@ -448,6 +448,26 @@ int timerfd_settime(int descriptor, int flags, const itimerspec* time, itimerspe
   return 0;
 }
 
+// The keeper wakes threads that take no other signals, too.
+int pthread_sigmask(int how, const sigset_t* signals, sigset_t* old) {
+  sigset_t others{};
+  if (shared != nullptr && signals != nullptr && how != SIG_UNBLOCK) {
+    others = *signals;
+    sigdelset(&others, proleg::virtual_time::wake_signal);
+    signals = &others;
+  }
+  return PROLEG_REAL(pthread_sigmask)(how, signals, old);
+}
+
+int sigprocmask(int how, const sigset_t* signals, sigset_t* old) {
+  const int error = pthread_sigmask(how, signals, old);
+  if (error != 0) {
+    errno = error;
+    return -1;
+  }
+  return 0;
+}
+
 int pthread_cond_signal(pthread_cond_t* condition) {
   ++notifications;
   return PROLEG_REAL(pthread_cond_signal)(condition);

@@ -3,10 +3,13 @@
 // becomes the end of the wait that ends first.
 //
 // Linux says whether a thread waits (proc(5)): its state, in which function of the kernel it waits, and how often it
-// was given a processor. Two readings of all threads, one after the other, that are the same and find all threads
-// asleep mean that none ran between them, so that none can wake another. The state alone does not suffice: a thread may
-// lose the processor when it has the state of a sleeper already, or still, for example while it ends. It waits for a
-// processor then, in no function of the kernel.
+// was given a processor. The state alone does not suffice: a thread may lose the processor when it has the state of a
+// sleeper already, or still, for example while it ends. It waits for a processor then, in no function of the kernel. A
+// thread that was asleep in a function of the kernel once, and was given no processor since, has only the state to
+// show.
+//
+// The keeper notes the turns of all threads, and then looks at each of them: it sleeps, and has had no turn since. Then
+// all of them slept when the last turns had been noted and no thread had been looked at yet, and none can wake another.
 //
 // Exit status: that of the program; 1 if all threads wait and no wait has an end. Processes that it leaves behind are
 // killed.
@@ -66,13 +69,6 @@ class File {
   int descriptor_;
 };
 
-/// What /proc says of a thread.
-struct Reading {
-  bool is_asleep = false;  ///< or stopped, or has ended
-  std::string turns;       ///< time on and in front of the processors, number of turns
-  bool operator==(const Reading&) const = default;
-};
-
 class Thread {
  public:
   Thread(int process, int thread)
@@ -84,29 +80,48 @@ class Thread {
   static std::string path(int process, int thread) {
     return "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread);
   }
-  [[nodiscard]] Reading read() {
+  /// Notes how often it was given a processor.
+  void note_turns() { noted_turns_ = read_turns(); }
+  [[nodiscard]] bool has_noted_turns() const { return noted_turns_.has_value(); }
+  /// Whether it sleeps now, or is stopped, or has ended.
+  [[nodiscard]] bool is_asleep() {
     std::array<char, 1024> buffer{};
-    Reading reading;
     const std::string_view stat = stat_.read(buffer);
     const std::size_t name_end = stat.rfind(')');
     const char state = name_end == std::string_view::npos ? 'X' : stat[name_end + 2];
     has_ended_ = state == 'Z' || state == 'X';
-    reading.is_asleep = has_ended_ || state == 'T' || (std::strchr("SI", state) != nullptr && waits_in_kernel());
-    reading.turns = schedstat_.read(buffer);
-    return reading;
+    if (!has_ended_ && std::strchr("TSI", state) == nullptr) {
+      return false;
+    }
+    turns_ = read_turns();
+    return has_ended_ || state == 'T' || waits_in_kernel();
   }
-  /// At the last reading. Such a thread can remain until its parent asks for its status.
+  /// Whether it was given a processor between the last note_turns() and the last is_asleep().
+  [[nodiscard]] bool had_a_turn() const { return noted_turns_ != turns_; }
+  /// When it was asleep last. Such a thread can remain until its parent asks for its status.
   [[nodiscard]] bool has_ended() const { return has_ended_; }
 
  private:
+  using Turns = std::array<char, 64>;  ///< time on and in front of the processors, number of turns, as text
+
+  [[nodiscard]] Turns read_turns() const {
+    Turns turns{};
+    std::array<char, 1024> buffer{};
+    schedstat_.read(buffer).copy(turns.data(), turns.size());
+    return turns;
+  }
   /// Whether a thread with the state of a sleeper waits in a function of the kernel, so that it does not wait for a
   /// processor. Always true if this kernel does not say where threads wait.
-  [[nodiscard]] bool waits_in_kernel() const {
+  [[nodiscard]] bool waits_in_kernel() {
     static bool is_said = false;  // whether the kernel has said it of any thread
+    if (turns_of_wait_ == turns_) {
+      return true;
+    }
     std::array<char, 1024> buffer{};
     const std::string_view function = wchan_.read(buffer);
     if (!function.empty() && function != "0") {
       is_said = true;
+      turns_of_wait_ = turns_;
       return true;
     }
     return function.empty() || !is_said;
@@ -117,6 +132,9 @@ class Thread {
   File wchan_;
   File schedstat_;
   bool has_ended_ = false;
+  std::optional<Turns> noted_turns_;
+  Turns turns_{};                       ///< when it was asleep last
+  std::optional<Turns> turns_of_wait_;  ///< before the kernel named the function in which it waits
 };
 
 std::vector<int> numbers_in(std::string_view text) {
@@ -147,15 +165,33 @@ class Family {
       list();
     }
   }
-  /// As refresh(), while all known threads sleep: then none of them is starting another one, and the list is complete.
-  void complete() {
+  /// Whether the thread runs that was seen running last: the one that most probably does.
+  [[nodiscard]] bool runs_on() {
+    const auto last = threads_.find(runner_);
+    return last != threads_.end() && !last->second->is_asleep();
+  }
+  /// Whether all threads sleep. A thread among `restless` may have had a turn.
+  [[nodiscard]] bool sleeps(const std::vector<int>& restless) {
+    for (const auto& [number, thread] : threads_) {
+      thread->note_turns();
+    }
     if (!is_complete_) {
       last_started_.clear();
     }
     refresh();
+    for (const auto& [number, thread] : threads_) {
+      if (!thread->is_asleep()) {
+        runner_ = number;
+        return false;
+      }
+      if (!thread->has_noted_turns() ||
+          (thread->had_a_turn() && std::find(restless.begin(), restless.end(), number) == restless.end())) {
+        return false;
+      }
+    }
+    is_complete_ = true;  // no thread was starting another one during refresh()
+    return true;
   }
-  /// The known threads slept all the time of complete().
-  void confirm() { is_complete_ = true; }
   /// Ends all threads.
   void kill_all() {
     last_started_.clear();
@@ -167,23 +203,6 @@ class Family {
   [[nodiscard]] bool has_living(int thread) const {
     const auto found = threads_.find(thread);
     return found != threads_.end() && !found->second->has_ended();
-  }
-  /// Readings of all threads, by thread; nothing if one of them runs.
-  [[nodiscard]] std::optional<std::map<int, Reading>> read_sleepers() {
-    // The one that ran a moment ago is the one that most probably runs.
-    if (const auto last = threads_.find(runner_); last != threads_.end() && !last->second->read().is_asleep) {
-      return std::nullopt;
-    }
-    std::map<int, Reading> readings;
-    for (const auto& [number, thread] : threads_) {
-      Reading reading = thread->read();
-      if (!reading.is_asleep) {
-        runner_ = number;
-        return std::nullopt;
-      }
-      readings.emplace_hint(readings.end(), number, std::move(reading));
-    }
-    return readings;
   }
 
  private:
@@ -225,12 +244,12 @@ class Family {
   int runner_ = 0;  ///< thread that was seen running last
 };
 
-/// The waits with an end, by their numbers.
-std::map<const Wait*, std::uint32_t> pending(const SharedClock& clock) {
-  std::map<const Wait*, std::uint32_t> waits;
+/// The waits with an end, and their numbers.
+std::vector<std::pair<const Wait*, std::uint32_t>> pending(const SharedClock& clock) {
+  std::vector<std::pair<const Wait*, std::uint32_t>> waits;
   for (const Wait& wait : clock.wait) {
     if (wait.thread.load() != 0 && wait.end_ns.load() != never) {
-      waits.emplace(&wait, wait.number.load());
+      waits.emplace_back(&wait, wait.number.load());
     }
   }
   return waits;
@@ -259,37 +278,22 @@ class Keeper {
   void kill_all() { family_.kill_all(); }
 
  private:
-  static constexpr long shortest_pause_ns = 5'000;
+  static constexpr long shortest_pause_ns = 20'000;
   static constexpr long longest_pause_ns = 200'000;
   static constexpr int most_endless_looks = 20'000;
 
   bool all_wait() {
-    family_.refresh();
+    if (family_.runs_on()) {
+      return false;
+    }
     const auto waits = pending(clock_);
-    auto before = family_.read_sleepers();
-    if (!before) {
-      return false;
-    }
-    family_.complete();
-    auto after = family_.read_sleepers();
-    if (!after || pending(clock_) != waits) {
-      return false;
-    }
+    std::vector<int> restless;  // each may have looked at the time, but waits as before
     for (const auto& [wait, number] : waits) {
-      if (wait->looks_again.load()) {  // it may have looked at the time, but waits as before
-        const auto first = before->find(wait->thread.load());
-        const auto second = after->find(wait->thread.load());
-        if (first == before->end() || second == after->end()) {
-          return false;
-        }
-        first->second.turns = second->second.turns;
+      if (wait->looks_again.load()) {
+        restless.push_back(wait->thread.load());
       }
     }
-    if (before != after) {
-      return false;
-    }
-    family_.confirm();
-    return true;
+    return family_.sleeps(restless) && pending(clock_) == waits;
   }
 
   /// Has all processes with terminals poll them if any was written to since the last time; false if none was.
@@ -382,8 +386,10 @@ SharedClock& make_clock(std::string& path) {
 }
 
 volatile std::sig_atomic_t is_ended = 0;
+volatile std::sig_atomic_t has_child_ended = 0;
 
 void end(int) { is_ended = 1; }
+void note_child(int) { has_child_ended = 1; }
 
 /// Starts the program with the library and the clock. Its process id.
 int start(const char* library, const std::string& clock, char** command) {
@@ -406,8 +412,14 @@ int keep_time(Keeper& keeper, int program) {
       std::fputs("run_in_virtual_time: all threads wait, and no wait has an end\n", stderr);
       return 1;
     }
+    if (has_child_ended == 0) {
+      continue;
+    }
+    has_child_ended = 0;
     int status = 0;
-    const int ended = waitpid(-1, &status, WNOHANG);
+    int ended = 0;
+    while ((ended = waitpid(-1, &status, WNOHANG)) > 0 && ended != program) {
+    }
     if (ended == program) {
       return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
@@ -431,6 +443,7 @@ int main(int argc, char** argv) {
   prctl(PR_SET_TIMERSLACK, 1);
   std::signal(SIGTERM, end);
   std::signal(SIGINT, end);
+  std::signal(SIGCHLD, note_child);
   Keeper keeper(clock);
   const int program = start(argv[1], path, argv + 2);
   const int status = keep_time(keeper, program);

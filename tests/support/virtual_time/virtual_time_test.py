@@ -8,6 +8,7 @@ import ctypes
 import os
 import pty
 import select
+import signal
 import socket
 import subprocess
 import sys
@@ -45,6 +46,19 @@ class VirtualTime(unittest.TestCase):
     def test_a_wait_takes_as_long_as_it_says_and_no_time_of_the_computer(self):
         self.assertEqual(microseconds(time.sleep, 100 * 3600), 100 * 3600 * 1_000_000)
         self.assertEqual(microseconds(time.sleep, 0.5), 500_000)
+
+    def test_a_thread_that_takes_no_signals_waits_as_others(self):
+        waits = []
+
+        def wait():
+            signal.pthread_sigmask(signal.SIG_SETMASK, signal.valid_signals())
+            for function, *arguments in ((time.sleep, 2), (select.select, [], [], [], 2), (threading.Event().wait, 2)):
+                waits.append(microseconds(function, *arguments))
+
+        thread = threading.Thread(target=wait)
+        thread.start()
+        thread.join()
+        self.assertEqual([round(us, -1) for us in waits], [2_000_000] * 3)  # Python rounds up
 
     def test_both_clocks_go_on_together(self):
         difference = time.time_ns() - time.monotonic_ns()

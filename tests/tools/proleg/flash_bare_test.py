@@ -314,12 +314,14 @@ class FlashBare(unittest.TestCase):
                 self.expect_complete("stlink")
 
     def test_a_run_that_is_interrupted_anywhere_can_be_repeated(self):
-        for probe in PROBES:
+        # stm32flash waits half a minute for a chip that answers no more: its cuts are among the slow tests.
+        has_all_cuts = "PROLEG_CUTS" in os.environ
+        for probe in PROBES if has_all_cuts else ("stlink", "dfu"):
             self.chip = Stm32F405()
             self.expect_flashed(self.flash(probe, "--node", "3"))
             flashed, events = bytes(self.chip.flash), len(self.chip.events)
             self.assertGreaterEqual(events, 8 if probe == "stlink" else 6)
-            for cut in range(events) if "PROLEG_CUTS" in os.environ else (events // 2,):
+            for cut in range(events) if has_all_cuts else (events // 2,):
                 with self.subTest(probe=probe, cut=cut):
                     self.chip = Stm32F405()
                     self.chip.fails_at = cut

@@ -9,6 +9,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/from_environment.hpp"
 #include "tests/support/message_of.hpp"
 #include "world_files.hpp"
 
@@ -181,6 +182,7 @@ TEST_F(DraftTest, FilesThatAreSavedElsewhereKeepTheirHistory) {
 }
 
 // Seeded random changes of all kinds; at each state the texts are remembered, and undo and redo must come back to them.
+// The slow suite has six times as many (PROLEG_ROUNDS).
 TEST_F(DraftTest, UndoAndRedoReturnToEveryEarlierState) {
   constexpr unsigned seed = 48;
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -192,7 +194,8 @@ TEST_F(DraftTest, UndoAndRedoReturnToEveryEarlierState) {
   std::vector<std::string> states{text()};
   std::size_t at = 0;
   std::size_t refused = 0;
-  for (int i = 0; i < 500; ++i) {
+  const std::uint32_t operations = 100 * from_environment("PROLEG_ROUNDS", 1);
+  for (std::uint32_t i = 0; i < operations; ++i) {
     SCOPED_TRACE("operation " + std::to_string(i));
     constexpr std::size_t most_objects = 30;
     const std::size_t kind = read_world_contents(draft_).objects.size() > most_objects ? 7 : below(16);
@@ -253,8 +256,8 @@ TEST_F(DraftTest, UndoAndRedoReturnToEveryEarlierState) {
     }
     ASSERT_EQ(text(), states[at]);
   }
-  EXPECT_GT(states.size(), 50U);
-  EXPECT_LT(refused, 250U);
+  EXPECT_GT(states.size(), operations / 10);
+  EXPECT_LT(refused, operations / 2);
   while (draft_.undo()) {
     ASSERT_EQ(text(), states[--at]);
   }

@@ -1,5 +1,6 @@
 // Files as people write them: with comments, blanks, line ends of another system and tags in capitals anywhere. Opened
-// they have their bytes, and a change touches its element only.
+// they have their bytes, and a change touches its element only. PROLEG_ROUNDS: how often each scenario has its turn;
+// the slow suite has six rounds.
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,7 @@
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/from_environment.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -62,6 +64,8 @@ std::string mutated(std::string text, std::mt19937& random) {
   }
   return text;
 }
+
+std::size_t rounds() { return from_environment("PROLEG_ROUNDS", 1); }
 
 /// The shipped scenarios, and one of the thesis.
 std::vector<Scenario> all_scenarios() {
@@ -105,8 +109,9 @@ TEST(MutatedFiles, AChangeOfTheWorldTouchesItsObject) {
   std::mt19937 random(seed);
   const std::vector<Scenario> originals = all_scenarios();
   std::size_t changes = 0;
-  for (int i = 0; i < 300; ++i) {
-    const Scenario& original = originals[static_cast<std::size_t>(i) % originals.size()];
+  const std::size_t cases = 2 * rounds() * originals.size();
+  for (std::size_t i = 0; i < cases; ++i) {
+    const Scenario& original = originals[i % originals.size()];
     SCOPED_TRACE(original.path + ", mutation " + std::to_string(i));
     SourceTexts texts = with_mutations(original, original.environment_file, random);
     const std::string before = *texts.read(original.environment_file);
@@ -120,7 +125,7 @@ TEST(MutatedFiles, AChangeOfTheWorldTouchesItsObject) {
       continue;
     }
     const XmlText xml("before", before);
-    const int kind = i % 4;
+    const std::size_t kind = i % 4;
     draft.change("test", {}, [&](DraftChange& edit) {
       WorldChange change(world, edit);
       switch (kind) {
@@ -145,7 +150,7 @@ TEST(MutatedFiles, AChangeOfTheWorldTouchesItsObject) {
     ASSERT_EQ(draft.text(original.environment_file), before);
     ++changes;
   }
-  EXPECT_GT(changes, 250U);
+  EXPECT_GT(6 * changes, 5 * cases);
 }
 
 TEST(MutatedFiles, AChangeOfAJointTouchesItsElement) {
@@ -153,8 +158,9 @@ TEST(MutatedFiles, AChangeOfAJointTouchesItsElement) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
   const std::vector<Scenario> originals = all_scenarios();
-  for (std::size_t i = 0; i < 66; ++i) {
+  for (std::size_t i = 0; i < rounds() * originals.size(); ++i) {
     const Scenario& original = originals[i % originals.size()];
+    const std::size_t kind = (i + i / originals.size()) % 3;
     SCOPED_TRACE(original.path + ", mutation " + std::to_string(i));
     SourceTexts texts = with_mutations(original, original.robot_file, random);
     const std::string before = *texts.read(original.robot_file);
@@ -168,7 +174,7 @@ TEST(MutatedFiles, AChangeOfAJointTouchesItsElement) {
     const Scenario present = draft.scenario();
     draft.change("test", {}, [&](DraftChange& edit) {
       RobotChange change(present, edit);
-      switch (i % 3) {
+      switch (kind) {
         case 0:
           return change.set_axis(JointMask::of(joint), {0.6, 0, 0.8});
         case 1:
@@ -179,7 +185,7 @@ TEST(MutatedFiles, AChangeOfAJointTouchesItsElement) {
     });
     expect_same_around(xml, element, draft.text(original.robot_file));
     const Joint& changed = draft.scenario().robot.joints[joint];
-    EXPECT_TRUE(i % 3 != 2 || changed.max_torque == 0.375);
+    EXPECT_TRUE(kind != 2 || changed.max_torque == 0.375);
     ASSERT_TRUE(draft.undo());
     ASSERT_EQ(draft.text(original.robot_file), before);
     if (original.robot.joints.size() < 20) {
@@ -196,8 +202,9 @@ TEST(MutatedFiles, AChangeOfTheBehaviourTouchesItsModule) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
   const std::vector<Scenario> originals = all_scenarios();
-  for (std::size_t i = 0; i < 66; ++i) {
+  for (std::size_t i = 0; i < rounds() * originals.size(); ++i) {
     const Scenario& original = originals[i % originals.size()];
+    const std::size_t kind = (i + i / originals.size()) % 3;
     SCOPED_TRACE(original.path + ", mutation " + std::to_string(i));
     SourceTexts texts = with_mutations(original, original.actuation_file, random);
     const std::string before = *texts.read(original.actuation_file);
@@ -211,7 +218,7 @@ TEST(MutatedFiles, AChangeOfTheBehaviourTouchesItsModule) {
     draft.change("test", {}, [&](DraftChange& edit) {
       BehaviourChange change(present, edit);
       const Parameter& parameter = used.algorithm->declaration().parameters[0];
-      switch (i % 3) {
+      switch (kind) {
         case 0:
           return change.set_parameter(slot, std::string(parameter.name), used.group, "1");
         case 1:

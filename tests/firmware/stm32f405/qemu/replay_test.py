@@ -183,8 +183,8 @@ class QemuReplay(unittest.TestCase):
 
     def test_a_tick_that_is_missing_in_the_log_is_found(self):
         syncs = [position for position, frame in enumerate(self.log) if frame[1] == SYNC]
-        removed = syncs[len(syncs) // 4]
-        sent, _ = self.replay(self.log[:removed] + self.log[removed + 1:syncs[len(syncs) // 2]])
+        removed = syncs[len(syncs) // 8]
+        sent, _ = self.replay(self.log[:removed] + self.log[removed + 1:syncs[len(syncs) // 4]])
         self.assertIn(STATE, {frame[0] for frame in sent})
         self.assertNotEqual(sent, self.expected()[:len(sent)])
 

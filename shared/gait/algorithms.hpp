@@ -91,4 +91,15 @@ namespace proleg {
 /// Nothing is broadcast.
 [[nodiscard]] const ActuationModule& sensing_module_global_adaptive_touch();
 
+/// A wave A_s sin(2 pi integral f_s dt + i phase_difference_s) + O_s, whose set of parameters s the robot chooses by
+/// what it senses (thesis, section 7.3: sensor fusion that selects locomotion patterns). The first joint of the group
+/// decides, from eight features: low-pass filtered inclination and its swing, roll, touch of all links, touch of the
+/// first link, changes of touch, and current and tracking error of the joint's servo. Set 4, 3 or 2 is chosen, in this
+/// order, if the one or two conditions of its rule hold, else set 1. The decision travels from joint to joint with a
+/// countdown, at whose end all joints change in the same tick; amplitude, phase and offset then pass over smoothly. A
+/// joint that receives nothing keeps its set, and is right one tick after it receives a frame again. This is a design
+/// of Proleg (docs/gait-selector.md); the conditions are those of a decision list (R. Rivest, Machine Learning 2,
+/// 1987).
+[[nodiscard]] const ActuationModule& sensing_module_gait_selector();
+
 }  // namespace proleg

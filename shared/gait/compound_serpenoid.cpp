@@ -24,13 +24,13 @@ enum Parameters : std::uint8_t {
   noise,
 };
 
-constexpr Parameter amplitude_of(std::string_view name, HostText help) {
+constexpr Parameter amplitude_of(ParameterName name, HostText help) {
   return {name, Unit::degree, raw(Unit::degree, 23), 0, quarter_turn, help};
 }
-constexpr Parameter frequency_of(std::string_view name, HostText help) {
+constexpr Parameter frequency_of(ParameterName name, HostText help) {
   return {name, Unit::hertz, raw(Unit::hertz, 8, 10), 0, raw(Unit::hertz, 20), help};
 }
-constexpr Parameter phase_difference_of(std::string_view name, HostText help) {
+constexpr Parameter phase_difference_of(ParameterName name, HostText help) {
   return {name, Unit::phase_degree, raw(Unit::phase_degree, 29), phase_minimum, phase_maximum, help};
 }
 

@@ -34,8 +34,9 @@ inline constexpr Parameter rate{
 
 /// Factor for the noise at reset; the default differs between algorithms.
 [[nodiscard]] constexpr Parameter noise(std::int32_t default_value) {
-  return {"noise", Unit::ratio,         default_value,
-          0,       raw(Unit::ratio, 4), "How irregular the start is. Factor on the noise of the start state."};
+  return {noise_name.data(),   Unit::ratio,
+          default_value,       0,
+          raw(Unit::ratio, 4), "How irregular the start is. Factor on the noise of the start state."};
 }
 
 }  // namespace proleg::generator_parameters

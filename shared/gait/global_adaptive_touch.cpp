@@ -22,7 +22,7 @@ enum Parameters : std::uint8_t {
 
 constexpr std::int32_t greatest_constant = raw(Unit::degree, 45);
 
-constexpr Parameter constant(std::string_view name, HostText help) {
+constexpr Parameter constant(ParameterName name, HostText help) {
   return {name, Unit::degree, raw(Unit::degree, 1), 0, greatest_constant, help};
 }
 

@@ -18,7 +18,9 @@ struct JointReadings {
     servo_current = 1U << 0U,
     inclination = 1U << 1U,
     acceleration = 1U << 2U,
+    angle_of_joint = 1U << 3U,
   };
+  static constexpr std::uint8_t all_sensors = 0x0F;
 
   std::uint8_t present = 0;  ///< sensors whose readings are known; the values of others are 0
   /// Current of the servo [mA], 0 to 32,767.
@@ -30,6 +32,8 @@ struct JointReadings {
   /// Acceleration of the link's centre of mass, minus gravity [mm/s^2], in the axes of the link (x to the right, y
   /// forwards, z up): at rest (0, 0, 9810). It is the mean over the tick before.
   std::array<std::int32_t, 3> acceleration_mm_s2{};
+  /// Actual angle of the joint, 90 degrees = 2^30.
+  std::int32_t angle = 0;
 
   [[nodiscard]] bool has(Sensor sensor) const { return (present & sensor) != 0; }
   /// These readings with only the sensors of these bits.
@@ -45,6 +49,9 @@ struct JointReadings {
     }
     if (kept.has(acceleration)) {
       kept.acceleration_mm_s2 = acceleration_mm_s2;
+    }
+    if (kept.has(angle_of_joint)) {
+      kept.angle = angle;
     }
     return kept;
   }

@@ -29,10 +29,10 @@ enum Parameters : std::uint8_t {
   noise,
 };
 
-constexpr Parameter gain_of(std::string_view name, HostText help) {
+constexpr Parameter gain_of(ParameterName name, HostText help) {
   return {name, Unit::degree, raw(Unit::degree, 80), 0, quarter_turn, help};
 }
-constexpr Parameter weight(std::string_view name, std::int32_t default_value, HostText help) {
+constexpr Parameter weight(ParameterName name, std::int32_t default_value, HostText help) {
   return {name, Unit::ratio, default_value, raw(Unit::ratio, -1), raw(Unit::ratio, 1), help};
 }
 

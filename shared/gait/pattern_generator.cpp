@@ -1,5 +1,7 @@
 #include "shared/gait/pattern_generator.hpp"
 
+#include <algorithm>
+
 #include "shared/fixed/arithmetic.hpp"
 
 namespace proleg {
@@ -22,11 +24,12 @@ void PatternGenerator::reset(const JointContext& context, const Tuning& tuning, 
                              std::int32_t* state) const {
   reset_pattern(context, tuning, state);
   const Declaration& about = declaration();
-  const int noise_parameter = find_parameter(about, "noise");
-  if (noise_parameter < 0) {
+  const auto parameter =
+      std::ranges::find_if(about.parameters, [](const Parameter& each) { return is_noise(each.name); });
+  if (parameter == about.parameters.end()) {
     return;
   }
-  const std::int32_t level = tuning.parameters[noise_parameter];
+  const std::int32_t level = tuning.parameters[parameter - about.parameters.begin()];
   for (std::size_t i = 0; i < about.internal_values.size(); ++i) {
     const InternalValue& value = about.internal_values[i];
     if (value.noise_scale != 0) {

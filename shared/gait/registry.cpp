@@ -24,6 +24,7 @@ constexpr const ActuationModule& (*algorithms[])() = {direct_joint_access,
                                                       pattern_generator_asymmetric_wave,
                                                       sensing_module_global_adaptive_touch,
                                                       pattern_generator_head_stimulus,
+                                                      sensing_module_gait_selector,
 #ifdef PROLEG_USER_ALGORITHMS  // functions of users' algorithms, each with a comma
                                                       PROLEG_USER_ALGORITHMS
 #endif

@@ -56,11 +56,15 @@ ModuleReadings::ModuleReadings(const Scenario& scenario, World& world)
       models_(models_for(scenario, needed_)),
       sensors_(models_, scenario.environment.gravity, scenario.step_s, scenario.kernel.tick_period_us, world) {}
 
-JointReadings ModuleReadings::of(std::size_t joint, std::uint16_t current_ma) const {
+JointReadings ModuleReadings::of(std::size_t joint, const ServoReadings& servo) const {
   constexpr std::uint16_t max_current_ma = 0x7FFF;  // as a module reports it
   JointReadings readings;
   readings.present = JointReadings::servo_current;
-  readings.current_ma = std::min(current_ma, max_current_ma);
+  readings.current_ma = std::min(servo.current_ma, max_current_ma);
+  if (servo.angle) {
+    readings.present |= JointReadings::angle_of_joint;
+    readings.angle = *servo.angle;
+  }
   if (!models_.empty()) {
     readings.present |= JointReadings::inclination | JointReadings::acceleration;
     const auto values = sensors_.values().subspan(values_of_joint * joint, values_of_joint);

@@ -75,9 +75,8 @@ class ModuleReadings {
   }
   void rest_at(std::span<const Pose> link_poses) { sensors_.rest_at(link_poses); }
 
-  /// The readings of the last tick. current_ma: of the joint's servo. Absent are those that no algorithm of the
-  /// scenario reads.
-  [[nodiscard]] JointReadings of(std::size_t joint, std::uint16_t current_ma) const;
+  /// The readings of the last tick. servo: of the joint. Absent are those that no algorithm of the scenario reads.
+  [[nodiscard]] JointReadings of(std::size_t joint, const ServoReadings& servo) const;
 
  private:
   std::uint8_t needed_;  ///< bits of JointReadings::Sensor

@@ -97,7 +97,7 @@ class Plant {
   /// What an algorithm on a joint can read of its module now (shared/gait/joint_readings.hpp), with sensors that no
   /// real module has. Those that no algorithm of the scenario reads are absent.
   [[nodiscard]] JointReadings joint_readings(std::size_t joint) const {
-    return module_readings_.of(joint, servo_readings(joint).current_ma);
+    return module_readings_.of(joint, servo_readings(joint));
   }
 
   /// The current of a servo, in mA, summed over all steps so far.

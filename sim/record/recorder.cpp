@@ -144,7 +144,8 @@ class Recorder::Storage {
       const JointReadings& read = sample.readings[joint];
       if (read.present != 0) {
         insert_reading_.run(tick, joint, std::uint32_t{read.present}, read.current_ma, read.pitch, read.roll,
-                            read.acceleration_mm_s2[0], read.acceleration_mm_s2[1], read.acceleration_mm_s2[2]);
+                            read.acceleration_mm_s2[0], read.acceleration_mm_s2[1], read.acceleration_mm_s2[2],
+                            read.angle);
       }
     }
     write_sensors(sample);
@@ -258,7 +259,7 @@ class Recorder::Storage {
   Statement insert_object_pose_{database_, "INSERT INTO object_pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_move_{database_, "INSERT INTO move(tick, x_m, y_m, z_m, turn_deg) VALUES(?1, ?2, ?3, ?4, ?5)"};
-  Statement insert_reading_{database_, "INSERT INTO reading VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
+  Statement insert_reading_{database_, "INSERT INTO reading VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)"};
   Statement insert_sensor_value_{database_, "INSERT INTO sensor_value VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};

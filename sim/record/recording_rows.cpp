@@ -164,10 +164,14 @@ ReadingRows::ReadingRows(Database& database, std::size_t joints, std::uint32_t f
   if (!Statement(database, "SELECT 1 FROM sqlite_schema WHERE name = 'reading'").step()) {
     return;
   }
-  row_.emplace(
-      database,
-      "SELECT tick, joint, present, current_ma, pitch_raw, roll_raw, acceleration_x_mm_s2, "
-      "acceleration_y_mm_s2, acceleration_z_mm_s2 FROM reading WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, joint");
+  const bool has_angle =
+      Statement(database, "SELECT 1 FROM pragma_table_info('reading') WHERE name = 'angle_raw'").step();
+  const std::string sql = std::string(
+                              "SELECT tick, joint, present, current_ma, pitch_raw, roll_raw, "
+                              "acceleration_x_mm_s2, acceleration_y_mm_s2, acceleration_z_mm_s2, ") +
+                          (has_angle ? "angle_raw" : "0") +
+                          " FROM reading WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, joint";
+  row_.emplace(database, sql);
   row_->bind_all(first, last);
   has_row_ = row_->step();
 }
@@ -178,14 +182,11 @@ void ReadingRows::read(std::uint32_t tick, std::vector<JointReadings>& readings)
   }
   for (; has_row_ && natural(*row_, 0) <= tick; has_row_ = row_->step()) {
     const std::uint32_t joint = natural(*row_, 1);
-    if (joint >= readings.size() || natural(*row_, 2) > 7) {
+    if (joint >= readings.size() || natural(*row_, 2) > JointReadings::all_sensors) {
       throw Damage("readings of joint " + std::to_string(joint) + " of " + std::to_string(readings.size()));
     }
-    readings[joint] = {static_cast<std::uint8_t>(natural(*row_, 2)),
-                       raw(*row_, 3),
-                       raw(*row_, 4),
-                       raw(*row_, 5),
-                       {raw(*row_, 6), raw(*row_, 7), raw(*row_, 8)}};
+    readings[joint] = {static_cast<std::uint8_t>(natural(*row_, 2)),  raw(*row_, 3), raw(*row_, 4), raw(*row_, 5),
+                       {raw(*row_, 6), raw(*row_, 7), raw(*row_, 8)}, raw(*row_, 9)};
   }
 }
 

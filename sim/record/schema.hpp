@@ -225,9 +225,10 @@ CREATE TABLE move(
 
 CREATE TABLE reading(
   -- What algorithms were given of the sensors of their joint's module at SYNC tick: servo current, pitch and roll of the
-  -- link behind the joint (90 degrees = 2^30), its acceleration less gravity, in its axes. present: the sum of 1 (current),
-  -- 2 (pitch and roll), 4 (acceleration); what is not present is 0. A joint without present sensors has no row. A
-  -- recording of an older program of this format has no such table.
+  -- link behind the joint (90 degrees = 2^30), its acceleration less gravity, in its axes, angle of the joint (90 degrees =
+  -- 2^30). present: the sum of 1 (current), 2 (pitch and roll), 4 (acceleration), 8 (angle); what is not present is 0. A
+  -- joint without present sensors has no row. A recording of an older program of this format has no such table, or one
+  -- without angle_raw.
   tick INTEGER NOT NULL,
   joint INTEGER NOT NULL,
   present INTEGER NOT NULL,
@@ -237,6 +238,7 @@ CREATE TABLE reading(
   acceleration_x_mm_s2 INTEGER NOT NULL,
   acceleration_y_mm_s2 INTEGER NOT NULL,
   acceleration_z_mm_s2 INTEGER NOT NULL,
+  angle_raw INTEGER NOT NULL,
   PRIMARY KEY(tick, joint)
 ) STRICT, WITHOUT ROWID;
 

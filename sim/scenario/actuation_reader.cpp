@@ -160,6 +160,7 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
   if (modules.empty()) {
     root.refuse("no <actuationModule> in " + root.label(), "1 to " + std::to_string(max_slots));
   }
+  refuse_contradictions(scenario);
 }
 
 std::vector<XmlElement> actuation_modules(const XmlDocument& document) {

@@ -16,7 +16,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::size_t max_parameters = 1000;
+constexpr std::size_t max_control_parameters = 1000;
 constexpr std::size_t max_value_size = 4096;
 
 RobotControlEntry::Parameter read_parameter(const XmlElement& element, const RobotModel& model) {
@@ -163,8 +163,8 @@ std::optional<RobotControlEntry> read_robot_control(const XmlElement& robot, con
                        (parameter.joint ? " for joint " + in_quotes(model.joints[*parameter.joint].name) : ""),
                    "one; the first is in line " + std::to_string(first->line));
     }
-    if (entry.parameters.size() == max_parameters) {
-      child.refuse("more than " + std::to_string(max_parameters) + " parameters", "at most that many");
+    if (entry.parameters.size() == max_control_parameters) {
+      child.refuse("more than " + std::to_string(max_control_parameters) + " parameters", "at most that many");
     }
     entry.parameters.push_back(parameter);
   }

@@ -84,6 +84,54 @@ std::int32_t start_value(const Scenario& scenario, unsigned slot, unsigned joint
              : scenario.kernel.slots[slot].algorithm->declaration().parameters[parameter].default_value;
 }
 
+void visit_parameter_values(
+    const Scenario& scenario, unsigned slot,
+    const std::function<void(unsigned joint, const std::array<std::int32_t, max_parameters>& values)>& visit) {
+  const Slot& visited = scenario.kernel.slots[slot];
+  for (const unsigned joint : visited.driven_joints()) {
+    std::array<std::int32_t, max_parameters> values{};
+    for (unsigned i = 0; i < visited.algorithm->declaration().parameters.size(); ++i) {
+      values[i] = start_value(scenario, slot, joint, i);
+    }
+    visit(joint, values);
+    for (const Change& change : scenario.changes) {
+      bool is_changed = false;
+      for (const Setting& setting : change.settings) {
+        if (setting.slot == slot && setting.joint == joint && !setting.internal) {
+          values[setting.number] = setting.value;
+          is_changed = true;
+        }
+      }
+      if (is_changed) {
+        visit(joint, values);
+      }
+    }
+  }
+}
+
+void refuse_contradictions(const Scenario& scenario) {
+  for (const unsigned slot : used_slots(scenario)) {
+    const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
+    if (declaration.rules == nullptr) {
+      continue;
+    }
+    visit_parameter_values(scenario, slot, [&](unsigned joint, const auto& values) {
+      const auto found = declaration.rules->contradiction(values.data());
+      if (!found) {
+        return;
+      }
+      const auto shown = [&](unsigned number) {
+        const Parameter& parameter = declaration.parameters[number];
+        return std::string(parameter.name) + " " + std::string(format_decimal(values[number], parameter.unit).view());
+      };
+      throw InputError(scenario.actuation_file, 0,
+                       slot_name(scenario, slot) + " with " + shown(found->parameter) + " and " + shown(found->other) +
+                           " on joint " + in_quotes(scenario.robot.joints[joint].name),
+                       std::string(std::string_view(found->expected)));
+    });
+  }
+}
+
 std::uint32_t read_tick(const std::string& word, const std::string& tick, std::uint32_t tick_period_us) {
   if (tick.ends_with('s')) {
     const std::optional<double> seconds = parse_number(std::string_view(tick).substr(0, tick.size() - 1));

@@ -2,7 +2,9 @@
 
 // Settings of a scenario: their texts, `--set` words and start values.
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +37,15 @@ void set_start_value(Scenario& scenario, const Setting& setting);
 
 /// The value of a parameter at the start of a run.
 [[nodiscard]] std::int32_t start_value(const Scenario& scenario, unsigned slot, unsigned joint, unsigned parameter);
+
+/// Calls visit(joint, values) with the values of all parameters of a used slot on each joint that it drives: those at
+/// the start, then those after each change of a parameter.
+void visit_parameter_values(
+    const Scenario& scenario, unsigned slot,
+    const std::function<void(unsigned joint, const std::array<std::int32_t, max_parameters>& values)>& visit);
+
+/// Throws InputError if values of parameters contradict each other, at the start or after a change.
+void refuse_contradictions(const Scenario& scenario);
 
 /// The tick that a word of the command line names behind its '@': a whole number, or seconds with an `s`, which mean
 /// the tick that begins then, or next. Throws InputError with the word as its file.

@@ -246,13 +246,14 @@ class Run {
   void measure() {
     for (unsigned joint = 0; joint < joint_count; ++joint) {
       JointReadings readings;
-      readings.present = static_cast<std::uint8_t>(measured_.any_bits() & 7U);
+      readings.present = static_cast<std::uint8_t>(measured_.any_bits() & JointReadings::all_sensors);
       readings.current_ma = static_cast<std::int32_t>(measured_.any_bits() >> 17U);
       readings.pitch = static_cast<std::int32_t>(measured_.any_bits());
       readings.roll = static_cast<std::int32_t>(measured_.any_bits());
       for (std::int32_t& axis : readings.acceleration_mm_s2) {
         axis = static_cast<std::int32_t>(measured_.any_bits());
       }
+      readings.angle = static_cast<std::int32_t>(measured_.any_bits());
       kernel_of(joint).set_readings(joint, readings);
     }
   }

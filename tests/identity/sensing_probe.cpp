@@ -52,9 +52,7 @@ class ReadingProbe final : public ActuationModule {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about_readings; }
 
-  [[nodiscard]] std::uint8_t senses_readings() const override {
-    return JointReadings::servo_current | JointReadings::inclination | JointReadings::acceleration;
-  }
+  [[nodiscard]] std::uint8_t senses_readings() const override { return JointReadings::all_sensors; }
 
   void advance(const Surroundings& surroundings, const Tuning& /*tuning*/, const std::int32_t* state,
                std::int32_t* next) const override {
@@ -65,7 +63,8 @@ class ReadingProbe final : public ActuationModule {
                                    readings.roll,
                                    readings.acceleration_mm_s2[0],
                                    readings.acceleration_mm_s2[1],
-                                   readings.acceleration_mm_s2[2]};
+                                   readings.acceleration_mm_s2[2],
+                                   readings.angle};
     auto mixed = static_cast<std::uint32_t>(state[mixture]);
     for (const std::int32_t value : values) {
       mixed = mixed * 1664525U + 1013904223U + static_cast<std::uint32_t>(value);

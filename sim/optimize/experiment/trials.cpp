@@ -34,7 +34,7 @@ const Dimension* find_dimension(const SearchSpace& space, const Setting& place) 
 bool starts_with_noise(const sim::Scenario& scenario, const SearchSpace& space, unsigned slot_number) {
   const Slot& slot = scenario.kernel.slots[slot_number];
   const Declaration& declaration = slot.algorithm->declaration();
-  const int noise = find_parameter(declaration, "noise");
+  const int noise = find_parameter(declaration, noise_name);
   const bool has_scale = std::ranges::any_of(declaration.internal_values,
                                              [](const InternalValue& value) { return value.noise_scale != 0; });
   if (noise < 0 || !has_scale) {

@@ -20,9 +20,10 @@ void for_each_algorithm(Visit visit) {
 }
 
 TEST(Registry, HoldsTheAlgorithmsUnderTheirNamesInFiles) {
-  for (const auto name : {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex,
-                          test::adaptive_touch, test::stimulus, test::serpenoid, test::compound, test::hopf,
-                          test::matsuoka, test::half_centre, test::push_pull, test::mtran, test::asymmetric}) {
+  for (const auto name :
+       {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex, test::adaptive_touch,
+        test::stimulus, test::selector, test::serpenoid, test::compound, test::hopf, test::matsuoka, test::half_centre,
+        test::push_pull, test::mtran, test::asymmetric}) {
     EXPECT_NE(find_algorithm(name), nullptr) << name;
   }
 }
@@ -50,6 +51,7 @@ TEST(Registry, KeepsTheIdsOfTheProtocol) {
   EXPECT_EQ(find_algorithm(test::reflex)->declaration().id, 5);
   EXPECT_EQ(find_algorithm(test::adaptive_touch)->declaration().id, 14);
   EXPECT_EQ(find_algorithm(test::stimulus)->declaration().id, 15);
+  EXPECT_EQ(find_algorithm(test::selector)->declaration().id, 16);
   EXPECT_EQ(find_algorithm(test::serpenoid)->declaration().id, 6);
   EXPECT_EQ(find_algorithm(test::compound)->declaration().id, 7);
   EXPECT_EQ(find_algorithm(test::hopf)->declaration().id, 8);

@@ -40,6 +40,7 @@ inline constexpr std::string_view coupled = "PatternGenerator_coupled_oscillator
 inline constexpr std::string_view stimulus = "PatternGenerator_head_stimulus";
 inline constexpr std::string_view reflex = "SensingModule_uneven_ground_reflex";
 inline constexpr std::string_view adaptive_touch = "SensingModule_global_adaptive_touch";
+inline constexpr std::string_view selector = "SensingModule_gait_selector";
 inline constexpr std::string_view serpenoid = "PatternGenerator_serpenoid";
 inline constexpr std::string_view compound = "PatternGenerator_compound_serpenoid";
 inline constexpr std::string_view hopf = "PatternGenerator_hopf";

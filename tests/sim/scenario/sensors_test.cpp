@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "memory_files.hpp"
+#include "shared/gait/registry.hpp"
 #include "sim/scenario/module_sensors.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -212,6 +214,29 @@ TEST(SensorsOfModules, AnAlgorithmThatNeedsOthersIsRefusedByName) {
                     "its servo (proleg simulate has all sensors)");
     }
   }
+}
+
+TEST(SensorsOfModules, AnAlgorithmWithRulesNeedsTheSensorsOfItsParametersAtAnyTime) {
+  Scenario scenario = small_scenario().scenario();
+  scenario.kernel.slots[2] = {find_algorithm("SensingModule_gait_selector"), JointMask::first(2)};
+  const auto is_refused = [](const Scenario& tried) {
+    try {
+      require_sensors(tried, sensors_of_modules, "a module");
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(is_refused(scenario), "") << "without rules it needs no sensor";
+  apply_setting(scenario, "3.feature_2=7");
+  EXPECT_EQ(is_refused(scenario), "") << "the current";
+  Scenario with_change = scenario;
+  apply_setting(with_change, "3.feature_4=-8@50");
+  EXPECT_NE(is_refused(with_change).find("which reads the angle of its joint"), std::string::npos)
+      << is_refused(with_change);
+  apply_setting(scenario, "3.second_feature_2=3");
+  EXPECT_NE(is_refused(scenario).find("which reads the inclination of its link"), std::string::npos)
+      << is_refused(scenario);
 }
 
 TEST(SensorsOfModules, ARobotWithoutModulesHasTouchOnly) {

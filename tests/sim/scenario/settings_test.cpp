@@ -7,6 +7,7 @@
 
 #include "memory_files.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "shared/gait/registry.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tests/support/message_of.hpp"
@@ -293,6 +294,30 @@ TEST(SetOption, AWordWithOneValueTooManyForAJointChangesNothing) {
   }
   EXPECT_THROW(apply_setting(small, "amplitude=20@5"), InputError);
   EXPECT_EQ(small.changes.front().settings.size(), max_staged_values) << "joint 0 has room, joint 1 has none";
+}
+
+TEST(Contradictions, AreRefusedByParameterValueAndJointAtTheStartAndAfterAChange) {
+  Scenario small = scenario();
+  small.kernel.slots[3] = {find_algorithm("SensingModule_gait_selector"), JointMask::first(2)};
+  EXPECT_NO_THROW(refuse_contradictions(small));
+  apply_setting(small, "4.feature_3=1");
+  apply_setting(small, "4.threshold_3=0.25");
+  EXPECT_NO_THROW(refuse_contradictions(small));
+  apply_setting(small, "4.second_feature_3=-1");
+  apply_setting(small, "4.second_threshold_3=0.5");
+  EXPECT_NO_THROW(refuse_contradictions(small));
+  apply_setting(small, "4.second_threshold_3:J1=0.125@20");
+  try {
+    refuse_contradictions(small);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(
+        message.find("found SensingModule_gait_selector (4) with threshold_3 0.25 and second_threshold_3 0.125 on "
+                     "joint 'J1', expected two conditions that a value can meet together"),
+        std::string::npos)
+        << message;
+  }
 }
 
 TEST(ParsedSetting, HasATickOnlyIfTheWordHasOne) {

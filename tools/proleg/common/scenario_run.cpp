@@ -132,6 +132,7 @@ ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files) 
   for (const std::string& setting : options.settings) {
     sim::apply_setting(run.scenario, setting);
   }
+  sim::refuse_contradictions(run.scenario);
   if (options.seconds) {
     set_duration(run.scenario, "--seconds", *options.seconds);
   }

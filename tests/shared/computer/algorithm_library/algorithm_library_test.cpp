@@ -115,8 +115,8 @@ TEST_F(AlgorithmLibrary, RefusesADeclarationThatBreaksARule) {
   expect_error([](Declaration& d) { d.id = 127; }, "id 127");
   expect_error([](Declaration& d) { d.name = ""; }, "the algorithm's name ''");
   expect_error([&](Declaration& d) { d.name = long_name; }, "name of 200 characters");
-  expect_error([](Declaration& d) { d.parameters = {}; }, "found 0 parameters, expected 1 to 16");
-  expect_error([&](Declaration& d) { d.parameters = too_many; }, "found 17 parameters");
+  expect_error([](Declaration& d) { d.parameters = {}; }, "found 0 parameters, expected 1 to 32");
+  expect_error([&](Declaration& d) { d.parameters = too_many; }, "found 33 parameters");
   expect_error([&](Declaration& d) { d.parameters = no_range; }, "minimum 6, default 5 and maximum 7");
   expect_error([&](Declaration& d) { d.parameters = no_unit; }, "unit 99");
   expect_error([&](Declaration& d) { d.parameters = no_name; }, "a parameter's name 'a step'");

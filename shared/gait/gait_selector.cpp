@@ -1,0 +1,429 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <initializer_list>
+#include <optional>
+
+#include "shared/fixed/arithmetic.hpp"
+#include "shared/fixed/sine.hpp"
+#include "shared/gait/algorithms.hpp"
+#include "shared/gait/critical_filter.hpp"
+#include "shared/gait/decision_list.hpp"
+#include "shared/gait/generator_parameters.hpp"
+#include "shared/gait/pattern_generator.hpp"
+#include "shared/gait/sensing_module.hpp"
+
+namespace proleg {
+namespace {
+
+constexpr std::int32_t set_count = 4;
+constexpr unsigned parameters_of_set = 4;
+constexpr std::int32_t feature_count = 8;
+constexpr std::int32_t one = raw(Unit::ratio, 1);
+
+enum Parameters : std::uint8_t {
+  // Of set 1; those of the other sets follow in the same order.
+  amplitude,
+  frequency,
+  phase_step,
+  offset,
+  // Of the rule for set 2; those for sets 3 and 4 follow in the same order.
+  first_rule = set_count * parameters_of_set,
+  // Common to all.
+  window = first_rule + (set_count - 1) * DecisionList::parameters_of_rule,
+  dwell,
+  hysteresis,
+  rate
+};
+constexpr Parameter set_amplitude(ParameterName name) {
+  return {name, Unit::degree, raw(Unit::degree, 40),
+          0,    quarter_turn, "How far the joint swings to each side in this set."};
+}
+constexpr Parameter set_frequency(ParameterName name) {
+  return {name, Unit::hertz,          raw(Unit::hertz, 1),
+          0,    raw(Unit::hertz, 20), "How many times a second the joint swings in this set."};
+}
+constexpr Parameter set_phase_difference(ParameterName name) {
+  return {name,          Unit::phase_degree, raw(Unit::phase_degree, 55),
+          phase_minimum, phase_maximum,      "How far the wave runs ahead from joint to joint in this set."};
+}
+constexpr Parameter set_offset(ParameterName name) {
+  return {name, Unit::degree, 0, -quarter_turn, quarter_turn, "The angle around which the joint swings in this set."};
+}
+constexpr Parameter rule_feature(ParameterName name) {
+  return {name,
+          Unit::count,
+          0,
+          -feature_count,
+          feature_count,
+          "Which feature has to be above the threshold. A negative number: below it. 0: the set is never chosen. 1 "
+          "pitch, 2 pitch_swing, 3 roll, 4 touch, 5 head_touch, 6 touch_changes, 7 current, 8 tracking_error."};
+}
+constexpr Parameter rule_second_feature(ParameterName name) {
+  return {name,
+          Unit::count,
+          0,
+          -feature_count,
+          feature_count,
+          "Which feature has to be above the second threshold. Numbers as for the first feature; 0: none has to."};
+}
+constexpr Parameter rule_threshold(ParameterName name) {
+  return {name,
+          Unit::ratio,
+          0,
+          raw(Unit::ratio, -7),
+          raw(Unit::ratio, 7),
+          "The value that the feature has to pass. In the units of docs/gait-selector.md."};
+}
+
+constexpr Parameter parameters[] = {
+    set_amplitude("amplitude_1"),
+    set_frequency("frequency_1"),
+    set_phase_difference("phase_difference_1"),
+    set_offset("offset_1"),
+    set_amplitude("amplitude_2"),
+    set_frequency("frequency_2"),
+    set_phase_difference("phase_difference_2"),
+    set_offset("offset_2"),
+    set_amplitude("amplitude_3"),
+    set_frequency("frequency_3"),
+    set_phase_difference("phase_difference_3"),
+    set_offset("offset_3"),
+    set_amplitude("amplitude_4"),
+    set_frequency("frequency_4"),
+    set_phase_difference("phase_difference_4"),
+    set_offset("offset_4"),
+    rule_feature("feature_2"),
+    rule_threshold("threshold_2"),
+    rule_second_feature("second_feature_2"),
+    rule_threshold("second_threshold_2"),
+    rule_feature("feature_3"),
+    rule_threshold("threshold_3"),
+    rule_second_feature("second_feature_3"),
+    rule_threshold("second_threshold_3"),
+    rule_feature("feature_4"),
+    rule_threshold("threshold_4"),
+    rule_second_feature("second_feature_4"),
+    rule_threshold("second_threshold_4"),
+    Parameter{"window", Unit::count, 2'000, 1, 600'000,
+              "Over which time the features are averaged. Time constant of their low-pass filters, in ms."},
+    Parameter{"dwell", Unit::count, 3'000, 0, 600'000,
+              "How long a set stays chosen at least. ms between two decisions."},
+    Parameter{"hysteresis", Unit::ratio, raw(Unit::ratio, 2, 100), 0, one,
+              "How far a feature has to go back to end a set. Part by which the thresholds of the present set are "
+              "easier to pass."},
+    generator_parameters::rate,
+};
+static_assert(std::size(parameters) == rate + 1U && std::size(parameters) <= max_parameters);
+
+enum Values : std::uint8_t {
+  clock,
+  announced_set,
+  countdown,
+  set,
+  since_decision,
+  current_amplitude,
+  amplitude_rate,
+  current_shift,
+  shift_rate,
+  current_offset,
+  offset_rate,
+  // The features, in the order of their numbers.
+  pitch,
+  pitch_swing,
+  roll,
+  touch,
+  head_touch,
+  touch_changes,
+  current,
+  tracking_error,
+  touched_links
+};
+constexpr InternalValue internal_values[] = {
+    InternalValue{"clock", Unit::phase_degree, 0, "phase of the wave at the robot's first joint, without the filter"},
+    InternalValue{"announced_set", Unit::count, 0, "the set that is played, or to which all joints change next"},
+    InternalValue{"countdown", Unit::count, 0, "ticks until all joints change to announced_set"},
+    InternalValue{"set", Unit::count, 0, "the set that is played, 1 to 4"},
+    InternalValue{"since_decision", Unit::count, 0, "ticks since the joint decided or started"},
+    generator_values::current_amplitude(),
+    generator_values::amplitude_rate,
+    InternalValue{"current_shift", Unit::phase_degree, 0, "filtered phase of the joint"},
+    InternalValue{"shift_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    generator_values::current_offset(),
+    generator_values::offset_rate,
+    InternalValue{"pitch", Unit::ratio, 0, "mean inclination of the link behind the joint; 1: 90 degrees, front above"},
+    InternalValue{"pitch_swing", Unit::ratio, 0, "mean distance of the inclination from its mean; 1: 90 degrees"},
+    InternalValue{"roll", Unit::ratio, 0, "mean roll of this link to either side; 1: 180 degrees, upside down"},
+    InternalValue{"touch", Unit::ratio, 0, "mean part of the links that touch something"},
+    InternalValue{"head_touch", Unit::ratio, 0, "mean part of the time in which the first link touches something"},
+    InternalValue{"touch_changes", Unit::ratio, 0, "changes of touch of a link in a second, mean of the links"},
+    InternalValue{"current", Unit::ratio, 0, "mean current of the servo in A"},
+    InternalValue{"tracking_error", Unit::ratio, 0, "mean distance of the angle from its set-point; 1: 90 degrees"},
+    InternalValue{"touched_links", Unit::count, 0, "the first 31 links that touch: a bit each"},
+};
+static_assert(std::size(internal_values) == touched_links + 1U && std::size(internal_values) <= max_internal_values);
+static_assert(pitch + feature_count == touched_links);
+constexpr unsigned counted_links = 31;
+/// The number of a feature minus 1.
+constexpr unsigned index_of(Values feature_value) { return unsigned{feature_value} - unsigned{pitch}; }
+
+constexpr FrameField frame[] = {FrameField{clock, 4}, FrameField{announced_set, 1}, FrameField{countdown, 1}};
+enum Field : std::uint8_t { clock_field, announced_field, countdown_field };
+constexpr std::int32_t longest_countdown = 255;
+/// Ticks that the news of a decision may be late at each joint together, because frames are lost.
+constexpr unsigned spare_ticks = 8;
+
+/// Features that the rules name, and those that these are computed from: bit n - 1 for feature n.
+unsigned features_in(const std::int32_t* values) {
+  const unsigned used = DecisionList(values + first_rule, set_count).features();
+  constexpr unsigned mean = 1U << index_of(pitch);
+  constexpr unsigned swing = 1U << index_of(pitch_swing);
+  return (used & swing) != 0 ? used | mean : used;
+}
+
+std::uint8_t required_readings(const std::int32_t* values) {
+  const unsigned used = features_in(values);
+  const auto needs = [used](std::initializer_list<Values> features, JointReadings::Sensor sensor) {
+    return std::ranges::any_of(features, [used](Values value) { return ((used >> index_of(value)) & 1U) != 0; })
+               ? unsigned{sensor}
+               : 0U;
+  };
+  return static_cast<std::uint8_t>(needs({pitch, roll}, JointReadings::inclination) |
+                                   needs({current}, JointReadings::servo_current) |
+                                   needs({tracking_error}, JointReadings::angle_of_joint));
+}
+
+std::optional<Contradiction> contradiction(const std::int32_t* values) {
+  return DecisionList(values + first_rule, set_count).contradiction(first_rule);
+}
+constexpr ParameterRules parameter_rules{contradiction, required_readings};
+
+constexpr Declaration about{16,
+                            "SensingModule_gait_selector",
+                            "wave that chooses among four sets of parameters by what the robot senses",
+                            parameters,
+                            internal_values,
+                            frame,
+                            0,
+                            &parameter_rules};
+
+class GaitSelector final : public SensingModule {
+ public:
+  [[nodiscard]] const Declaration& declaration() const override { return about; }
+  [[nodiscard]] std::uint8_t senses_readings() const override {
+    return JointReadings::servo_current | JointReadings::inclination | JointReadings::angle_of_joint;
+  }
+
+  void derive(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
+    for (unsigned i = 0; i < set_count; ++i) {
+      derived[increments + i] = phase_increment_of(values[i * parameters_of_set + frequency], context.tick_period_us);
+    }
+    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
+    const auto ticks_of = [&context](std::int32_t ms) {
+      return static_cast<std::int32_t>(divide_nearest(std::int64_t{ms} * 1'000, std::int64_t{context.tick_period_us}));
+    };
+    derived[smoothing] = saturate(
+        std::min(divide_nearest(std::int64_t{context.tick_period_us} << 30U, std::int64_t{values[window]} * 1'000),
+                 std::int64_t{1} << 30U));
+    derived[dwell_ticks] = ticks_of(values[dwell]);
+    const bool decides = !context.group.empty() && context.group.front() == context.joint;
+    derived[notice] =
+        decides ? static_cast<std::int32_t>(std::min(context.group.size() + spare_ticks, unsigned{longest_countdown}))
+                : 0;
+    derived[used_features] = decides ? static_cast<std::int32_t>(features_in(values)) : 0;
+    derived[link_share] = divide_nearest(one, context.joint_count + 1);
+  }
+
+  void reset(const JointContext& context, const Tuning& tuning, Pcg32& /*noise*/, std::int32_t* state) const override {
+    state[announced_set] = 1;
+    state[set] = 1;
+    state[current_shift] = shift_in(1, context, tuning);
+  }
+
+  /// The robot's decision is taken from a neighbour. While the robot is about to change its set, the set before is not
+  /// known, so the joint changes some ticks early.
+  void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const override {
+    const Neighbour& neighbour = surroundings.ahead.present() ? surroundings.ahead : surroundings.behind;
+    if (neighbour.present()) {
+      take(neighbour, state);
+      state[set] = state[announced_set];
+    } else {
+      state[clock] =
+          static_cast<std::int32_t>(surroundings.tick * static_cast<std::uint32_t>(tuning.derived[increments]));
+    }
+    const std::int32_t* const chosen = set_of(state[set], tuning);
+    state[current_amplitude] = chosen[amplitude];
+    state[current_shift] = shift_in(state[set], surroundings.context, tuning);
+    state[current_offset] = chosen[offset];
+  }
+
+  [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
+    const std::int32_t phase = add_wrapping(state[clock], state[current_shift]);
+    return add_saturating(multiply(state[current_amplitude], sine(static_cast<std::uint32_t>(phase)), 30),
+                          state[current_offset]);
+  }
+
+  /// The neighbour's clock is taken to run as the joint's own.
+  void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& missed) const override {
+    const std::int32_t step = tuning.derived[increments + position_of(state[set])];
+    repack(about, clock_field, add_wrapping(unpack(about, clock_field, missed), step), missed);
+    repack(about, countdown_field, unpack(about, countdown_field, missed) - 1, missed);  // repack() cuts it at 0
+  }
+
+ private:
+  enum Derived : std::uint8_t {
+    increments,
+    filter_constants = increments + set_count,
+    smoothing = filter_constants + CriticalFilter::derived_size,  ///< part of a difference that a feature moves, Q30
+    dwell_ticks,
+    notice,         ///< ticks from a decision to its effect; 0 on joints that do not decide
+    used_features,  ///< bit n - 1 for feature n; none on joints that do not decide
+    link_share,     ///< part of all links that a link is, as a ratio
+  };
+  static_assert(link_share < max_derived);
+
+  /// A state may have been overwritten.
+  static unsigned position_of(std::int32_t set_number) {
+    return static_cast<unsigned>(std::clamp<std::int32_t>(set_number, 1, set_count) - 1);
+  }
+  static const std::int32_t* set_of(std::int32_t set_number, const Tuning& tuning) {
+    return tuning.parameters + position_of(set_number) * parameters_of_set;
+  }
+  static std::int32_t shift_in(std::int32_t set_number, const JointContext& context, const Tuning& tuning) {
+    return static_cast<std::int32_t>(std::uint32_t{context.joint} *
+                                     static_cast<std::uint32_t>(set_of(set_number, tuning)[phase_step]));
+  }
+  static void take(const Neighbour& neighbour, std::int32_t* state) {
+    state[clock] = neighbour.value(clock_field);
+    state[announced_set] = static_cast<std::int32_t>(position_of(neighbour.value(announced_field))) + 1;
+    state[countdown] = neighbour.value(countdown_field);
+  }
+
+  /// A joint takes clock and decision from the joint ahead of it. So a joint that missed a decision, or was disturbed,
+  /// is right again a tick later, and until then keeps its set.
+  void advance_sensing(const Contacts& contacts, const Surroundings& surroundings, const Tuning& tuning,
+                       const std::int32_t* state, std::int32_t* next) const override {
+    if (surroundings.ahead.present()) {
+      take(surroundings.ahead, next);
+    } else {
+      next[clock] = state[clock];
+      next[announced_set] = static_cast<std::int32_t>(position_of(state[announced_set])) + 1;
+      next[countdown] = std::clamp<std::int32_t>(state[countdown], 0, longest_countdown);
+    }
+    next[countdown] = std::max<std::int32_t>(next[countdown] - 1, 0);
+    sense(contacts, surroundings, tuning, state, next);
+    const std::int32_t before = std::clamp<std::int32_t>(state[since_decision], 0, most_ticks);
+    next[since_decision] = std::min(before + 1, most_ticks);
+    if (tuning.derived[notice] != 0 && next[countdown] == 0 && before >= tuning.derived[dwell_ticks]) {
+      decide(tuning, next);
+    }
+    const unsigned present =
+        next[countdown] == 0 ? static_cast<unsigned>(next[announced_set] - 1) : position_of(state[set]);
+    next[set] = static_cast<std::int32_t>(present) + 1;
+    next[clock] = add_wrapping(next[clock], tuning.derived[increments + present]);
+
+    const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
+    const std::int32_t* const chosen = tuning.parameters + present * parameters_of_set;
+    follow(filter, chosen[amplitude], state + current_amplitude, next + current_amplitude);
+    follow(filter, chosen[offset], state + current_offset, next + current_offset);
+    const std::int32_t shift = shift_in(next[set], surroundings.context, tuning);
+    next[shift_rate] = state[shift_rate];
+    next[current_shift] =
+        add_wrapping(shift, proleg::advance(filter, subtract_wrapping(state[current_shift], shift), next[shift_rate]));
+  }
+
+  static constexpr std::int32_t most_ticks = 1 << 20;  ///< more than any dwell time has
+
+  [[gnu::noinline]] static void decide(const Tuning& tuning, std::int32_t* next) {
+    const std::int32_t wanted = DecisionList(tuning.parameters + first_rule, set_count)
+                                    .choose(next + pitch, next[announced_set], tuning.parameters[hysteresis]);
+    if (wanted != next[announced_set]) {
+      next[announced_set] = wanted;
+      next[countdown] = tuning.derived[notice];
+      next[since_decision] = 0;
+    }
+  }
+
+  /// Computes the features that the rules name; the others are 0. A feature whose sensor gives nothing keeps its value.
+  static void sense(const Contacts& contacts, const Surroundings& surroundings, const Tuning& tuning,
+                    const std::int32_t* state, std::int32_t* next) {
+    std::fill(next + pitch, next + touched_links + 1, 0);
+    const auto used = static_cast<unsigned>(tuning.derived[used_features]);
+    if (used == 0) {
+      return;
+    }
+    const JointReadings& readings = surroundings.readings;
+    const bool is_inclined = readings.has(JointReadings::inclination);
+    const std::int32_t inclination = readings.pitch >> 2;
+    std::array<Input, feature_count> inputs{};
+    inputs[index_of(pitch)] = {is_inclined, inclination};
+    inputs[index_of(pitch_swing)] = {is_inclined, distance(inclination, state[pitch])};
+    inputs[index_of(roll)] = {is_inclined, static_cast<std::int32_t>(magnitude(readings.roll) >> 3U)};
+    inputs[index_of(current)] = {readings.has(JointReadings::servo_current), in_amperes(readings.current_ma)};
+    inputs[index_of(tracking_error)] = {readings.has(JointReadings::angle_of_joint),
+                                        distance(surroundings.setpoint, readings.angle) >> 2};
+    constexpr unsigned of_touch = 7U << index_of(touch);
+    if ((used & of_touch) != 0) {
+      sense_touch(contacts, surroundings.context, tuning.derived[link_share],
+                  static_cast<std::uint32_t>(state[touched_links]), next[touched_links], inputs.data());
+    }
+    for (unsigned i = 0; i < feature_count; ++i) {
+      if (((used >> i) & 1U) != 0) {
+        const std::int32_t before = state[pitch + i];
+        next[pitch + i] = inputs[i].is_known ? averaged(tuning.derived[smoothing], before, inputs[i]) : before;
+      }
+    }
+  }
+
+  /// What a feature averages: value * times, of which the product need not fit in its number.
+  struct Input {
+    bool is_known;
+    std::int32_t value;
+    std::int32_t times = 1;
+  };
+
+  /// Not inline, as sense_touch(): the image is small.
+  [[gnu::noinline]] static std::int32_t averaged(std::int32_t part, std::int32_t before, const Input& input) {
+    const std::int64_t gain = std::int64_t{multiply(part, input.value, 30)} * input.times;
+    return saturate(gain + before - multiply(part, before, 30));
+  }
+
+  [[gnu::noinline]] static void sense_touch(const Contacts& contacts, const JointContext& context, std::int32_t share,
+                                            std::uint32_t touched_before, std::int32_t& touched_now, Input* inputs) {
+    std::int32_t count = 0;
+    std::uint32_t touched = 0;
+    for (unsigned link = 0; link < contacts.link_count(); ++link) {
+      const std::uint32_t is_touched = contacts.pressed(link) ? 1 : 0;
+      count += static_cast<std::int32_t>(is_touched);
+      touched |= link < counted_links ? is_touched << link : 0U;
+    }
+    touched_now = static_cast<std::int32_t>(touched);
+    const int changed = std::popcount(touched ^ touched_before);
+    const auto ticks_per_second = static_cast<std::int32_t>(1'000'000U / context.tick_period_us);
+    inputs[index_of(touch)] = {true, count * share};
+    inputs[index_of(head_touch)] = {true, (touched & 1U) != 0 ? one : 0};
+    inputs[index_of(touch_changes)] = {true, changed * share, ticks_per_second};
+  }
+
+  /// |value|, with 2^31 for the value that has no opposite.
+  static std::uint32_t magnitude(std::int32_t value) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    return value < 0 ? 0U - bits : bits;
+  }
+  static std::int32_t distance(std::int32_t a, std::int32_t b) {
+    const std::int64_t difference = std::int64_t{a} - b;
+    return saturate(difference < 0 ? -difference : difference);
+  }
+  static std::int32_t in_amperes(std::int32_t milliamperes) {
+    constexpr std::int32_t of_1024_ma = raw(Unit::ratio, 1'024, 1'000);
+    return saturate(shift_right_rounding(multiply_wide(milliamperes, of_1024_ma), 10));
+  }
+};
+
+constexpr GaitSelector instance;
+
+}  // namespace
+
+const ActuationModule& sensing_module_gait_selector() { return instance; }
+
+}  // namespace proleg

@@ -1,7 +1,6 @@
 #include "sim/optimize/adaptation/atlas.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -84,19 +83,16 @@ void require_same_values(const sim::Scenario& atlas, const sim::Scenario& scenar
 }  // namespace
 
 std::vector<AdaptationCell> Atlas::cells() const {
+  const GaitMap map(experiment);
   std::vector<AdaptationCell> cells;
   for (const AtlasGait& gait : gaits) {
-    cells.push_back({gait.point, -experiment.objectives.front().cost(gait.score)});
+    cells.push_back({map.point(gait.cell), -experiment.objectives.front().cost(gait.score)});
     for (std::size_t i = 0; i < gait.candidate.size(); ++i) {
       const std::size_t count = experiment.space.dimensions[i].values.size();
       cells.back().point.push_back(count > 1 ? gait.candidate[i] / static_cast<double>(count - 1) : 0.0);
     }
   }
   return cells;
-}
-
-double Atlas::descriptor(const AtlasGait& gait, std::size_t axis) const {
-  return std::lerp(experiment.axes[axis].lowest, experiment.axes[axis].highest, gait.point[axis]);
 }
 
 std::string Atlas::fingerprint() const {
@@ -122,7 +118,7 @@ Atlas read_atlas(const std::filesystem::path& path) {
   const std::vector<Evaluation> evaluations = store.evaluations(0);
   const GaitMap map = gait_map(atlas.experiment, evaluations);
   for (const GaitMap::Elite& elite : map.elites()) {
-    atlas.gaits.push_back({elite.cell, evaluations[elite.candidate].candidate, map.point(elite.cell), elite.score});
+    atlas.gaits.push_back({elite.cell, evaluations[elite.candidate].candidate, elite.score});
   }
   std::ranges::sort(atlas.gaits, {}, &AtlasGait::cell);
   if (atlas.gaits.empty()) {
@@ -135,6 +131,11 @@ void rate_for_length(Atlas& atlas, double seconds, const std::function<void(doub
   Experiment& experiment = atlas.experiment;
   if (experiment.scenario.duration_s == seconds) {
     return;
+  }
+  if (experiment.on_robot) {
+    refuse(experiment.path, "a map that a robot has filled in trials of " +
+                                number_text(experiment.scenario.duration_s) + " s, for trials of " +
+                                number_text(seconds) + " s");
   }
   experiment.scenario.duration_s = seconds;
   const Objective& objective = experiment.objectives.front();

@@ -18,8 +18,7 @@ namespace proleg::optimize {
 struct AtlasGait {
   std::size_t cell = 0;  ///< number of the cell (GaitMap)
   Candidate candidate;
-  std::vector<double> point;  ///< the middle of the cell: 0 to 1 on each axis
-  double score = 0.0;         ///< of the objective
+  double score = 0.0;  ///< of the objective
 };
 
 struct Atlas {
@@ -30,8 +29,6 @@ struct Atlas {
   /// middle of its cell, and its values, each from 0 at the first to 1 at the last of its dimension: measures of the
   /// whole robot do not tell which joints a gait uses, and so which gaits a damage of one joint concerns.
   [[nodiscard]] std::vector<AdaptationCell> cells() const;
-  /// The middle of a gait's cell on an axis, in the unit of its measure.
-  [[nodiscard]] double descriptor(const AtlasGait& gait, std::size_t axis) const;
   /// SHA-256 of the search and of the gaits that it has found: 64 hexadecimal digits.
   [[nodiscard]] std::string fingerprint() const;
 };
@@ -42,7 +39,7 @@ struct Atlas {
 
 /// Rates the gaits for runs of another length, in the engine of the search, and drops those without a score; nothing is
 /// done if the runs have that length already. progress: called with the share that is done; it may throw. Throws
-/// StoreError if no gait is left.
+/// StoreError if no gait is left, or if a robot has filled the map.
 void rate_for_length(Atlas& atlas, double seconds, const std::function<void(double share)>& progress);
 
 /// Throws InputError, with the scenario's file, if the gaits do not mean the same on the scenario's robot: its joints

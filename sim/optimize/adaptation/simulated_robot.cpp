@@ -13,6 +13,11 @@ SimulatedRobot::SimulatedRobot(const Experiment& experiment, sim::Scenario reali
                                std::function<bool()> stop)
     : experiment_(experiment), reality_(std::move(reality)), losses_(std::move(losses)), stop_(std::move(stop)) {}
 
+TrialOutcome outcome_of(const Objective& objective, const sim::MeasureValues& measures) {
+  const double score = objective.score(measures);
+  return {score, score != objective.failed ? std::string() : "the run does not define " + objective.name};
+}
+
 TrialOutcome SimulatedRobot::try_gait(const Candidate& candidate) {
   sim::Scenario scenario = reality_;
   experiment_.space.apply(candidate, scenario);
@@ -26,11 +31,7 @@ TrialOutcome SimulatedRobot::try_gait(const Candidate& candidate) {
       }
       simulation.advance();
     }
-    const double score = objective.score(simulation.measures(experiment_.heading_deg));
-    if (score != objective.failed) {
-      return {score, {}};
-    }
-    return {score, "the run does not define " + objective.name};
+    return outcome_of(objective, simulation.measures(experiment_.heading_deg));
   } catch (const sim::PhysicsError& error) {
     return {objective.failed, error.what()};
   }

@@ -16,6 +16,9 @@ struct TrialOutcome {
   std::string failure;  ///< why the trial has no score of its own; empty: it has one
 };
 
+/// The outcome of a run with these measures.
+[[nodiscard]] TrialOutcome outcome_of(const Objective& objective, const sim::MeasureValues& measures);
+
 /// A robot that can try gaits: simulated, or real.
 class TrialRobot {
  public:

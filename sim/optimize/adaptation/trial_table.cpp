@@ -70,8 +70,8 @@ std::string trial_table(const Atlas& atlas, const std::string& inputs, const std
     const MadeTrial& trial = trials[i];
     const AtlasGait& gait = atlas.gaits[trial.gait];
     text += std::to_string(i + 1) + '\t' + map.place_text(gait.cell);
-    for (std::size_t axis = 0; axis < gait.point.size(); ++axis) {
-      text += '\t' + rounded_text(atlas.descriptor(gait, axis));
+    for (const double middle : map.middle(gait.cell)) {
+      text += '\t' + rounded_text(middle);
     }
     for (std::size_t d = 0; d < gait.candidate.size(); ++d) {
       text += '\t' + atlas.experiment.space.value_text(gait.candidate, d);

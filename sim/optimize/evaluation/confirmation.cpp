@@ -56,7 +56,7 @@ ConfirmationSettings fresh_runs(const Experiment& experiment) {
 }
 
 bool needs_confirmation(const Experiment& experiment) {
-  return is_judged(experiment) || (experiment.confirmation.runs > 0 &&
+  return is_judged(experiment) || (!experiment.on_robot && experiment.confirmation.runs > 0 &&
                                    depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread));
 }
 

@@ -26,6 +26,7 @@ struct Confirmation {
 };
 
 /// Whether the search is judged; or its result depends on random numbers, and the experiment asks for fresh runs.
+/// A robot makes none.
 [[nodiscard]] bool needs_confirmation(const Experiment& experiment);
 
 /// The fresh runs of the experiment. Of a judged search at least ten candidates have one: with equal runs, exactly one.

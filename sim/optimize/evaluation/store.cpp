@@ -248,7 +248,9 @@ Experiment read_experiment_of(const std::filesystem::path& store) {
   Experiment experiment = read_experiment(stored.path, files, stored.scenario);
   experiment.seed = stored.seed;
   experiment.evaluations = stored.evaluations;
-  if (sim::name_of(experiment.scenario.environment.engine) != stored.engine) {
+  if (stored.engine == robot_name) {
+    put_on_robot(experiment);
+  } else if (sim::name_of(experiment.scenario.environment.engine) != stored.engine) {
     sim::OverrideWords words;
     words.engine = stored.engine;
     experiment.scenario.overrides = sim::read_overrides(words);

@@ -118,7 +118,9 @@ sim::MeasureValues mean_measures(std::span<const TrialResult> trials) {
 
 }  // namespace
 
-bool is_judged(const Experiment& experiment) { return experiment.scenario.environment.engine != judging_engine; }
+bool is_judged(const Experiment& experiment) {
+  return !experiment.on_robot && experiment.scenario.environment.engine != judging_engine;
+}
 
 bool is_fresh_run(const Experiment& experiment, const Task& task) { return task.trial >= experiment.trials.count; }
 
@@ -147,6 +149,9 @@ TrialResult run_trial(const Experiment& experiment, const Task& task) {
 }
 
 void require_engine(const Experiment& experiment) {
+  if (experiment.on_robot) {
+    return;
+  }
   Task task;
   task.candidate = experiment.space.nearest(experiment.scenario);
   const sim::Scenario scenario = scenario_of(experiment, task);

@@ -18,7 +18,7 @@ namespace proleg::optimize {
 /// one, the reference, before anything is called best.
 inline constexpr sim::PhysicsEngine judging_engine = sim::PhysicsEngine::ode;
 
-/// Whether the search has another engine.
+/// Whether the search has another engine. A robot has none, and nothing judges it.
 [[nodiscard]] bool is_judged(const Experiment& experiment);
 
 /// One simulation to be made: a trial of a candidate.

@@ -101,18 +101,25 @@ std::string method_text(const MapElitesSettings& method) {
       .text();
 }
 
-std::string axes_text(const std::vector<MapAxis>& axes) {
+/// The texts of some items, a line each.
+template <typename Items, typename TextOf>
+std::string lines_of(const Items& items, const TextOf& text_of) {
   std::string text;
-  for (const MapAxis& axis : axes) {
-    text += SettingsText()
-                .add("measure", std::string(sim::declaration_of(axis.measure).name))
-                .add("lowest", axis.lowest)
-                .add("highest", axis.highest)
-                .add("cells", axis.cells)
-                .text() +
-            "\n";
+  for (const auto& item : items) {
+    text += text_of(item) + "\n";
   }
   return text;
+}
+
+std::string axes_text(const std::vector<MapAxis>& axes) {
+  return lines_of(axes, [](const MapAxis& axis) {
+    return SettingsText()
+        .add("measure", std::string(sim::declaration_of(axis.measure).name))
+        .add("lowest", axis.lowest)
+        .add("highest", axis.highest)
+        .add("cells", axis.cells)
+        .text();
+  });
 }
 
 std::string space_text(const SearchSpace& space) {
@@ -129,17 +136,16 @@ std::string space_text(const SearchSpace& space) {
 }
 
 std::string objectives_text(const Experiment& experiment) {
-  std::string text;
-  for (const Objective& objective : experiment.objectives) {
-    text += SettingsText()
-                .add("name", objective.name)
-                .add("goal", objective.goal)
-                .add("failed", objective.failed)
-                .add("terms", terms_text(objective))
-                .text() +
-            "\n";
-  }
-  return text + SettingsText().add("heading_deg", experiment.heading_deg).text();
+  return lines_of(experiment.objectives,
+                  [](const Objective& objective) {
+                    return SettingsText()
+                        .add("name", objective.name)
+                        .add("goal", objective.goal)
+                        .add("failed", objective.failed)
+                        .add("terms", terms_text(objective))
+                        .text();
+                  }) +
+         SettingsText().add("heading_deg", experiment.heading_deg).text();
 }
 
 std::string trials_text(const Trials& trials) {
@@ -262,7 +268,7 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
                            .text()},
       {"baseline", SettingsText().add("has_baseline", experiment.has_baseline).text()},
       {"reuse", SettingsText().add("reuse", experiment.reuse).text()},
-      {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+      {"engine", std::string(trial_maker(experiment))},
       {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
   if (!experiment.axes.empty()) {  // stores of other methods, which earlier versions made, have no such part
     parts.push_back({"map", axes_text(experiment.axes)});
@@ -273,9 +279,19 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
 void set_trials(Experiment& experiment, std::uint32_t count) {
   Trials& trials = experiment.trials;
   trials.count = count;
-  if (count > 1 && !depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
+  if (count > 1 && !experiment.on_robot && !depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
     trials.spread = usual_spread();
   }
+}
+
+void put_on_robot(Experiment& experiment) {
+  experiment.on_robot = true;
+  experiment.trials.spread = {};
+  experiment.racing = {};
+}
+
+std::string_view trial_maker(const Experiment& experiment) {
+  return experiment.on_robot ? robot_name : sim::name_of(experiment.scenario.environment.engine);
 }
 
 std::uint64_t planned_evaluations(const Experiment& experiment) {

@@ -159,6 +159,7 @@ inline constexpr std::size_t max_objectives = 8;
 struct Experiment {
   std::string path;
   int method_line = 0;     ///< of path, where the method's settings begin; 0: none
+  bool on_robot = false;   ///< a robot makes the trials, and no engine (put_on_robot())
   sim::Scenario scenario;  ///< read from its file; its remarks include those on this file
   SearchSpace space;
   std::vector<Objective> objectives;  ///< at least one
@@ -194,6 +195,15 @@ struct Experiment {
 /// Gives each candidate so many worlds, 1 to max_trials. If nothing lets them differ, they differ as usual_spread()
 /// says.
 void set_trials(Experiment& experiment, std::uint32_t count);
+
+/// Lets a robot make the trials. They have no variations of the world and no racing; a candidate has as many trials as
+/// before. The fingerprint becomes another one: results of a robot and of a simulation share no store.
+void put_on_robot(Experiment& experiment);
+
+/// The name of a robot among the names of engines.
+inline constexpr const char* robot_name = "robot";
+/// What makes the trials: the name of the engine, or robot_name.
+[[nodiscard]] std::string_view trial_maker(const Experiment& experiment);
 
 /// Number of evaluations that a search makes if it does not end earlier: its budget, or that of its generations if it
 /// is lower. 0: unknown.

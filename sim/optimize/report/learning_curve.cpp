@@ -145,8 +145,7 @@ void draw_head(Svg& svg, const Experiment& experiment, const Contents& contents,
   if (contents.winner) {
     const std::string_view unit = experiment.objectives.front().unit();
     svg.text({sim::page_right, sim::subtitle_y},
-             "best " + rounded_text(contents.winner->y) + (unit.empty() ? "" : " " + std::string(unit)) + " after " +
-                 count_text(contents.winner->x),
+             "best " + rounded_text(contents.winner->y, unit) + " after " + count_text(contents.winner->x),
              TextAnchor::end, sim::label_size, sim::ink, R"(font-weight="bold")");
   }
 }

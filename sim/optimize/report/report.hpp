@@ -3,6 +3,7 @@
 // The figures, tables and scenario that an optimisation writes for people.
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,8 +69,11 @@ namespace proleg::optimize {
 std::filesystem::path write_scenario(const Experiment& experiment, const Evaluation& evaluation,
                                      const std::filesystem::path& folder, const std::string& name);
 /// The same for a scenario that was read from files, with its start values, engine, seed, duration and step. What files
-/// do not have (other overrides, changes and moves) is not written. remark: a comment in the files.
+/// do not have (other overrides, changes and moves) is not written. remark: a comment in the files. files: name of the
+/// folder below which the robot and environment files are, which scenarios of one robot and world may share; by default
+/// name.files.
 std::filesystem::path write_scenario(const sim::Scenario& scenario, const std::string& remark,
-                                     const std::filesystem::path& folder, const std::string& name);
+                                     const std::filesystem::path& folder, const std::string& name,
+                                     const std::optional<std::string>& files = std::nullopt);
 
 }  // namespace proleg::optimize

@@ -350,15 +350,15 @@ fs::path write_scenario(const Experiment& experiment, const Evaluation& evaluati
     throw FileError(folder, "no scenario is written there: that of the experiment was not read from files");
   }
   const std::string remark =
-      "Found by an optimisation: " + fs::path(experiment.path).filename().string() + ", method " +
-      method_name(experiment.method) + "." +
+      (experiment.on_robot ? "Found by trials of a robot: " : "Found by an optimisation: ") +
+      fs::path(experiment.path).filename().string() + ", method " + method_name(experiment.method) + "." +
       (experiment.trials.spread.any() ? " What its trials varied has the values of the original scenario." : "");
   return write_scenario(own_world(experiment, evaluation), remark, folder, name);
 }
 
 fs::path write_scenario(const sim::Scenario& scenario, const std::string& text, const fs::path& folder,
-                        const std::string& name) {
-  const ScenarioFiles files = collect_scenario_files(scenario, name + ".files");
+                        const std::string& name, const std::optional<std::string>& files_folder) {
+  const ScenarioFiles files = collect_scenario_files(scenario, files_folder.value_or(name + ".files"));
   const std::string remark = "<!-- " + comment_text(text) + " -->\n";
   for (const FileCopy& file : files.copies) {
     write_with_folder(folder / file.place, file.text);

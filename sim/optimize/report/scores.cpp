@@ -26,6 +26,10 @@ std::string rounded_text(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr};
 }
 
+std::string rounded_text(double value, std::string_view unit) {
+  return rounded_text(value) + (unit.empty() ? "" : ' ' + std::string(unit));
+}
+
 std::string fixed_text(double value, int decimals) {
   std::array<char, 400> text;  // the longest double has 309 digits before the point
   return {text.data(),

@@ -22,6 +22,8 @@ namespace proleg::optimize {
 
 /// A number with a few digits, for titles: "1.958".
 [[nodiscard]] std::string rounded_text(double value);
+/// The same with a unit, if it has one: "1.958 m".
+[[nodiscard]] std::string rounded_text(double value, std::string_view unit);
 
 /// The score, limited to +-10^9, so that sums and coordinates stay finite.
 [[nodiscard]] double drawable(double score);

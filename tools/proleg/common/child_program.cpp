@@ -15,12 +15,6 @@
 #include "tools/proleg/common/program_start.hpp"
 
 namespace proleg::tools {
-namespace {
-
-constexpr std::chrono::seconds time_to_end{3};
-
-}  // namespace
-
 ChildProgram::Pipe::Pipe() {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -47,8 +41,11 @@ ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::s
     : ChildProgram(command, folder, errors, false, -1) {}
 
 std::unique_ptr<ChildProgram> ChildProgram::with_input(const std::vector<std::string>& command,
-                                                       const std::string& folder, int inherited) {
-  return std::unique_ptr<ChildProgram>(new ChildProgram(command, folder, Errors::apart, true, inherited));
+                                                       const std::string& folder, int inherited,
+                                                       std::chrono::seconds time_to_end) {
+  std::unique_ptr<ChildProgram> program(new ChildProgram(command, folder, Errors::apart, true, inherited));
+  program->time_to_end_ = time_to_end;
+  return program;
 }
 
 ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors,
@@ -131,7 +128,7 @@ std::optional<int> ChildProgram::status() {
 void ChildProgram::end() {
   if (!status_ && !killed_at_) {
     kill(-process_, SIGTERM);
-    killed_at_ = Clock::now() + time_to_end;
+    killed_at_ = Clock::now() + time_to_end_;
   }
 }
 

@@ -25,10 +25,10 @@ class ChildProgram {
   /// Starts it in a folder. command: the program, which is searched for as in a shell, and its arguments. Throws
   /// std::runtime_error if it cannot be started.
   ChildProgram(const std::vector<std::string>& command, const std::string& folder, Errors errors = Errors::in_output);
-  /// The same for a program that takes lines on its standard input, and a descriptor, as number inherited_number. It
-  /// does not give way to others. Its standard error is apart.
+  /// The same for a program that takes lines on its standard input, and a descriptor, as number inherited_number; -1:
+  /// none. It does not give way to others. Its standard error is apart. time_to_end: that end() gives it.
   static std::unique_ptr<ChildProgram> with_input(const std::vector<std::string>& command, const std::string& folder,
-                                                  int inherited);
+                                                  int inherited, std::chrono::seconds time_to_end = usual_time_to_end);
   /// Ends it, with the programs that it has started.
   ~ChildProgram();
   ChildProgram(const ChildProgram&) = delete;
@@ -43,8 +43,10 @@ class ChildProgram {
   /// Its exit status, or 128 + the number of a signal, as a shell reports it; nothing as long as it runs. Does not
   /// wait. What it has started ends with it. Output that it wrote before can still be read.
   [[nodiscard]] std::optional<int> status();
-  /// Asks it to end, and ends it if it has not done so after three seconds; status() says when it has ended.
+  /// Asks it to end, and ends it if it has not done so in time; status() says when it has ended.
   void end();
+
+  static constexpr std::chrono::seconds usual_time_to_end{3};
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -68,6 +70,7 @@ class ChildProgram {
   std::optional<Pipe> errors_;
   std::optional<Pipe> input_;  ///< a pair of sockets: a write to a program that has ended sends no signal
   pid_t process_ = 0;
+  std::chrono::seconds time_to_end_ = usual_time_to_end;
   std::optional<int> status_;
   std::optional<Clock::time_point> killed_at_;
 };

@@ -43,6 +43,7 @@ class Drive {
   Drive(const DriveOptions& options, const ScenarioRun& run, BusAccess& bus, const DriveRecorders& recorders)
       : run_(run),
         is_verbose_(options.verbose),
+        ends_with_input_(options.ends_with_input),
         bus_(bus.connection()),
         recorders_(recorders),
         gait_(run.scenario, bus_, {run.ticks}) {}
@@ -177,6 +178,7 @@ class Drive {
   }
 
   void take_input() {
+    wants_stop_ = wants_stop_ || (ends_with_input_ && input_lines_.has_ended());
     while (const auto line = input_lines_.next()) {
       const std::string word(trimmed(*line));
       if (word == "stop" || word == "quit") {
@@ -193,6 +195,7 @@ class Drive {
 
   const ScenarioRun& run_;
   bool is_verbose_;
+  bool ends_with_input_;
   host::BusConnection& bus_;
   DriveRecorders recorders_;
   GaitRun gait_;
@@ -222,8 +225,11 @@ int drive(const DriveOptions& options) {
   }
   refuse_world_options(options, {{"--losses", options.losses.has_value()}});
   if (run.scenario.robot_control && !options.bus.bus) {
-    if (options.fast || options.mirror) {
-      throw InputError(options.fast ? "--fast" : "--mirror", 0, "a robot without modules", "--bus BUS");
+    if (options.fast || options.mirror || options.ends_with_input) {
+      throw InputError(options.fast     ? "--fast"
+                       : options.mirror ? "--mirror"
+                                        : "--until-input-ends",
+                       0, "a robot without modules", "--bus BUS");
     }
     return drive_by_plugin(options, run);
   }
@@ -310,6 +316,9 @@ int main(int argc, char** argv) {
                   "simulate the robot beside the real one, record it in this file, and draw the difference of measured "
                   "and simulated angles beside it")
       .value_name("FILE");
+  command_line.add_flag("--until-input-ends", options.ends_with_input,
+                        "stop the robot when standard input ends, for a program that starts this one: the robot stops "
+                        "when that program ends, in any way");
   command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return drive(options); });

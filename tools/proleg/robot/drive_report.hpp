@@ -18,6 +18,7 @@ namespace proleg::tools {
 struct DriveOptions : ScenarioOptions {
   BusOptions bus;
   bool fast = false;
+  bool ends_with_input = false;
   std::optional<std::string> mirror;
 };
 

@@ -114,7 +114,7 @@ Json object_of(const Experiment& experiment, const GaitMap& map, std::size_t cel
                const std::filesystem::path& file) {
   return {{"cell", place_object(map, cell)},
           {"number", evaluation.number},
-          {"engine", sim::name_of(experiment.scenario.environment.engine)},
+          {"engine", optimize::trial_maker(experiment)},
           {"score", evaluation.scores.front()},
           {"measures", measures_object(evaluation.measures)},
           {"values", values_object(experiment.space, evaluation.candidate)},
@@ -125,11 +125,10 @@ void print_cell(const Experiment& experiment, const GaitMap& map, std::size_t ce
                 const std::filesystem::path& file) {
   print_line("cell", map.place_text(cell));
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    const std::string_view unit = experiment.objectives[i].unit();
-    print_line("  " + experiment.objectives[i].name,
-               optimize::rounded_text(evaluation.scores[i]) + (unit.empty() ? "" : " " + std::string(unit)));
+    const optimize::Objective& objective = experiment.objectives[i];
+    print_line("  " + objective.name, optimize::rounded_text(evaluation.scores[i], objective.unit()));
   }
-  print_line("engine", std::string(sim::name_of(experiment.scenario.environment.engine)));
+  print_line("engine", std::string(optimize::trial_maker(experiment)));
   print_line("written", file.string());
 }
 

@@ -87,7 +87,9 @@ std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
     create_result_folder(folder);
   }
   try {
-    return std::make_unique<optimize::Store>(store_path(folder), experiment, result_key, opening);
+    // What a robot has measured holds for every build of this program.
+    return std::make_unique<optimize::Store>(store_path(folder), experiment,
+                                             experiment.on_robot ? optimize::robot_name : result_key, opening);
   } catch (const optimize::StoreError& refused) {
     throw BadInput(refused.what());
   }

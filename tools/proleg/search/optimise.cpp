@@ -49,7 +49,7 @@ Json result_object(const Experiment& experiment, const SearchOutcome& outcome, c
   Json object{
       {"experiment", experiment.path},
       {"method", optimize::method_name(experiment.method)},
-      {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+      {"engine", std::string(optimize::trial_maker(experiment))},
       {"judge", optimize::is_judged(experiment) ? Json(std::string(sim::name_of(optimize::judging_engine))) : Json()},
       {"trials", experiment.trials.count},
       {"seed", experiment.seed}};
@@ -84,7 +84,7 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
     print_agreement(experiment, sample, result.best);
   }
   const optimize::SearchProgress& progress = outcome.progress;
-  std::printf("%-24s %s\n", "engine", std::string(sim::name_of(experiment.scenario.environment.engine)).c_str());
+  std::printf("%-24s %s\n", "engine", std::string(optimize::trial_maker(experiment)).c_str());
   std::printf("%-24s %.1f s, %.0f x real time; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
               outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
               100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
@@ -110,6 +110,10 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
   add("--evaluations", options.evaluations);
   add("--seed", options.seed);
   add("--judge", options.judge);
+  add("--bus", options.robot.bus);
+  add("--score", options.robot.score);
+  add("--score-command", options.robot.score_command);
+  add("--score-timeout", options.robot.score_timeout);
   add("--resume", folder.string());
   return command + algorithm_options();
 }
@@ -128,6 +132,18 @@ Experiment read_stored(const OptimiseOptions& options) {
     return optimize::read_experiment_of(store_path(*options.resume));
   } catch (const optimize::StoreError& error) {
     throw BadInput(error.what());
+  }
+}
+
+/// Throws InputError for options that mean nothing with a robot, and for those of a robot without one.
+void refuse_beside_robot(const OptimiseOptions& options) {
+  require_bus(options.robot);
+  for (const auto& [option, is_given] :
+       {std::pair("--workers", options.workers.has_value()), std::pair("--engine", options.engine.has_value()),
+        std::pair("--estimate", options.estimate)}) {
+    if (options.robot.bus && is_given) {
+      throw InputError(option, 0, "an option for simulated trials beside --bus", "one of the two");
+    }
   }
 }
 
@@ -207,7 +223,9 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
     } else {
       print_text(experiment, outcome, result, sample, files, workers.count());
     }
-    print_warnings_on(options.program, folder / "best.simulation.xml");
+    if (!experiment.on_robot) {
+      print_warnings_on(options.program, folder / "best.simulation.xml");
+    }
   }
   if (outcome.ending.empty()) {
     std::cerr << options.program << ": interrupted after " << outcome.progress.evaluations
@@ -249,7 +267,7 @@ int estimate(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     return exit_failed;
   }
   if (options.json) {
-    const Json object{{"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+    const Json object{{"engine", std::string(optimize::trial_maker(experiment))},
                       {"workers", workers->count()},
                       {"evaluation_s", estimate.evaluation_s},
                       {"confirmation_s", estimate.confirmation_s},
@@ -275,7 +293,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   }
   Experiment experiment = read_experiment(options);
   const std::size_t judged = judged_cells(options, experiment);
-  const std::filesystem::path folder = chosen_folder(options.out, options.resume, experiment.title(), "search");
+  const std::filesystem::path folder = search_folder(options, experiment);
   print_warnings(options.program, experiment.scenario);
   refuse_overwriting(experiment, folder);
   if (!options.resume &&
@@ -310,6 +328,10 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   }
 }
 
+std::filesystem::path search_folder(const OptimiseOptions& options, const Experiment& experiment) {
+  return chosen_folder(options.out, options.resume, experiment.title(), "search");
+}
+
 void require_map(const optimize::Experiment& experiment) {
   if (!std::holds_alternative<optimize::MapElitesSettings>(experiment.method)) {
     throw InputError(experiment.path, experiment.method_line, "the method " + optimize::method_name(experiment.method),
@@ -318,6 +340,7 @@ void require_map(const optimize::Experiment& experiment) {
 }
 
 optimize::Experiment read_experiment(const OptimiseOptions& options) {
+  refuse_beside_robot(options);
   if (options.file) {
     refuse_folder(*options.file, ".optimise.xml");
   }
@@ -327,6 +350,14 @@ optimize::Experiment read_experiment(const OptimiseOptions& options) {
   sim::DiskFiles files;
   optimize::Experiment experiment =
       options.file ? optimize::read_experiment(*options.file, files, options.simulation) : read_stored(options);
+  if (!options.file && experiment.on_robot != options.robot.bus.has_value()) {
+    throw BadInput(store_path(*options.resume).string() + (experiment.on_robot
+                                                               ? ": found the trials of a robot, expected --bus BUS"
+                                                               : ": found simulated trials, expected no --bus"));
+  }
+  if (options.robot.bus) {
+    optimize::put_on_robot(experiment);
+  }
   ExperimentOptions changes = options;
   if (options.fills_atlas) {
     require_map(experiment);
@@ -341,7 +372,8 @@ optimize::Experiment read_experiment(const OptimiseOptions& options) {
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
   CommandLine command_line(
       "proleg optimise",
-      "Searches for the parameters of a gait: simulates candidates, stores all results, and writes the best scenario.");
+      "Searches for the parameters of a gait: simulates candidates, or lets a robot try them (--bus), stores all "
+      "results, and writes the best scenario.");
   OptimiseOptions options;
   add_optimise_options(command_line, options);
   command_line.add_algorithms_option();
@@ -355,7 +387,10 @@ void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
   command_line.add_option(
       "--trials", options.trials,
       "number of worlds in which each candidate is simulated; they differ as <trials> of FILE says, "
-      "or else in friction, mass, servo gain and latency");
+      "or else in friction, mass, servo gain and latency. Of a robot: number of its trials of each candidate");
+  if (!options.fills_atlas) {
+    add_robot_options(command_line, options.robot);
+  }
   command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
   command_line.add_option("--workers", options.workers,
                           "number of simulations at the same time; default: number of processors");

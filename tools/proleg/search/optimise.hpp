@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "sim/optimize/experiment/experiment.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/search/optimisation.hpp"
+#include "tools/proleg/search/trial_score.hpp"
 
 namespace proleg::tools {
 
@@ -25,6 +27,7 @@ struct OptimiseOptions : ExperimentOptions {
   std::optional<std::string> resume;
   std::optional<std::string> stop;
   std::optional<std::string> judge;  ///< number of cells; nothing: usual_judged_cells
+  RobotOptions robot;
   bool estimate = false;
   bool verbose = false;
   bool json = false;
@@ -39,7 +42,11 @@ void add_optimise_options(CommandLine& command_line, OptimiseOptions& options);
 /// Throws InputError unless the experiment's method fills a map of gaits.
 void require_map(const optimize::Experiment& experiment);
 
-/// Makes the workers, which are processes of this computer or of a cluster.
+/// The folder of a search.
+[[nodiscard]] std::filesystem::path search_folder(const OptimiseOptions& options,
+                                                  const optimize::Experiment& experiment);
+
+/// Makes the workers: processes of this computer or of a cluster, or a robot.
 using WorkersMaker =
     std::function<std::unique_ptr<optimize::Workers>(const optimize::Experiment&, const OptimiseOptions& options)>;
 

@@ -8,11 +8,14 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <string_view>
 
 #include "sim/optimize/evaluation/local_workers.hpp"
+#include "sim/optimize/evaluation/store_file.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/search/optimise.hpp"
+#include "tools/proleg/search/robot_trials.hpp"
 
 namespace {
 
@@ -42,7 +45,18 @@ int main(int argc, char** argv) {
   }
   using namespace proleg;
   return tools::optimise_command(
-      argc, argv, [](const optimize::Experiment& experiment, const tools::OptimiseOptions& options) {
-        return std::make_unique<optimize::LocalWorkers>(experiment, tools::parse_workers(options.workers));
+      argc, argv,
+      [](const optimize::Experiment& experiment,
+         const tools::OptimiseOptions& options) -> std::unique_ptr<optimize::Workers> {
+        if (!options.robot.bus) {
+          return std::make_unique<optimize::LocalWorkers>(experiment, tools::parse_workers(options.workers));
+        }
+        const std::filesystem::path folder = tools::search_folder(options, experiment);
+        const auto stop = [store = tools::store_path(folder)] {
+          return tools::interrupted() || optimize::is_stop_requested(store);
+        };
+        return std::make_unique<tools::RobotWorker>(
+            experiment, tools::RobotTrials(options.robot, options.program, experiment.scenario, experiment.objectives,
+                                           folder, stop));
       });
 }

@@ -19,6 +19,9 @@ int search(int argc, char** argv) {
     if (options.workers) {
       throw BadInput("found --workers under mpirun, expected mpirun's -n: each of its processes is one worker");
     }
+    if (options.robot.bus) {
+      throw BadInput("found --bus under mpirun, expected no mpirun: a robot makes one trial after the other");
+    }
     return std::make_unique<optimize::MpiWorkers>(experiment, build_id);
   });
 }

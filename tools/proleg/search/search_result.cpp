@@ -28,9 +28,9 @@ bool depends_on_seed(const Experiment& experiment) {
 
 /// Measures of the scenario that is written for an evaluation.
 sim::MeasureValues own_measures(const Experiment& experiment, const Evaluation& evaluation) {
-  const bool was_simulated =
-      experiment.trials.count == 1 && !experiment.trials.spread.any() && !optimize::is_judged(experiment);
-  return was_simulated ? evaluation.measures : optimize::run_own_world(experiment, evaluation).measures;
+  const bool was_tried = experiment.on_robot || (experiment.trials.count == 1 && !experiment.trials.spread.any() &&
+                                                 !optimize::is_judged(experiment));
+  return was_tried ? evaluation.measures : optimize::run_own_world(experiment, evaluation).measures;
 }
 
 std::vector<double> scores_of(const Experiment& experiment, const sim::MeasureValues& measures) {
@@ -315,10 +315,10 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome, co
     print_line("map", map_text(optimize::gait_map(experiment, outcome.evaluations)));
   }
   const optimize::SearchProgress& progress = outcome.progress;
-  std::printf("%-24s %llu: %llu simulated now, %llu reused, %llu from the store\n", "evaluations",
+  std::printf("%-24s %llu: %llu %s now, %llu reused, %llu from the store\n", "evaluations",
               static_cast<unsigned long long>(progress.evaluations),
-              static_cast<unsigned long long>(progress.simulated), static_cast<unsigned long long>(progress.reused),
-              static_cast<unsigned long long>(progress.restored));
+              static_cast<unsigned long long>(progress.simulated), experiment.on_robot ? "tried" : "simulated",
+              static_cast<unsigned long long>(progress.reused), static_cast<unsigned long long>(progress.restored));
   if (progress.failed > 0) {
     print_line("failed", std::to_string(progress.failed) + " of them; the first: " + progress.first_failure);
   }

@@ -41,7 +41,8 @@ struct SearchResult {
                                      std::vector<optimize::Confirmation> confirmations);
 
 /// The files that a search writes into its folder, beside its store.
-inline constexpr std::array<std::string_view, 13> search_result_files{"evaluations.tsv",
+inline constexpr std::array<std::string_view, 14> search_result_files{"trials",
+                                                                      "evaluations.tsv",
                                                                       "best.tsv",
                                                                       "learning_curve.svg",
                                                                       "confirmation.tsv",

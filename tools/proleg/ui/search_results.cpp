@@ -115,7 +115,7 @@ json SearchResults::describe(const fs::path& search) {
   const bool has_ended = summary.ending && !optimize::is_being_written(SearchFolder::store_of(search));
   return {{"experiment", one_line(fs::path(experiment.path).filename().string())},
           {"method", optimize::method_name(experiment.method)},
-          {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+          {"engine", std::string(optimize::trial_maker(experiment))},
           {"seed", std::to_string(experiment.seed)},
           {"trials", experiment.trials.count},
           {"planned", summary.planned > 0 ? json(summary.planned) : json()},

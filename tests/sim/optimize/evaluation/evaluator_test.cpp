@@ -239,6 +239,18 @@ TEST(Evaluator, GivesWorkersThePredictedCandidates) {
   EXPECT_GE(workers.started().size(), 4U);
 }
 
+TEST(Evaluator, LetsARobotMakeOnlyTrialsThatAreAskedFor) {
+  Experiment experiment = noisy_experiment();
+  put_on_robot(experiment);
+  MadeUpWorkers workers(experiment, 1, 1);
+  Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
+  evaluator.expect(std::vector<Candidate>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  EXPECT_TRUE(workers.started().empty());
+  evaluator.fitness({2, 0, 0});
+  ASSERT_EQ(workers.started().size(), 1U);
+  EXPECT_EQ(workers.started().front().candidate, (Candidate{2, 0, 0}));
+}
+
 TEST(Evaluator, DropsOldPredictionsAndCountsWastedTrials) {
   const Experiment experiment = noisy_experiment();
   MadeUpWorkers workers(experiment, 1, 1);

@@ -133,9 +133,9 @@ void rate_for_length(Atlas& atlas, double seconds, const std::function<void(doub
     return;
   }
   if (experiment.on_robot) {
-    refuse(experiment.path, "a map that a robot has filled in trials of " +
-                                number_text(experiment.scenario.duration_s) + " s, for trials of " +
-                                number_text(seconds) + " s");
+    const std::string length = number_text(experiment.scenario.duration_s);
+    throw StoreError(experiment.path + ": found a map that a robot has filled in trials of " + length +
+                     " s, expected trials of this length (--seconds " + length + ")");
   }
   experiment.scenario.duration_s = seconds;
   const Objective& objective = experiment.objectives.front();

@@ -9,7 +9,6 @@
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/report/report.hpp"

@@ -22,9 +22,6 @@
 
 namespace proleg::tools {
 
-/// The folder of the trials in that of a run: scenario and recording of each.
-inline constexpr const char* trials_folder = "trials";
-
 class RobotTrials {
  public:
   /// program: name of the command, for messages. scenario: of the robot; no trial differs in more than its parameters.

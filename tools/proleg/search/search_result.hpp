@@ -15,6 +15,7 @@
 #include "sim/optimize/experiment/space_remarks.hpp"
 #include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/search/optimisation.hpp"
+#include "tools/proleg/search/trial_score.hpp"
 
 namespace proleg::tools {
 
@@ -41,20 +42,12 @@ struct SearchResult {
                                      std::vector<optimize::Confirmation> confirmations);
 
 /// The files that a search writes into its folder, beside its store.
-inline constexpr std::array<std::string_view, 14> search_result_files{"trials",
-                                                                      "evaluations.tsv",
-                                                                      "best.tsv",
-                                                                      "learning_curve.svg",
-                                                                      "confirmation.tsv",
-                                                                      "pareto.tsv",
-                                                                      "pareto.svg",
-                                                                      "map.tsv",
-                                                                      "map.svg",
-                                                                      "judged.tsv",
-                                                                      "result.json",
-                                                                      "best.simulation.xml",
-                                                                      "best.actuation.xml",
-                                                                      "best.files"};
+inline constexpr std::array<std::string_view, 14> search_result_files{
+    trials_folder,        "evaluations.tsv",  "best.tsv",
+    "learning_curve.svg", "confirmation.tsv", "pareto.tsv",
+    "pareto.svg",         "map.tsv",          "map.svg",
+    "judged.tsv",         "result.json",      "best.simulation.xml",
+    "best.actuation.xml", "best.files"};
 
 /// Throws BadInput if these files in the folder, or a store there, would replace a file of the experiment.
 void refuse_overwriting(const optimize::Experiment& experiment, const std::filesystem::path& folder,

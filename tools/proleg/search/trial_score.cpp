@@ -142,18 +142,19 @@ std::optional<sim::MeasureValues> TrialScore::measure(const DrivenTrial& trial) 
   } catch (const std::exception& error) {
     throw TrialFailed(error.what());
   }
+  for (const sim::Measure measure : needed_) {
+    const bool is_of_modules = source_ == Source::recording || measure != measured_;
+    if (is_of_modules && sim::is_sensed_by_modules(measure) && std::isnan(values[measure])) {
+      throw TrialFailed("the modules of this robot have not measured what " +
+                        std::string(sim::declaration_of(measure).name) + " needs");
+    }
+  }
   if (source_ != Source::recording) {
     const std::optional<double> number = source_ == Source::person ? ask(trial) : std::optional(run_program(trial));
     if (!number) {
       return std::nullopt;
     }
     values[measured_] = *number;
-  }
-  for (const sim::Measure measure : needed_) {
-    if (sim::is_sensed_by_modules(measure) && std::isnan(values[measure])) {
-      throw TrialFailed("the modules of this robot have not measured what " +
-                        std::string(sim::declaration_of(measure).name) + " needs");
-    }
   }
   return values;
 }

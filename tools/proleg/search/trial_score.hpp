@@ -33,6 +33,9 @@ void add_robot_options(CommandLine& command_line, RobotOptions& options);
 /// Throws InputError for an option of these trials without --bus.
 void require_bus(const RobotOptions& options);
 
+/// The folder of the trials in that of a run: scenario and recording of each.
+inline constexpr const char* trials_folder = "trials";
+
 /// A trial has no score. what() is one line.
 class TrialFailed : public std::runtime_error {
  public:

@@ -252,15 +252,26 @@ class RobotTrials(unittest.TestCase):
             program.end()
         self.assert_cut_short("killed")
 
-    def test_a_bus_that_vanishes_gives_no_score(self):
+    def test_a_bus_that_vanishes_and_modules_that_restart_give_no_score(self):
         with Bus(self.scenario) as bus:
             program = self.moving(bus, "vanished")
             bus.process.kill()
             program.end()
+            self.assert_no_score(program, "vanished", "'proleg drive' has ended with status 1: ")
+        with Bus(self.scenario) as bus:
+            program = self.moving(bus, "restarted")
+            bus.say("off")
+            bus.until("the supply of the robot is off")
+            bus.say("on")
+            program.end()
+            self.assert_no_score(program, "restarted", "'proleg drive' has ended with status 1: |a module has restarted")
+            self.assertEqual(bus.powered(), set())
+
+    def assert_no_score(self, program, out, why):
         self.assertEqual(program.process.returncode, 1)
-        self.assertTrue(any(re.search("trial_1 has no score: 'proleg drive' has ended with status 1: ", line)
-                            for line in program.messages), program.messages)
-        self.assertEqual(self.made("vanished"), [])
+        self.assertTrue(any(re.search(f"trial_1 has no score: (?:{why})", line) for line in program.messages),
+                        program.messages)
+        self.assertEqual(self.made(out), [])
 
     # Bad input.
 

@@ -10,8 +10,8 @@
 
 namespace proleg {
 
-/// Greatest number of values of one joint that are staged at the same time, in all transactions together: as many as its
-/// slots have parameters at most.
+/// Greatest number of values of one joint that are staged at the same time, in all transactions together: as many as
+/// its slots have parameters at most.
 inline constexpr std::size_t max_staged_values = max_slots * max_parameters;
 
 /// A change of one value of a joint that waits for its transaction to take effect.

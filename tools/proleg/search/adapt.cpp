@@ -47,7 +47,7 @@ struct AdaptOptions {
   ScenarioOptions scenario;
   std::string atlas;
   std::vector<std::string> damages;
-  RobotOptions robot;
+  TrialOptions robot;
   std::string trials = "12";
   std::string alpha = "0.9";
   std::string kappa = "0.05";
@@ -314,7 +314,7 @@ int adapt_command(int argc, char** argv) {
       .add_option("--damage", options.damages,
                   "what is wrong with the robot beside what FILE says: " + sim::damage_forms() + ". May be repeated.")
       .value_name("DAMAGE");
-  add_robot_options(command_line, options.robot);
+  add_trial_options(command_line, options.robot);
   command_line.add_option("--seconds", options.scenario.seconds, "time of a trial; default: 10");
   command_line.add_option("--trials", options.trials, "largest number of trials").shows_default();
   command_line

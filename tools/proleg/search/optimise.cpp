@@ -389,7 +389,7 @@ void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
       "number of worlds in which each candidate is simulated; they differ as <trials> of FILE says, "
       "or else in friction, mass, servo gain and latency. Of a robot: number of its trials of each candidate");
   if (!options.fills_atlas) {
-    add_robot_options(command_line, options.robot);
+    add_trial_options(command_line, options.robot);
   }
   command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
   command_line.add_option("--workers", options.workers,

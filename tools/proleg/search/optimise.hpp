@@ -27,7 +27,7 @@ struct OptimiseOptions : ExperimentOptions {
   std::optional<std::string> resume;
   std::optional<std::string> stop;
   std::optional<std::string> judge;  ///< number of cells; nothing: usual_judged_cells
-  RobotOptions robot;
+  TrialOptions robot;
   bool estimate = false;
   bool verbose = false;
   bool json = false;

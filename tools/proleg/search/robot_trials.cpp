@@ -58,7 +58,7 @@ void require_whole_gait(const ChildEnd& end, std::uint32_t ticks) {
 
 }  // namespace
 
-RobotTrials::RobotTrials(const RobotOptions& options, std::string program, const sim::Scenario& scenario,
+RobotTrials::RobotTrials(const TrialOptions& options, std::string program, const sim::Scenario& scenario,
                          std::span<const optimize::Objective> objectives, const fs::path& folder,
                          std::function<bool()> stop)
     : bus_(options.bus.value()),

@@ -27,7 +27,7 @@ class RobotTrials {
   /// program: name of the command, for messages. scenario: of the robot; no trial differs in more than its parameters.
   /// objectives: their measures are needed. folder: of the run. stop: whether the user stops; called often. Throws
   /// InputError for bad options, and for a scenario that modules cannot run.
-  RobotTrials(const RobotOptions& options, std::string program, const sim::Scenario& scenario,
+  RobotTrials(const TrialOptions& options, std::string program, const sim::Scenario& scenario,
               std::span<const optimize::Objective> objectives, const std::filesystem::path& folder,
               std::function<bool()> stop);
 

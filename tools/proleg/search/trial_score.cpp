@@ -63,7 +63,7 @@ std::string with_unit(sim::Measure measure) {
 
 }  // namespace
 
-void add_robot_options(CommandLine& command_line, RobotOptions& options) {
+void add_trial_options(CommandLine& command_line, TrialOptions& options) {
   command_line
       .add_option(
           "--bus", options.bus,
@@ -86,7 +86,7 @@ void add_robot_options(CommandLine& command_line, RobotOptions& options) {
       .value_name("SECONDS");
 }
 
-void require_bus(const RobotOptions& options) {
+void require_bus(const TrialOptions& options) {
   for (const auto& [option, is_given] : {std::pair("--score", options.score.has_value()),
                                          std::pair("--score-command", options.score_command.has_value()),
                                          std::pair("--score-timeout", options.score_timeout.has_value())}) {
@@ -96,7 +96,7 @@ void require_bus(const RobotOptions& options) {
   }
 }
 
-TrialScore::TrialScore(const RobotOptions& options, std::span<const optimize::Objective> objectives,
+TrialScore::TrialScore(const TrialOptions& options, std::span<const optimize::Objective> objectives,
                        std::function<void(const std::string& line)> print, std::function<bool()> stop)
     : print_(std::move(print)), stop_(std::move(stop)) {
   if (options.score_command) {

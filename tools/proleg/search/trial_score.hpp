@@ -21,17 +21,17 @@
 namespace proleg::tools {
 
 /// Options of a command whose trials a robot can make.
-struct RobotOptions {
+struct TrialOptions {
   std::optional<std::string> bus;  ///< nothing: the trials are simulated
   std::optional<std::string> score;
   std::optional<std::string> score_command;
   std::optional<std::string> score_timeout;
 };
 
-void add_robot_options(CommandLine& command_line, RobotOptions& options);
+void add_trial_options(CommandLine& command_line, TrialOptions& options);
 
 /// Throws InputError for an option of these trials without --bus.
-void require_bus(const RobotOptions& options);
+void require_bus(const TrialOptions& options);
 
 /// The folder of the trials in that of a run: scenario and recording of each.
 inline constexpr const char* trials_folder = "trials";
@@ -55,7 +55,7 @@ class TrialScore {
   /// objectives: their measures are needed. print: shows a line to the user. stop: whether the user stops; called
   /// often. Throws InputError for bad options, and if the trials cannot have all measures: those that the recording of
   /// a robot does not have (sim/record/module_measures.hpp), except one that a person or a program measures.
-  TrialScore(const RobotOptions& options, std::span<const optimize::Objective> objectives,
+  TrialScore(const TrialOptions& options, std::span<const optimize::Objective> objectives,
              std::function<void(const std::string& line)> print, std::function<bool()> stop);
 
   /// The measures of a trial; nothing if the user wants it to be made again. Throws TrialFailed; SearchEnded if the

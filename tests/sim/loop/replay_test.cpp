@@ -214,7 +214,7 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
       }
     }
     EXPECT_EQ(tick.readings[0].present, 0) << "of a joint without the probe";
-    EXPECT_EQ(tick.readings[1].present, 7) << "a simulated module has all sensors";
+    EXPECT_EQ(tick.readings[1].present, JointReadings::all_sensors) << "a simulated module has all sensors";
     pitches.insert(tick.readings[1].pitch);
     for (const std::uint8_t link : tick.latched_contacts) {
       contacts += link != 0 ? 1U : 0U;

@@ -178,6 +178,7 @@ void KernelSnapshot::visit_state(AnyKernel& kernel, Archive& archive) {
     archive.value(joint.readings.current_ma);
     archive.value(joint.readings.pitch);
     archive.value(joint.readings.roll);
+    archive.value(joint.readings.angle);
     for (auto& axis : joint.readings.acceleration_mm_s2) {
       archive.value(axis);
     }

@@ -15,7 +15,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t ticks = 40;
+constexpr std::uint32_t ticks_of_trial = 40;
 
 /// The measures of a recording of a small run whose samples are changed as a robot without sensors would have them.
 MeasureValues measures_of(const Scenario& scenario, const std::function<void(TickSample&)>& change) {
@@ -23,7 +23,7 @@ MeasureValues measures_of(const Scenario& scenario, const std::function<void(Tic
   const std::filesystem::path path = folder / "run.proleg";
   {
     Recorder recorder(path, scenario, "drive", "test");
-    run_small(scenario, ticks, [&](const TickSample& sample, const Change* committed) {
+    run_small(scenario, ticks_of_trial, [&](const TickSample& sample, const Change* committed) {
       if (committed != nullptr) {
         recorder.record_change(*committed);
       }
@@ -39,13 +39,13 @@ MeasureValues measures_of(const Scenario& scenario, const std::function<void(Tic
 TEST(ModuleMeasures, AreTheMeanCurrentAndTheEnergyOfTheSupply) {
   const Scenario scenario = small_scenario();
   double sum_ma = 0.0;
-  for (std::uint32_t tick = 0; tick < ticks; ++tick) {
+  for (std::uint32_t tick = 0; tick < ticks_of_trial; ++tick) {
     for (std::size_t joint = 0; joint < 3; ++joint) {
       sum_ma += made_up_current(tick, joint);
     }
   }
   const MeasureValues values = measures_of(scenario, [](TickSample&) {});
-  EXPECT_NEAR(values[Measure::mean_current], sum_ma / (3.0 * ticks), 1e-6);
+  EXPECT_NEAR(values[Measure::mean_current], sum_ma / (3.0 * ticks_of_trial), 1e-6);
   EXPECT_NEAR(values[Measure::electrical_energy], 6.0 * sum_ma * 1e-3 * scenario.kernel.tick_period_us * 1e-6, 1e-9);
 }
 
@@ -74,7 +74,7 @@ TEST(ModuleMeasures, RefuseTheRecordingOfAnotherRobot) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "run.proleg";
   const Scenario scenario = small_scenario();
-  record_small(path, scenario, ticks);
+  record_small(path, scenario, ticks_of_trial);
   Scenario other = scenario;
   other.robot.joints.pop_back();
   other.robot.links.pop_back();

@@ -23,6 +23,9 @@ class DroppedChanges : public testing::Test {
       apply_setting(scenario_, "amplitude=" + std::to_string(20 + tick % 20) + at);
       apply_setting(scenario_, "phase_difference=" + std::to_string(50 + tick % 20) + at);
       apply_setting(scenario_, "frequency=0." + std::to_string(50 + tick % 40) + at);
+      apply_setting(scenario_, "offset=" + std::to_string(1 + tick % 20) + at);
+      apply_setting(scenario_, "coupling=" + std::to_string(1 + tick % 20) + at);
+      apply_setting(scenario_, "rate=" + std::to_string(10 + tick % 20) + at);
     }
     HardwareLoop loop(scenario_, {});
     Recorder recorder(path_, scenario_, "test", "build");

@@ -29,8 +29,8 @@ inline Evaluation made_up_evaluation(const Experiment& experiment, std::uint64_t
 /// An atlas with two gaits: number 0 in the first cell, number 1 in the last one.
 inline Atlas small_atlas() {
   Atlas atlas{shipped_map(), {}};
-  atlas.gaits.push_back({0, Candidate(5, 40), {0.02, 0.025}, 1.25});
-  atlas.gaits.push_back({499, Candidate(5, 120), {0.98, 0.975}, 0.75});
+  atlas.gaits.push_back({0, Candidate(5, 40), 1.25});
+  atlas.gaits.push_back({499, Candidate(5, 120), 0.75});
   return atlas;
 }
 

@@ -1,5 +1,4 @@
 #include "sim/optimize/adaptation/atlas.hpp"
-#include "sim/optimize/experiment/gait_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +11,7 @@
 #include "sim/optimize/adaptation/simulated_robot.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/experiment/gait_map.hpp"
 #include "sim/scenario/damage.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tests/support/temporary_folder.hpp"

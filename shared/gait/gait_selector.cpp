@@ -117,7 +117,7 @@ constexpr Parameter parameters[] = {
 static_assert(std::size(parameters) == rate + 1U && std::size(parameters) <= max_parameters);
 
 enum Values : std::uint8_t {
-  clock,
+  current_phase,
   announced_set,
   countdown,
   set,
@@ -140,7 +140,7 @@ enum Values : std::uint8_t {
   touched_links
 };
 constexpr InternalValue internal_values[] = {
-    InternalValue{"clock", Unit::phase_degree, 0, "phase of the wave at the robot's first joint, without the filter"},
+    InternalValue{"current_phase", Unit::phase_degree, 0, "phase of the wave at the first joint, without the filter"},
     InternalValue{"announced_set", Unit::count, 0, "the set that is played, or to which all joints change next"},
     InternalValue{"countdown", Unit::count, 0, "ticks until all joints change to announced_set"},
     InternalValue{"set", Unit::count, 0, "the set that is played, 1 to 4"},
@@ -167,8 +167,8 @@ constexpr unsigned counted_links = 31;
 /// The number of a feature minus 1.
 constexpr unsigned index_of(Values feature_value) { return unsigned{feature_value} - unsigned{pitch}; }
 
-constexpr FrameField frame[] = {FrameField{clock, 4}, FrameField{announced_set, 1}, FrameField{countdown, 1}};
-enum Field : std::uint8_t { clock_field, announced_field, countdown_field };
+constexpr FrameField frame[] = {FrameField{current_phase, 4}, FrameField{announced_set, 1}, FrameField{countdown, 1}};
+enum Field : std::uint8_t { phase_field, announced_field, countdown_field };
 constexpr std::int32_t longest_countdown = 255;
 /// Ticks that the news of a decision may be late at each joint together, because frames are lost.
 constexpr unsigned spare_ticks = 8;
@@ -248,7 +248,7 @@ class GaitSelector final : public SensingModule {
       take(neighbour, state);
       state[set] = state[announced_set];
     } else {
-      state[clock] =
+      state[current_phase] =
           static_cast<std::int32_t>(surroundings.tick * static_cast<std::uint32_t>(tuning.derived[increments]));
     }
     const std::int32_t* const chosen = set_of(state[set], tuning);
@@ -258,7 +258,7 @@ class GaitSelector final : public SensingModule {
   }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
-    const std::int32_t phase = add_wrapping(state[clock], state[current_shift]);
+    const std::int32_t phase = add_wrapping(state[current_phase], state[current_shift]);
     return add_saturating(multiply(state[current_amplitude], sine(static_cast<std::uint32_t>(phase)), 30),
                           state[current_offset]);
   }
@@ -266,7 +266,7 @@ class GaitSelector final : public SensingModule {
   /// The neighbour's clock is taken to run as the joint's own.
   void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& missed) const override {
     const std::int32_t step = tuning.derived[increments + position_of(state[set])];
-    repack(about, clock_field, add_wrapping(unpack(about, clock_field, missed), step), missed);
+    repack(about, phase_field, add_wrapping(unpack(about, phase_field, missed), step), missed);
     repack(about, countdown_field, unpack(about, countdown_field, missed) - 1, missed);  // repack() cuts it at 0
   }
 
@@ -294,7 +294,7 @@ class GaitSelector final : public SensingModule {
                                      static_cast<std::uint32_t>(set_of(set_number, tuning)[phase_step]));
   }
   static void take(const Neighbour& neighbour, std::int32_t* state) {
-    state[clock] = neighbour.value(clock_field);
+    state[current_phase] = neighbour.value(phase_field);
     state[announced_set] = static_cast<std::int32_t>(position_of(neighbour.value(announced_field))) + 1;
     state[countdown] = neighbour.value(countdown_field);
   }
@@ -306,7 +306,7 @@ class GaitSelector final : public SensingModule {
     if (surroundings.ahead.present()) {
       take(surroundings.ahead, next);
     } else {
-      next[clock] = state[clock];
+      next[current_phase] = state[current_phase];
       next[announced_set] = static_cast<std::int32_t>(position_of(state[announced_set])) + 1;
       next[countdown] = std::clamp<std::int32_t>(state[countdown], 0, longest_countdown);
     }
@@ -320,7 +320,7 @@ class GaitSelector final : public SensingModule {
     const unsigned present =
         next[countdown] == 0 ? static_cast<unsigned>(next[announced_set] - 1) : position_of(state[set]);
     next[set] = static_cast<std::int32_t>(present) + 1;
-    next[clock] = add_wrapping(next[clock], tuning.derived[increments + present]);
+    next[current_phase] = add_wrapping(next[current_phase], tuning.derived[increments + present]);
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
     const std::int32_t* const chosen = tuning.parameters + present * parameters_of_set;

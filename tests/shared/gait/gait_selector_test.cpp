@@ -361,7 +361,7 @@ TEST(GaitSelectorModules, AJointThatReceivesNothingKeepsItsSetAndIsRightATickAft
     }
     if (tick >= 402) {
       ASSERT_EQ(set_of(cut[2], 2), 2) << tick;
-      ASSERT_EQ(test::value(cut[2], 0, 2, "clock"), test::value(complete[2], 0, 2, "clock")) << tick;
+      ASSERT_EQ(test::value(cut[2], 0, 2, "current_phase"), test::value(complete[2], 0, 2, "current_phase")) << tick;
     }
   }
   for (unsigned joint = 0; joint < robot_joints; ++joint) {

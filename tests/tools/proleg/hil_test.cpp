@@ -180,7 +180,8 @@ TEST_F(Hil, ChangesThatTheMasterCannotTransferInTimeFailTheRunAndAreNotRecorded)
   const std::string recording = file("run.proleg").string();
   std::vector<std::string> words{"hil", scenario("coupled"), "--seconds", "1", "--json", "--record", recording};
   for (int tick = 0; tick < 60; ++tick) {
-    for (const char* name : {"amplitude=2", "phase_difference=5", "frequency=0.5"}) {
+    for (const char* name :
+         {"amplitude=2", "phase_difference=5", "frequency=0.5", "offset=1", "coupling=1", "rate=1"}) {
       words.insert(words.end(), {"--set", name + std::to_string(tick % 10) + "@" + std::to_string(tick)});
     }
   }

@@ -134,7 +134,7 @@ TEST(MasterChanges, RandomChangesComeIntoForceInEveryModuleAtTheirTick) {
 
 TEST(MasterChanges, AModuleNeverHasMoreValuesStagedThanItHasRoomFor) {
   std::vector<Change> plan;
-  for (std::uint32_t i = 0; i < 10; ++i) {  // 20 values of joint 0 in each: three changes fill its 64 places
+  for (std::uint32_t i = 0; i < 10; ++i) {  // 20 values of joint 0 in each: six changes fill its 128 places
     plan.push_back({60 + i * 30, {}});
     for (std::uint8_t n = 0; n < 20; ++n) {
       plan.back().settings.push_back({0, 0, static_cast<std::uint8_t>(n % 5), false, n});
@@ -143,7 +143,7 @@ TEST(MasterChanges, AModuleNeverHasMoreValuesStagedThanItHasRoomFor) {
   ScriptedRobot robot(2, plan);
   robot.start();
   ASSERT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::starting; }, 5'000'000));
-  EXPECT_EQ(robot.master().changes_made(), 3U);
+  EXPECT_EQ(robot.master().changes_made(), 6U);
   ASSERT_TRUE(robot.run_until_running());
   ASSERT_TRUE(robot.run_to_tick(400));
   EXPECT_EQ(robot.master().problem().code, ProblemCode::none);
@@ -152,9 +152,9 @@ TEST(MasterChanges, AModuleNeverHasMoreValuesStagedThanItHasRoomFor) {
 
 TEST(MasterChanges, OneThatComesTooLateIsReportedAndDroppedAndTheRobotGoesOn) {
   std::vector<Change> plan;
-  for (std::uint32_t i = 0; i < 12; ++i) {  // one a tick, of nine values of joint 0: seven of them fit at once
+  for (std::uint32_t i = 0; i < 12; ++i) {  // one a tick, of 18 values of joint 0: seven of them fit at once
     plan.push_back({100 + i, for_all(2, 0, static_cast<std::int32_t>(i))});
-    for (std::uint8_t n = 0; n < 8; ++n) {
+    for (std::uint8_t n = 0; n < 17; ++n) {
       plan.back().settings.push_back({0, 0, 0, false, static_cast<std::int32_t>(i)});
     }
   }
@@ -292,9 +292,9 @@ TEST(MasterRestart, ChangesMayPassWhileAModuleIsSetUpAgain) {
 
 TEST(MasterRestart, WhatWasDroppedIsNotMadeByARestart) {
   std::vector<Change> plan;
-  for (std::uint32_t i = 0; i < 9; ++i) {  // one a tick, of nine values of joint 0: seven of them fit at once
+  for (std::uint32_t i = 0; i < 9; ++i) {  // one a tick, of 18 values of joint 0: seven of them fit at once
     plan.push_back({100 + i, for_all(3, static_cast<std::uint8_t>(i % 3), static_cast<std::int32_t>(i + 50))});
-    for (std::uint8_t n = 0; n < 8; ++n) {
+    for (std::uint8_t n = 0; n < 17; ++n) {
       plan.back().settings.push_back({0, 0, 4, false, static_cast<std::int32_t>(i)});
     }
   }

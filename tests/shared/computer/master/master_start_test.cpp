@@ -150,7 +150,7 @@ TEST(MasterProblem, AChangeThatCannotBeIsFoundBeforeAnythingIsSent) {
   EXPECT_EQ(bad_change({{10, {{0, 0, 30, false, 5}}}}), 0U) << "parameter";
   EXPECT_EQ(bad_change({{10, {{0, 0, 30, true, 5}}}}), 0U) << "internal value";
   EXPECT_EQ(bad_change({{10, {good}}, {10, {good}}}), 1U) << "tick";
-  EXPECT_EQ(bad_change({{10, std::vector<Setting>(65, good)}}), 0U) << "too many values of a joint";
+  EXPECT_EQ(bad_change({{10, std::vector<Setting>(129, good)}}), 0U) << "too many values of a joint";
 }
 
 TEST(MasterProblem, AMissingModuleIsNamedAfterASecond) {

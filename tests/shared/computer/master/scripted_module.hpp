@@ -472,7 +472,7 @@ class ScriptedModule final : public sim::BusListener {
     for (const Transaction& waiting : committed_) {
       count += waiting.values.size();
     }
-    if (count >= 64) {  // docs/protocol.md
+    if (count >= 128) {  // docs/protocol.md
       return canopen::AbortCode::out_of_memory;
     }
     const auto again = std::ranges::find(open_->values, address, &std::pair<canopen::Address, std::int32_t>::first);

@@ -5,12 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "shared/fixed/random.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/losses.hpp"
+#include "sim/scenario/module_sensors.hpp"
 #include "tests/support/from_environment.hpp"
 #include "virtual_robot.hpp"
 
@@ -93,18 +96,40 @@ class RobotGenerator {
     }
   }
 
+  /// Again until modules have the sensors that the parameters need.
   void draw_parameters_of(std::uint8_t slot, std::uint8_t joint, const Declaration& declaration) {
-    for (std::uint8_t i = 0; i < declaration.parameters.size(); ++i) {
-      if (noise_.below(2) == 0) {
-        continue;
+    std::vector<Setting> drawn;
+    do {
+      drawn.clear();
+      for (std::uint8_t i = 0; i < declaration.parameters.size(); ++i) {
+        if (noise_.below(2) != 0) {
+          drawn.push_back({slot, joint, i, false, draw_value_of(declaration.parameters[i])});
+        }
       }
-      const Parameter& parameter = declaration.parameters[i];
-      const auto width = static_cast<std::uint64_t>(std::int64_t{parameter.maximum} - parameter.minimum);
-      const std::uint64_t distance = (width * noise_.next()) >> 32U;
-      const auto value = static_cast<std::int32_t>(parameter.minimum + static_cast<std::int64_t>(distance));
-      robot_.scenario.settings.push_back({slot, joint, i, false, value});
-      text_ << "\n  slot " << int{slot} << ", joint " << int{joint} << ": " << parameter.name << " = " << value;
+    } while (!can_run_on_modules(declaration, drawn));
+    for (const Setting& setting : drawn) {
+      robot_.scenario.settings.push_back(setting);
+      text_ << "\n  slot " << int{slot} << ", joint " << int{joint} << ": "
+            << declaration.parameters[setting.number].name << " = " << setting.value;
     }
+  }
+
+  std::int32_t draw_value_of(const Parameter& parameter) {
+    const auto width = static_cast<std::uint64_t>(std::int64_t{parameter.maximum} - parameter.minimum);
+    const std::uint64_t distance = (width * noise_.next()) >> 32U;
+    return static_cast<std::int32_t>(parameter.minimum + static_cast<std::int64_t>(distance));
+  }
+
+  static bool can_run_on_modules(const Declaration& declaration, const std::vector<Setting>& settings) {
+    std::array<std::int32_t, max_parameters> values{};
+    for (std::size_t i = 0; i < declaration.parameters.size(); ++i) {
+      values[i] = declaration.parameters[i].default_value;
+    }
+    for (const Setting& setting : settings) {
+      values[setting.number] = setting.value;
+    }
+    return declaration.rules == nullptr ||
+           (declaration.rules->required_readings(values.data()) & ~sensors_of_modules) == 0;
   }
 
   void draw_losses() {

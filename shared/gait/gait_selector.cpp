@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <initializer_list>
 #include <optional>
 
 #include "shared/fixed/arithmetic.hpp"
@@ -9,6 +6,7 @@
 #include "shared/gait/algorithms.hpp"
 #include "shared/gait/critical_filter.hpp"
 #include "shared/gait/decision_list.hpp"
+#include "shared/gait/gait_features.hpp"
 #include "shared/gait/generator_parameters.hpp"
 #include "shared/gait/pattern_generator.hpp"
 #include "shared/gait/sensing_module.hpp"
@@ -18,8 +16,7 @@ namespace {
 
 constexpr std::int32_t set_count = 4;
 constexpr unsigned parameters_of_set = 4;
-constexpr std::int32_t feature_count = 8;
-constexpr std::int32_t one = raw(Unit::ratio, 1);
+constexpr std::int32_t feature_count = GaitFeatures::count;
 
 enum Parameters : std::uint8_t {
   // Of set 1; those of the other sets follow in the same order.
@@ -109,7 +106,7 @@ constexpr Parameter parameters[] = {
               "Over which time the features are averaged. Time constant of their low-pass filters, in ms."},
     Parameter{"dwell", Unit::count, 3'000, 0, 600'000,
               "How long a set stays chosen at least. ms between two decisions."},
-    Parameter{"hysteresis", Unit::ratio, raw(Unit::ratio, 2, 100), 0, one,
+    Parameter{"hysteresis", Unit::ratio, raw(Unit::ratio, 2, 100), 0, raw(Unit::ratio, 1),
               "How far a feature has to go back to end a set. Part by which the thresholds of the present set are "
               "easier to pass."},
     generator_parameters::rate,
@@ -128,16 +125,7 @@ enum Values : std::uint8_t {
   shift_rate,
   current_offset,
   offset_rate,
-  // The features, in the order of their numbers.
-  pitch,
-  pitch_swing,
-  roll,
-  touch,
-  head_touch,
-  touch_changes,
-  current,
-  tracking_error,
-  touched_links
+  features  // the first of GaitFeatures::state_size values
 };
 constexpr InternalValue internal_values[] = {
     InternalValue{"current_phase", Unit::phase_degree, 0, "phase of the wave at the first joint, without the filter"},
@@ -161,11 +149,8 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"tracking_error", Unit::ratio, 0, "mean distance of the angle from its set-point; 1: 90 degrees"},
     InternalValue{"touched_links", Unit::count, 0, "the first 31 links that touch: a bit each"},
 };
-static_assert(std::size(internal_values) == touched_links + 1U && std::size(internal_values) <= max_internal_values);
-static_assert(pitch + feature_count == touched_links);
-constexpr unsigned counted_links = 31;
-/// The number of a feature minus 1.
-constexpr unsigned index_of(Values feature_value) { return unsigned{feature_value} - unsigned{pitch}; }
+static_assert(std::size(internal_values) == features + GaitFeatures::state_size &&
+              std::size(internal_values) <= max_internal_values);
 
 constexpr FrameField frame[] = {FrameField{current_phase, 4}, FrameField{announced_set, 1}, FrameField{countdown, 1}};
 enum Field : std::uint8_t { phase_field, announced_field, countdown_field };
@@ -173,24 +158,8 @@ constexpr std::int32_t longest_countdown = 255;
 /// Ticks that the news of a decision may be late at each joint together, because frames are lost.
 constexpr unsigned spare_ticks = 8;
 
-/// Features that the rules name, and those that these are computed from: bit n - 1 for feature n.
-unsigned features_in(const std::int32_t* values) {
-  const unsigned used = DecisionList(values + first_rule, set_count).features();
-  constexpr unsigned mean = 1U << index_of(pitch);
-  constexpr unsigned swing = 1U << index_of(pitch_swing);
-  return (used & swing) != 0 ? used | mean : used;
-}
-
 std::uint8_t required_readings(const std::int32_t* values) {
-  const unsigned used = features_in(values);
-  const auto needs = [used](std::initializer_list<Values> features, JointReadings::Sensor sensor) {
-    return std::ranges::any_of(features, [used](Values value) { return ((used >> index_of(value)) & 1U) != 0; })
-               ? unsigned{sensor}
-               : 0U;
-  };
-  return static_cast<std::uint8_t>(needs({pitch, roll}, JointReadings::inclination) |
-                                   needs({current}, JointReadings::servo_current) |
-                                   needs({tracking_error}, JointReadings::angle_of_joint));
+  return GaitFeatures::required_readings(DecisionList(values + first_rule, set_count).features());
 }
 
 std::optional<Contradiction> contradiction(const std::int32_t* values) {
@@ -222,16 +191,13 @@ class GaitSelector final : public SensingModule {
     const auto ticks_of = [&context](std::int32_t ms) {
       return static_cast<std::int32_t>(divide_nearest(std::int64_t{ms} * 1'000, std::int64_t{context.tick_period_us}));
     };
-    derived[smoothing] = saturate(
-        std::min(divide_nearest(std::int64_t{context.tick_period_us} << 30U, std::int64_t{values[window]} * 1'000),
-                 std::int64_t{1} << 30U));
     derived[dwell_ticks] = ticks_of(values[dwell]);
     const bool decides = !context.group.empty() && context.group.front() == context.joint;
     derived[notice] =
         decides ? static_cast<std::int32_t>(std::min(context.group.size() + spare_ticks, unsigned{longest_countdown}))
                 : 0;
-    derived[used_features] = decides ? static_cast<std::int32_t>(features_in(values)) : 0;
-    derived[link_share] = divide_nearest(one, context.joint_count + 1);
+    const unsigned used = decides ? DecisionList(values + first_rule, set_count).features() : 0U;
+    GaitFeatures::make(context, values[window], used).store(derived + feature_constants);
   }
 
   void reset(const JointContext& context, const Tuning& tuning, Pcg32& /*noise*/, std::int32_t* state) const override {
@@ -274,13 +240,12 @@ class GaitSelector final : public SensingModule {
   enum Derived : std::uint8_t {
     increments,
     filter_constants = increments + set_count,
-    smoothing = filter_constants + CriticalFilter::derived_size,  ///< part of a difference that a feature moves, Q30
-    dwell_ticks,
-    notice,         ///< ticks from a decision to its effect; 0 on joints that do not decide
-    used_features,  ///< bit n - 1 for feature n; none on joints that do not decide
-    link_share,     ///< part of all links that a link is, as a ratio
+    feature_constants =
+        filter_constants + CriticalFilter::derived_size,  ///< of no feature on joints that do not decide
+    dwell_ticks = feature_constants + GaitFeatures::derived_size,
+    notice,  ///< ticks from a decision to its effect; 0 on joints that do not decide
   };
-  static_assert(link_share < max_derived);
+  static_assert(notice < max_derived);
 
   /// A state may have been overwritten.
   static unsigned position_of(std::int32_t set_number) {
@@ -301,7 +266,7 @@ class GaitSelector final : public SensingModule {
 
   /// A joint takes clock and decision from the joint ahead of it. So a joint that missed a decision, or was disturbed,
   /// is right again a tick later, and until then keeps its set.
-  void advance_sensing(const Contacts& contacts, const Surroundings& surroundings, const Tuning& tuning,
+  void advance_sensing(const Contacts& /*contacts*/, const Surroundings& surroundings, const Tuning& tuning,
                        const std::int32_t* state, std::int32_t* next) const override {
     if (surroundings.ahead.present()) {
       take(surroundings.ahead, next);
@@ -311,7 +276,7 @@ class GaitSelector final : public SensingModule {
       next[countdown] = std::clamp<std::int32_t>(state[countdown], 0, longest_countdown);
     }
     next[countdown] = std::max<std::int32_t>(next[countdown] - 1, 0);
-    sense(contacts, surroundings, tuning, state, next);
+    GaitFeatures::load(tuning.derived + feature_constants).advance(surroundings, state + features, next + features);
     const std::int32_t before = std::clamp<std::int32_t>(state[since_decision], 0, most_ticks);
     next[since_decision] = std::min(before + 1, most_ticks);
     if (tuning.derived[notice] != 0 && next[countdown] == 0 && before >= tuning.derived[dwell_ticks]) {
@@ -336,87 +301,12 @@ class GaitSelector final : public SensingModule {
 
   [[gnu::noinline]] static void decide(const Tuning& tuning, std::int32_t* next) {
     const std::int32_t wanted = DecisionList(tuning.parameters + first_rule, set_count)
-                                    .choose(next + pitch, next[announced_set], tuning.parameters[hysteresis]);
+                                    .choose(next + features, next[announced_set], tuning.parameters[hysteresis]);
     if (wanted != next[announced_set]) {
       next[announced_set] = wanted;
       next[countdown] = tuning.derived[notice];
       next[since_decision] = 0;
     }
-  }
-
-  /// Computes the features that the rules name; the others are 0. A feature whose sensor gives nothing keeps its value.
-  static void sense(const Contacts& contacts, const Surroundings& surroundings, const Tuning& tuning,
-                    const std::int32_t* state, std::int32_t* next) {
-    std::fill(next + pitch, next + touched_links + 1, 0);
-    const auto used = static_cast<unsigned>(tuning.derived[used_features]);
-    if (used == 0) {
-      return;
-    }
-    const JointReadings& readings = surroundings.readings;
-    const bool is_inclined = readings.has(JointReadings::inclination);
-    const std::int32_t inclination = readings.pitch >> 2;
-    std::array<Input, feature_count> inputs{};
-    inputs[index_of(pitch)] = {is_inclined, inclination};
-    inputs[index_of(pitch_swing)] = {is_inclined, distance(inclination, state[pitch])};
-    inputs[index_of(roll)] = {is_inclined, static_cast<std::int32_t>(magnitude(readings.roll) >> 3U)};
-    inputs[index_of(current)] = {readings.has(JointReadings::servo_current), in_amperes(readings.current_ma)};
-    inputs[index_of(tracking_error)] = {readings.has(JointReadings::angle_of_joint),
-                                        distance(surroundings.setpoint, readings.angle) >> 2};
-    constexpr unsigned of_touch = 7U << index_of(touch);
-    if ((used & of_touch) != 0) {
-      sense_touch(contacts, surroundings.context, tuning.derived[link_share],
-                  static_cast<std::uint32_t>(state[touched_links]), next[touched_links], inputs.data());
-    }
-    for (unsigned i = 0; i < feature_count; ++i) {
-      if (((used >> i) & 1U) != 0) {
-        const std::int32_t before = state[pitch + i];
-        next[pitch + i] = inputs[i].is_known ? averaged(tuning.derived[smoothing], before, inputs[i]) : before;
-      }
-    }
-  }
-
-  /// What a feature averages: value * times, of which the product need not fit in its number.
-  struct Input {
-    bool is_known;
-    std::int32_t value;
-    std::int32_t times = 1;
-  };
-
-  /// Not inline, as sense_touch(): the image is small.
-  [[gnu::noinline]] static std::int32_t averaged(std::int32_t part, std::int32_t before, const Input& input) {
-    const std::int64_t gain = std::int64_t{multiply(part, input.value, 30)} * input.times;
-    return saturate(gain + before - multiply(part, before, 30));
-  }
-
-  [[gnu::noinline]] static void sense_touch(const Contacts& contacts, const JointContext& context, std::int32_t share,
-                                            std::uint32_t touched_before, std::int32_t& touched_now, Input* inputs) {
-    std::int32_t count = 0;
-    std::uint32_t touched = 0;
-    for (unsigned link = 0; link < contacts.link_count(); ++link) {
-      const std::uint32_t is_touched = contacts.pressed(link) ? 1 : 0;
-      count += static_cast<std::int32_t>(is_touched);
-      touched |= link < counted_links ? is_touched << link : 0U;
-    }
-    touched_now = static_cast<std::int32_t>(touched);
-    const int changed = std::popcount(touched ^ touched_before);
-    const auto ticks_per_second = static_cast<std::int32_t>(1'000'000U / context.tick_period_us);
-    inputs[index_of(touch)] = {true, count * share};
-    inputs[index_of(head_touch)] = {true, (touched & 1U) != 0 ? one : 0};
-    inputs[index_of(touch_changes)] = {true, changed * share, ticks_per_second};
-  }
-
-  /// |value|, with 2^31 for the value that has no opposite.
-  static std::uint32_t magnitude(std::int32_t value) {
-    const auto bits = static_cast<std::uint32_t>(value);
-    return value < 0 ? 0U - bits : bits;
-  }
-  static std::int32_t distance(std::int32_t a, std::int32_t b) {
-    const std::int64_t difference = std::int64_t{a} - b;
-    return saturate(difference < 0 ? -difference : difference);
-  }
-  static std::int32_t in_amperes(std::int32_t milliamperes) {
-    constexpr std::int32_t of_1024_ma = raw(Unit::ratio, 1'024, 1'000);
-    return saturate(shift_right_rounding(multiply_wide(milliamperes, of_1024_ma), 10));
   }
 };
 

@@ -46,6 +46,7 @@ constexpr std::array subcommands{
     Subcommand{"atlas", "fill a map of many different gaits, and write the scenario of any of them", "optimise"},
     Subcommand{"confirm", "say whether a gait is real or lives on an error of the physics"},
     Subcommand{"adapt", "find a gait that a damaged robot can do, in a few trials", "optimise"},
+    Subcommand{"learn-selector", "learn from recordings by which rules a robot chooses its gait", "optimise"},
     Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
     Subcommand{"bus", "serve a simulated robot that other programs reach as a real one"},
     Subcommand{"drive", "move a robot of modules as its scenario says"},
@@ -68,7 +69,7 @@ constexpr std::array subcommands{
 void print_help(std::ostream& out) {
   out << "Usage: proleg SUBCOMMAND [OPTIONS]\n\nSubcommands:\n";
   for (const Subcommand& subcommand : subcommands) {
-    out << "  " << subcommand.name << std::string(12 - subcommand.name.size(), ' ') << subcommand.summary << '\n';
+    out << "  " << subcommand.name << std::string(16 - subcommand.name.size(), ' ') << subcommand.summary << '\n';
   }
   out << "\n'proleg SUBCOMMAND --help' explains a subcommand; 'proleg --version' prints version and build.\n";
 }

@@ -73,7 +73,7 @@ def commands_of(page):
 
 
 # Subcommands that are in the program of another one.
-PROGRAM_OF = {"adapt": "optimise", "atlas": "optimise"}
+PROGRAM_OF = {"adapt": "optimise", "atlas": "optimise", "learn-selector": "optimise"}
 
 
 class PagesTest(unittest.TestCase):

@@ -64,4 +64,7 @@ int atlas_command(int argc, char** argv);
 /// Runs `proleg adapt`.
 int adapt_command(int argc, char** argv);
 
+/// Runs `proleg learn-selector`.
+int learn_selector_command(int argc, char** argv);
+
 }  // namespace proleg::tools

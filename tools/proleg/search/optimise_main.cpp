@@ -1,5 +1,5 @@
-// proleg optimise on this computer, and the commands that are the same program: proleg atlas, proleg adapt. Under
-// mpirun it starts the program beside it with the same name and -mpi, which needs Open MPI.
+// proleg optimise on this computer, and the commands that are the same program: proleg atlas, proleg adapt, proleg
+// learn-selector. Under mpirun it starts the program beside it with the same name and -mpi, which needs Open MPI.
 
 #include <unistd.h>
 
@@ -38,6 +38,9 @@ int main(int argc, char** argv) {
   }
   if (command == "atlas") {
     return proleg::tools::atlas_command(argc, argv);
+  }
+  if (command == "learn-selector") {
+    return proleg::tools::learn_selector_command(argc, argv);
   }
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {  // set by Open MPI's mpirun
     run_over_mpi(argv);

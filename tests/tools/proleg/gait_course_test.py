@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""A robot that chooses its gait comes farther than with each gait alone; the rules for it can be learned.
+
+Usage: gait_course_test.py SOURCE_FOLDER PROGRAM_FOLDER [learned]
+
+Without `learned` the rules are given.
+"""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
+IS_LEARNED = sys.argv[3:] == ["learned"]
+sys.path.insert(0, str(SOURCE / "tests" / "bench"))
+import gait_course  # noqa: E402
+
+
+class GaitCourse(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.course = gait_course.Course(PROGRAMS, temporary.name)
+
+    def expect_farther(self, rules, seconds, starts):
+        distances, end = self.course.distances(rules, seconds, starts)
+        for side in ("feet", "back"):
+            for i, start in enumerate(starts):
+                alone = max(distances[side, number][i] for number in (1, 2, 3))
+                with self.subTest(side=side, start=start):
+                    self.assertGreater(distances[side, 0][i], end, "behind all obstacles")
+                    self.assertLess(alone, 0.7 * end)
+
+    @unittest.skipIf(IS_LEARNED, "a test of its own")
+    def test_the_choosing_robot_passes_a_course_on_which_each_gait_alone_stops(self):
+        self.expect_farther(gait_course.RULES, 150, (0.1,))
+
+    @unittest.skipUnless(IS_LEARNED, "takes two minutes")
+    def test_learned_rules_are_right_on_unseen_recordings_and_pass_the_course(self):
+        learned = self.course.learn(self.course.record())
+        print(f"right on unseen recordings: {learned['unseen_right']}; {learned['changes_per_minute']} changes a minute; "
+              f"{learned['rules']}")
+        self.assertGreaterEqual(learned["unseen_right"], 0.95)
+        self.assertLess(learned["changes_per_minute"], 5)
+        self.expect_farther(learned["parameters"], 300, (0.07, 0.14, 0.21))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -32,6 +32,10 @@ void print_costs(cortex_m::Cpu cpu) {
     print("  set_contacts", cost.set_contacts);
     print("  receive, 4 frames", cost.receive);
     print("  advance", cost.advance);
+    if (declaration.name == "SensingModule_gait_selector") {
+      print("  joint 0, which decides by touch",
+            cortex_m::measure_tick(machine, declaration.id, ticks, cortex_m::deciding_joint()).total);
+    }
   }
   std::printf("  Deepest stack, bytes (bound: core_image.stack.tsv beside the image)\n");
   for (const cortex_m::StackUse& use : cortex_m::measure_stack(machine)) {

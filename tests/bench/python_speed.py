@@ -18,7 +18,7 @@ import proleg  # noqa: E402
 
 proleg_s = time.process_time() - begin
 NAMES, LOWEST, HIGHEST = ["amplitude", "frequency", "phase_difference"], [10, 0.3, 15], [70, 2.2, 140]  # as bench_reduced
-WORLDS, TICKS = 64, 1000
+WORLDS, TICKS, ROUNDS = 64, 1000, 7
 
 
 def timed(call):
@@ -28,18 +28,30 @@ def timed(call):
     return time.monotonic() - wall, time.process_time() - processor
 
 
-count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+count = int(sys.argv[1]) if len(sys.argv) > 1 else 500
 scenario = proleg.Scenario("caterpillar", engine="reduced")
 candidates = np.random.default_rng(1).uniform(LOWEST, HIGHEST, (count, 3))
-one, processor = timed(lambda: proleg.evaluate(scenario, NAMES, candidates, workers=1))
-two, _ = timed(lambda: proleg.evaluate(scenario, NAMES, candidates, workers=2))
-
 gait = [40 * np.sin(2 * np.pi * (tick / 100 + np.arange(5) / 4)) for tick in range(TICKS)]
 worlds = proleg.Worlds(scenario, n=WORLDS, seconds=TICKS * scenario.tick)
-worlds.reset()
-_, stepped = timed(lambda: [worlds.step(setpoints) for setpoints in gait])
-_, evaluated = timed(lambda: proleg.evaluate(scenario, "amplitude", [[40]] * WORLDS, seconds=TICKS * scenario.tick, workers=1))
+
+
+def step_all():
+    worlds.reset()
+    for setpoints in gait:
+        worlds.step(setpoints)
+
+
+# The speed of a computer changes within seconds. So what is compared takes turns, and a ratio is of neighbours.
+rounds = []
+for _ in range(ROUNDS):
+    two, _ = timed(lambda: proleg.evaluate(scenario, NAMES, candidates, workers=2))
+    one, processor = timed(lambda: proleg.evaluate(scenario, NAMES, candidates, workers=1))
+    _, evaluated = timed(lambda: proleg.evaluate(scenario, "amplitude", [[40]] * WORLDS, seconds=TICKS * scenario.tick, workers=1))
+    _, stepped = timed(step_all)
+    rounds.append((count / processor, one / two, 1e6 * stepped / TICKS, stepped / evaluated))
+speed, workers, tick_us, ratio = (f"{np.median(column):.4g} ({min(column):.4g} to {max(column):.4g})" for column in zip(*rounds))
 
 print(f"import: numpy {1000 * numpy_s:.0f} ms of processor, proleg after it {1000 * proleg_s:.0f} ms")
-print(f"evaluate: {count / processor:.1f} evaluations of {scenario.duration:.0f} s in a second of one core; two workers {one / two:.2f} x one")
-print(f"Worlds: {1e6 * stepped / TICKS:.0f} us of processor for a tick of {WORLDS} worlds, {stepped / evaluated:.2f} x evaluate()")
+print(f"medians of {ROUNDS} rounds, least and greatest in brackets:")
+print(f"evaluate: {speed} evaluations of {scenario.duration:.0f} s in a second of one core; two workers {workers} x one")
+print(f"Worlds: {tick_us} us of processor for a tick of {WORLDS} worlds, {ratio} x evaluate()")

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <string>
 #include <string_view>
+#include <tuple>
 
 #include "shared/gait/registry.hpp"
 
@@ -72,12 +74,26 @@ class Modules {
     return spent;
   }
 
+  /// Gives parameters of a joint their values, before its first tick.
+  void set(const MeasuredJoint& measured) {
+    constexpr std::uint32_t transaction = 1;
+    constexpr std::uint32_t slot = 0;
+    const std::uint32_t kernel = kernels_[measured.joint];
+    for (const auto& [number, value] : measured.parameters) {
+      expect_ok("proleg::Kernel::stage",
+                {kernel, transaction, slot, measured.joint, number, static_cast<std::uint32_t>(value)});
+    }
+    if (!measured.parameters.empty()) {
+      expect_ok("proleg::Kernel::commit", {kernel, transaction, 0});
+    }
+  }
+
   /// All frames to all others. Returns the instructions that the measured joint spends on receiving.
-  std::uint64_t exchange() {
+  std::uint64_t exchange(std::uint32_t measured = measured_joint) {
     std::uint64_t spent = 0;
     for (std::uint32_t receiver = 0; receiver < joint_count; ++receiver) {
       const std::uint64_t instructions = receive_all(receiver);
-      spent += receiver == measured_joint ? instructions : 0;
+      spent += receiver == measured ? instructions : 0;
     }
     return spent;
   }
@@ -122,13 +138,36 @@ std::uint32_t contacts_of(std::uint32_t joint, unsigned tick) { return (tick + j
 
 }  // namespace
 
-TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks) {
+MeasuredJoint deciding_joint() {
+  const Declaration& selector = find_algorithm("SensingModule_gait_selector")->declaration();
+  MeasuredJoint measured{0, {}};
+  const auto set = [&](const std::string& name, std::int32_t value) {
+    measured.parameters.emplace_back(static_cast<std::uint32_t>(find_parameter(selector, name)), value);
+  };
+  constexpr std::int32_t touch = 4;
+  constexpr std::int32_t head_touch = 5;
+  constexpr std::int32_t touch_changes = 6;
+  const std::int32_t never = raw(Unit::ratio, 7);
+  for (const auto& [number, first, second] :
+       {std::tuple{"2", touch, head_touch}, std::tuple{"3", head_touch, touch_changes},
+        std::tuple{"4", touch_changes, touch}}) {
+    set(std::string("feature_") + number, first);
+    set(std::string("threshold_") + number, never);
+    set(std::string("second_feature_") + number, second);
+    set(std::string("second_threshold_") + number, never);
+  }
+  set("dwell", 0);
+  return measured;
+}
+
+TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks, const MeasuredJoint& measured) {
   Modules modules(machine, algorithm_id);
+  modules.set(measured);
   Statistics set_contacts;
   Statistics receive;
   Statistics advance;
   Statistics total;
-  static_cast<void>(modules.exchange());
+  static_cast<void>(modules.exchange(measured.joint));
   for (unsigned tick = 0; tick < ticks; ++tick) {
     std::uint64_t contacts_cost = 0;
     std::uint64_t advance_cost = 0;
@@ -136,12 +175,12 @@ TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned tick
       const std::uint64_t contacts =
           modules.call("proleg::Kernel::set_contacts", joint, {joint, contacts_of(joint, tick)}).instructions;
       const std::uint64_t step = modules.call("proleg::Kernel::advance", joint, {}).instructions;
-      if (joint == measured_joint) {
+      if (joint == measured.joint) {
         contacts_cost = contacts;
         advance_cost = step;
       }
     }
-    const std::uint64_t receive_cost = modules.exchange();
+    const std::uint64_t receive_cost = modules.exchange(measured.joint);
     set_contacts.add(contacts_cost);
     receive.add(receive_cost);
     advance.add(advance_cost);

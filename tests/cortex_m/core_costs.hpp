@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/cortex_m/machine.hpp"
@@ -17,16 +18,27 @@ struct Instructions {
   std::uint64_t worst = 0;
 };
 
-/// One tick of the middle joint of five, alone in its kernel, with an algorithm and its defaults in one slot.
+/// A joint of five, and parameters of the algorithm that have other values than the default there.
+struct MeasuredJoint {
+  std::uint32_t joint = 2;
+  std::vector<std::pair<std::uint32_t, std::int32_t>> parameters;  ///< number and raw value
+};
+
+/// The joint of the gait selector that decides, with rules that name all features of touch: the most expensive ones.
+[[nodiscard]] MeasuredJoint deciding_joint();
+
+/// One tick of a joint of five, alone in its kernel, with an algorithm in one slot.
 struct TickCost {
   Instructions set_contacts;
   Instructions receive;  ///< all four frames of the other joints
   Instructions advance;
   Instructions total;
 };
-[[nodiscard]] TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks);
+[[nodiscard]] TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks,
+                                    const MeasuredJoint& measured = {});
 
-/// The same ticks, each as one call of a function of the image: with the instructions that call the parts.
+/// The same ticks of the middle joint, each as one call of a function of the image: with the instructions that call the
+/// parts.
 [[nodiscard]] Instructions measure_whole_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks);
 
 /// sine() over phases in all quarters.

@@ -168,7 +168,8 @@ TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned tick
   Statistics advance;
   Statistics total;
   static_cast<void>(modules.exchange(measured.joint));
-  for (unsigned tick = 0; tick < ticks; ++tick) {
+  const unsigned not_measured = measured.parameters.empty() ? 0 : 1;  // in it the parameters come into force
+  for (unsigned tick = 0; tick < ticks + not_measured; ++tick) {
     std::uint64_t contacts_cost = 0;
     std::uint64_t advance_cost = 0;
     for (std::uint32_t joint = 0; joint < joint_count; ++joint) {
@@ -181,6 +182,9 @@ TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned tick
       }
     }
     const std::uint64_t receive_cost = modules.exchange(measured.joint);
+    if (tick < not_measured) {
+      continue;
+    }
     set_contacts.add(contacts_cost);
     receive.add(receive_cost);
     advance.add(advance_cost);

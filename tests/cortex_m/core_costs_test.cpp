@@ -38,6 +38,11 @@ TEST_F(CostOnCortexM4, ATickOfAnyAlgorithmTakesAtMost2500Instructions) {
   }
 }
 
+TEST_F(CostOnCortexM4, ATickOfTheJointThatChoosesAGaitTakesAtMost1500Instructions) {
+  const Declaration& selector = find_algorithm("SensingModule_gait_selector")->declaration();
+  EXPECT_LE(measure_tick(machine_, selector.id, ticks, deciding_joint()).total.worst, 1500U);
+}
+
 TEST_F(CostOnCortexM4, ASineTakesAtMost50Instructions) { EXPECT_LE(measure_sine(machine_).worst, 50U); }
 
 TEST_F(CostOnCortexM4, ATickInOneCallCostsItsPartsAndTheCallsOfThem) {

@@ -143,8 +143,6 @@ std::vector<std::uint32_t> parts_of(const std::vector<LabelledRun>& runs) {
   return parts;
 }
 
-constexpr std::uint32_t bit_of_set(std::int32_t set) { return 1U << static_cast<unsigned>(set - 1); }
-
 }  // namespace
 
 std::uint32_t LabelledRun::right_sets() const {

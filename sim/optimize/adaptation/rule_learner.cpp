@@ -76,8 +76,7 @@ struct Rule {
   double gain = 0.0;
 };
 
-constexpr std::uint32_t bit_of(std::int32_t set) { return 1U << static_cast<unsigned>(set - 1); }
-constexpr std::uint32_t all_sets = bit_of(gait_sets + 1) - 1;
+constexpr std::uint32_t all_sets = bit_of_set(gait_sets + 1) - 1;
 
 using RuleOrder = std::array<std::int32_t, gait_sets - 1>;
 
@@ -108,7 +107,7 @@ class Learner {
     for (int round = 0; round < most_rounds && score() > before + rounding; ++round) {
       before = score();
       for (const std::int32_t set : order) {
-        unlearned &= ~bit_of(set);
+        unlearned &= ~bit_of_set(set);
         learn_rule(set, round == 0 ? unlearned : 0);
       }
     }
@@ -117,7 +116,9 @@ class Learner {
   }
 
  private:
-  static bool is_right(const RuleExample& example, std::int32_t set) { return (example.right_sets & bit_of(set)) != 0; }
+  static bool is_right(const RuleExample& example, std::int32_t set) {
+    return (example.right_sets & bit_of_set(set)) != 0;
+  }
   [[nodiscard]] std::int32_t chosen(const RuleExample& example) const {
     return DecisionList(rules_.data(), gait_sets).choose(example.features.data(), example.played, hysteresis_);
   }
@@ -179,7 +180,7 @@ class Learner {
   /// not learned yet; they are expected to be right where this set is not.
   [[nodiscard]] std::vector<Gain> gains_of(std::int32_t set, std::uint32_t unlearned) const {
     std::vector<Gain> gains;
-    const std::uint32_t greater_sets = all_sets & ~(bit_of(set + 1) - 1);
+    const std::uint32_t greater_sets = all_sets & ~(bit_of_set(set + 1) - 1);
     for (std::size_t i = 0; i < examples_.size(); ++i) {
       const RuleExample& example = examples_[i];
       const std::int32_t otherwise = chosen(example);

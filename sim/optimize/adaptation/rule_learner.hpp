@@ -15,6 +15,9 @@ namespace proleg::optimize {
 /// Sets of parameters of SensingModule_gait_selector.
 inline constexpr std::int32_t gait_sets = 4;
 
+/// In a number that stands for several sets.
+[[nodiscard]] constexpr std::uint32_t bit_of_set(std::int32_t set) { return 1U << static_cast<unsigned>(set - 1); }
+
 /// Values of the features in a tick: ratios, Q28, in the order of GaitFeatures::Feature.
 using FeatureValues = std::array<std::int32_t, GaitFeatures::count>;
 

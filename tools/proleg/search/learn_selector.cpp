@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -46,25 +47,40 @@ struct LearnOptions {
 constexpr std::array<std::string_view, 3> learned_files{"learned.simulation.xml", "learned.actuation.xml",
                                                         "learned.files"};
 
-/// In the order of GaitFeatures::Feature.
-constexpr std::array<std::string_view, GaitFeatures::count> feature_names{
-    "pitch", "pitch_swing", "roll", "touch", "head_touch", "touch_changes", "current", "tracking_error"};
+const Declaration& selector() { return sensing_module_gait_selector().declaration(); }
+
+std::uint8_t parameter_number(std::string_view name) {
+  return static_cast<std::uint8_t>(find_parameter(selector(), name));
+}
+
+/// position: in RuleParameters.
+std::uint8_t rule_parameter(std::size_t position) {
+  return static_cast<std::uint8_t>(parameter_number("feature_2") + position);
+}
+
+/// feature: as GaitFeatures::Feature.
+std::string feature_name(std::size_t feature) {
+  const auto first = static_cast<std::size_t>(find_internal_value(selector(), "pitch"));
+  return std::string(selector().internal_values[first + feature].name);
+}
 
 std::uint32_t named_features(const LearnOptions& options) {
   if (options.features.empty()) {
     return (1U << GaitFeatures::count) - 1;
   }
+  std::vector<std::string> known;
+  std::string all;
+  for (std::size_t feature = 0; feature < GaitFeatures::count; ++feature) {
+    known.push_back(feature_name(feature));
+    all += (all.empty() ? "" : ", ") + known.back();
+  }
   std::uint32_t named = 0;
   for (const std::string& name : options.features) {
-    const auto* const found = std::ranges::find(feature_names, name);
-    if (found == feature_names.end()) {
-      std::string all;
-      for (const std::string_view each : feature_names) {
-        all += (all.empty() ? "" : ", ") + std::string(each);
-      }
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end()) {
       throw InputError("--feature", 0, in_quotes(name), all);
     }
-    named |= 1U << static_cast<unsigned>(found - feature_names.begin());
+    named |= 1U << static_cast<unsigned>(found - known.begin());
   }
   return named;
 }
@@ -167,8 +183,8 @@ std::string rule_text(const RuleParameters& rules, std::int32_t set) {
       const std::size_t feature = static_cast<std::size_t>(std::abs(condition[0])) - 1;
       std::array<char, 32> threshold{};
       std::snprintf(threshold.data(), threshold.size(), "%.3g", as_number(condition[1]));
-      text += (text.empty() ? "" : " and ") + std::string(feature_names[feature]) +
-              (condition[0] > 0 ? " above " : " below ") + threshold.data();
+      text += (text.empty() ? "" : " and ") + feature_name(feature) + (condition[0] > 0 ? " above " : " below ") +
+              threshold.data();
     }
   }
   return text.empty() ? "never" : text;
@@ -182,26 +198,20 @@ sim::Scenario learned_scenario(const std::string& file, const LearnedRules& lear
     throw InputError(file, 0, "a recording whose scenario cannot be read",
                      "a recording with the files of its scenario");
   }
-  const Declaration& selector = sensing_module_gait_selector().declaration();
-  const auto number_of = [&](std::string_view name) {
-    return static_cast<std::uint8_t>(
-        std::ranges::find(selector.parameters, name,
-                          [](const Parameter& each) { return std::string_view(each.name); }) -
-        selector.parameters.begin());
-  };
-  const std::uint8_t first_rule = number_of("feature_2");
+  std::vector<std::pair<std::uint8_t, std::int32_t>> values{{parameter_number("window"), window_ms},
+                                                            {parameter_number("hysteresis"), learned.hysteresis}};
+  for (std::size_t i = 0; i < learned.rules.size(); ++i) {
+    values.emplace_back(rule_parameter(i), learned.rules[i]);
+  }
   for (std::uint8_t slot = 0; slot < max_slots; ++slot) {
     const Slot& each = scenario->kernel.slots[slot];
-    for (std::uint8_t joint = 0; joint < scenario->kernel.joint_count && each.algorithm_id() == selector.id; ++joint) {
-      if (!each.group.contains(joint)) {
-        continue;
+    if (each.algorithm_id() != selector().id) {
+      continue;
+    }
+    for (const unsigned joint : each.driven_joints()) {
+      for (const auto& [number, value] : values) {
+        sim::set_start_value(*scenario, {slot, static_cast<std::uint8_t>(joint), number, false, value});
       }
-      for (std::size_t i = 0; i < learned.rules.size(); ++i) {
-        sim::set_start_value(*scenario,
-                             {slot, joint, static_cast<std::uint8_t>(first_rule + i), false, learned.rules[i]});
-      }
-      sim::set_start_value(*scenario, {slot, joint, number_of("window"), false, window_ms});
-      sim::set_start_value(*scenario, {slot, joint, number_of("hysteresis"), false, learned.hysteresis});
     }
   }
   return *scenario;
@@ -240,13 +250,12 @@ void print(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
 Json json_of(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
              const std::vector<RunDecisions>& decisions, const std::vector<RunDecisions>& unseen,
              const optimize::SelectorTimes& times) {
-  const Declaration& selector = sensing_module_gait_selector().declaration();
   Json parameters = Json::empty_object();
   for (std::size_t i = 0; i < learned.rules.size(); ++i) {
-    static constexpr std::array<std::string_view, DecisionList::parameters_of_rule> names{
-        "feature_", "threshold_", "second_feature_", "second_threshold_"};
-    const std::string name = std::string(names[i % names.size()]) + std::to_string(i / names.size() + 2);
-    parameters.add(name, i % 2 == 0 ? static_cast<double>(learned.rules[i]) : as_number(learned.rules[i]));
+    const Parameter& parameter = selector().parameters[rule_parameter(i)];
+    const std::int32_t value = learned.rules[i];
+    parameters.add(std::string(parameter.name),
+                   parameter.unit == Unit::count ? static_cast<double>(value) : as_number(value));
   }
   parameters.add("hysteresis", as_number(learned.hysteresis));
   parameters.add("window", static_cast<double>(times.window_ms));
@@ -264,7 +273,7 @@ Json json_of(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
                      {"changes_per_minute", changes_a_minute(decisions[i])}});
   }
   const RunDecisions all = sum_of(decisions);
-  return Json{{"algorithm", std::string(selector.name)},
+  return Json{{"algorithm", std::string(selector().name)},
               {"parameters", parameters},
               {"rules", Json{{"2", rule_text(learned.rules, 2)},
                              {"3", rule_text(learned.rules, 3)},

@@ -14,7 +14,6 @@ namespace proleg::optimize {
 namespace {
 
 enum Number : std::int32_t { pitch = 1, pitch_swing, roll, touch };
-constexpr std::uint32_t bit_of(std::int32_t set) { return 1U << static_cast<unsigned>(set - 1); }
 constexpr std::uint32_t all_features = (1U << GaitFeatures::count) - 1;
 
 std::int32_t learned_ratio(double value) { return static_cast<std::int32_t>(std::lround(std::ldexp(value, 28))); }
@@ -33,7 +32,7 @@ class RuleLearner : public testing::Test {
       for (std::int32_t& feature : example.features) {
         feature = learned_ratio(unit(random_));
       }
-      example.right_sets = bit_of(chosen_by(rules, example.features));
+      example.right_sets = bit_of_set(chosen_by(rules, example.features));
     }
     return all;
   }
@@ -41,7 +40,7 @@ class RuleLearner : public testing::Test {
   static double right(const RuleParameters& rules, const std::vector<RuleExample>& examples) {
     double count = 0;
     for (const RuleExample& example : examples) {
-      count += (example.right_sets & bit_of(chosen_by(rules, example.features))) != 0 ? 1 : 0;
+      count += (example.right_sets & bit_of_set(chosen_by(rules, example.features))) != 0 ? 1 : 0;
     }
     return count / static_cast<double>(examples.size());
   }
@@ -74,7 +73,7 @@ TEST_F(RuleLearner, PutsAThresholdInTheMiddleOfAGapAndRoundsIt) {
     low.features[touch - 1] = learned_ratio(0.2 - i * 0.001);
     RuleExample high;
     high.features[touch - 1] = learned_ratio(0.6 + i * 0.001);
-    high.right_sets = bit_of(3);
+    high.right_sets = bit_of_set(3);
     all.push_back(low);
     all.push_back(high);
   }
@@ -103,7 +102,7 @@ TEST_F(RuleLearner, CountsEverySetTheSame) {
   for (int i = 0; i < 50; ++i) {
     RuleExample example;  // of all values above 0.9 a twentieth
     example.features[touch - 1] = learned_ratio(0.9 + i / 500.0);
-    example.right_sets = bit_of(2);
+    example.right_sets = bit_of_set(2);
     all.push_back(example);
   }
   const RuleParameters rules = learn_rules(all, all_features, 0).rules;
@@ -118,11 +117,11 @@ TEST_F(RuleLearner, MakesRulesThatTheSelectorTakesOfWhateverExamples) {
       for (std::int32_t& feature : example.features) {
         feature = learned_ratio(static_cast<int>(random_() % 7) / 3.0 - 1);
       }
-      example.right_sets = bit_of(static_cast<std::int32_t>(1 + random_() % 4));
+      example.right_sets = bit_of_set(static_cast<std::int32_t>(1 + random_() % 4));
       example.played = static_cast<std::int32_t>(1 + random_() % 4);
     }
-    all[0].right_sets = bit_of(1);
-    all[1].right_sets = bit_of(4);
+    all[0].right_sets = bit_of_set(1);
+    all[1].right_sets = bit_of_set(4);
     const RuleParameters rules = learn_rules(all, all_features, std::nullopt).rules;
     EXPECT_FALSE(DecisionList(rules.data(), gait_sets).contradiction(0)) << "seed 531, trial " << trial;
     EXPECT_EQ(learn_rules(all, all_features, std::nullopt).rules, rules);
@@ -138,7 +137,7 @@ TEST_F(RuleLearner, FindsTheHysteresisWithoutWhichNoRuleWouldDo) {
          {std::tuple{1, 2, 0.7}, std::tuple{2, 2, 0.4}, std::tuple{1, 1, 0.4}, std::tuple{2, 1, 0.0}}) {
       RuleExample& example = all.emplace_back();
       example.features[touch - 1] = learned_ratio(touched + unit(random_));
-      example.right_sets = bit_of(right_set);
+      example.right_sets = bit_of_set(right_set);
       example.played = played;
     }
   }
@@ -147,8 +146,8 @@ TEST_F(RuleLearner, FindsTheHysteresisWithoutWhichNoRuleWouldDo) {
   EXPECT_LT(without.score, 0.9);
   EXPECT_GT(learned.hysteresis, learned_ratio(0.05));
   for (const RuleExample& example : all) {
-    ASSERT_EQ(bit_of(DecisionList(learned.rules.data(), gait_sets)
-                         .choose(example.features.data(), example.played, learned.hysteresis)),
+    ASSERT_EQ(bit_of_set(DecisionList(learned.rules.data(), gait_sets)
+                             .choose(example.features.data(), example.played, learned.hysteresis)),
               example.right_sets);
   }
 }
@@ -164,7 +163,7 @@ TEST_F(RuleLearner, UsesASecondSetOfAGaitForWhatOneRuleCannotSay) {
     const bool is_inside = example.features[roll - 1] > learned_ratio(0.4) &&
                            example.features[touch - 1] > learned_ratio(0.4) &&
                            example.features[pitch - 1] < learned_ratio(0.6);
-    example.right_sets = is_inside ? bit_of(3) : bit_of(1) | bit_of(4);
+    example.right_sets = is_inside ? bit_of_set(3) : bit_of_set(1) | bit_of_set(4);
   }
   const RuleParameters rules = learn_rules(all, all_features, 0).rules;
   EXPECT_GT(right(rules, all), 0.97);
@@ -174,7 +173,7 @@ TEST_F(RuleLearner, UsesASecondSetOfAGaitForWhatOneRuleCannotSay) {
 TEST_F(RuleLearner, LearnsNothingFromFeaturesThatAreAlwaysTheSame) {
   std::vector<RuleExample> all(100);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i].right_sets = bit_of(i % 2 == 0 ? 1 : 2);
+    all[i].right_sets = bit_of_set(i % 2 == 0 ? 1 : 2);
   }
   EXPECT_EQ(learn_rules(all, all_features, std::nullopt).rules, RuleParameters{});
 }

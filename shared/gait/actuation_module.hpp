@@ -33,20 +33,22 @@ class Contacts {
   [[nodiscard]] unsigned link_count() const { return static_cast<unsigned>(frames_.size()) + 1; }
 
   [[nodiscard]] bool pressed(unsigned link, TouchSensor sensor) const {
-    if (link >= link_count() || frames_.empty()) {
-      return false;
-    }
-    const std::uint8_t flags = frames_[link == 0 ? 0 : link - 1].flags();
-    const unsigned first_bit = link == 0 ? 2 : 0;
-    return ((flags >> (first_bit + static_cast<unsigned>(sensor))) & 1U) != 0;
+    return ((sensors(link) >> static_cast<unsigned>(sensor)) & 1U) != 0;
   }
 
   /// Whether either sensor of the link is pressed.
-  [[nodiscard]] bool pressed(unsigned link) const {
-    return pressed(link, TouchSensor::rear) || pressed(link, TouchSensor::front);
-  }
+  [[nodiscard]] bool pressed(unsigned link) const { return sensors(link) != 0; }
 
  private:
+  /// Bit n for TouchSensor n.
+  [[nodiscard]] unsigned sensors(unsigned link) const {
+    if (link >= link_count() || frames_.empty()) {
+      return 0;
+    }
+    const unsigned flags = link == 0 ? frames_.front().flags() >> 2U : frames_[link - 1].flags();
+    return flags & 3U;
+  }
+
   std::span<const StateFrame> frames_;
 };
 

@@ -38,10 +38,11 @@ struct CriticalFilter {
 /// ends exactly on the target.
 [[nodiscard]] inline std::int32_t advance(const CriticalFilter& filter, std::int32_t distance, std::int32_t& rate) {
   const std::int32_t step = multiply(filter.half_rate, add_saturating(distance, rate), 30);
+  // Rounded as in shift_right_rounding(); in this order a processor adds each product to its sum while it multiplies.
+  constexpr std::int64_t half = std::int64_t{1} << 29U;
   const std::int64_t decayed_step = multiply_wide(step, filter.decay);
-  const std::int32_t next_distance =
-      saturate(shift_right_rounding(multiply_wide(distance, filter.decay) + decayed_step, 30));
-  rate = saturate(shift_right_rounding(multiply_wide(rate, filter.decay) - decayed_step, 30));
+  const std::int32_t next_distance = saturate((half + decayed_step + multiply_wide(distance, filter.decay)) >> 30U);
+  rate = saturate((half - decayed_step + multiply_wide(rate, filter.decay)) >> 30U);
   if (next_distance > -filter.arrived && next_distance < filter.arrived && rate > -filter.arrived &&
       rate < filter.arrived) {
     rate = 0;
@@ -57,7 +58,7 @@ void follow(const CriticalFilter& filter, std::int32_t target, const std::int32_
 /// Computes one tick of a filtered value that saturates.
 [[nodiscard]] inline std::int32_t approach(const CriticalFilter& filter, std::int32_t target, std::int32_t value,
                                            std::int32_t& rate) {
-  return add_saturating(target, advance(filter, saturate(std::int64_t{value} - target), rate));
+  return add_saturating(target, advance(filter, subtract_saturating(value, target), rate));
 }
 
 }  // namespace proleg

@@ -21,8 +21,8 @@ struct DecisionList::Condition {
     if (feature == 0) {
       return true;
     }
-    const std::int32_t value = features[index()];
-    return feature > 0 ? value > add_saturating(threshold, -relaxed_by) : value < add_saturating(threshold, relaxed_by);
+    return feature > 0 ? features[feature - 1] > subtract_saturating(threshold, relaxed_by)
+                       : features[-feature - 1] < add_saturating(threshold, relaxed_by);
   }
   /// Whether every value that passes this condition passes the other one.
   [[nodiscard]] bool implies(const Condition& other) const {

@@ -1,7 +1,6 @@
 #include "shared/gait/gait_features.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "shared/fixed/arithmetic.hpp"
@@ -16,35 +15,18 @@ constexpr unsigned touched_links = GaitFeatures::count;
 
 constexpr std::uint32_t bit(GaitFeatures::Feature feature) { return 1U << unsigned{feature}; }
 
-/// What a feature averages: value * times, of which the product need not fit in its number.
-struct Input {
-  bool is_known;
-  std::int32_t value;
-  std::int32_t times = 1;
-};
+constexpr std::uint32_t of_readings = bit(GaitFeatures::pitch) | bit(GaitFeatures::pitch_swing) |
+                                      bit(GaitFeatures::roll) | bit(GaitFeatures::current) |
+                                      bit(GaitFeatures::tracking_error);
+constexpr std::uint32_t of_touch =
+    bit(GaitFeatures::touch) | bit(GaitFeatures::head_touch) | bit(GaitFeatures::touch_changes);
 
-/// Not inline, as sense_touch(): the image is small.
-[[gnu::noinline]] std::int32_t averaged(std::int32_t part, std::int32_t before, const Input& input) {
-  const std::int64_t gain = std::int64_t{multiply(part, input.value, 30)} * input.times;
+/// A feature a tick later. What it averages is input * times, of which the product need not fit in its number. Not
+/// inline, as the functions below: the image is small.
+[[gnu::noinline]] std::int32_t averaged(std::int32_t part, std::int32_t before, std::int32_t input,
+                                        std::int32_t times = 1) {
+  const std::int64_t gain = multiply_wide(multiply(part, input, 30), times);
   return saturate(gain + before - multiply(part, before, 30));
-}
-
-[[gnu::noinline]] void sense_touch(const Surroundings& surroundings, std::int32_t share, std::uint32_t touched_before,
-                                   std::int32_t& touched_now, Input* inputs) {
-  const Contacts& contacts = surroundings.contacts;
-  std::int32_t count = 0;
-  std::uint32_t touched = 0;
-  for (unsigned link = 0; link < contacts.link_count(); ++link) {
-    const std::uint32_t is_touched = contacts.pressed(link) ? 1 : 0;
-    count += static_cast<std::int32_t>(is_touched);
-    touched |= link < counted_links ? is_touched << link : 0U;
-  }
-  touched_now = static_cast<std::int32_t>(touched);
-  const int changed = std::popcount(touched ^ touched_before);
-  const auto ticks_per_second = static_cast<std::int32_t>(1'000'000U / surroundings.context.tick_period_us);
-  inputs[GaitFeatures::touch] = {true, count * share};
-  inputs[GaitFeatures::head_touch] = {true, (touched & 1U) != 0 ? one : 0};
-  inputs[GaitFeatures::touch_changes] = {true, changed * share, ticks_per_second};
 }
 
 /// |value|, with 2^31 for the value that has no opposite.
@@ -90,28 +72,53 @@ std::uint8_t GaitFeatures::required_readings(std::uint32_t used) {
 
 void GaitFeatures::advance(const Surroundings& surroundings, const std::int32_t* state, std::int32_t* next) const {
   std::fill(next, next + state_size, 0);
-  if (used == 0) {
-    return;
+  if ((used & of_touch) != 0) {
+    advance_touch(surroundings, state, next);
   }
+  if ((used & of_readings) != 0) {
+    advance_readings(surroundings, state, next);
+  }
+}
+
+[[gnu::noinline]] void GaitFeatures::advance_touch(const Surroundings& surroundings, const std::int32_t* state,
+                                                   std::int32_t* next) const {
+  const Contacts& contacts = surroundings.contacts;
+  std::int32_t touching = 0;
+  std::uint32_t touched = 0;
+  for (unsigned link = 0; link < contacts.link_count(); ++link) {
+    const std::uint32_t is_touched = contacts.pressed(link) ? 1 : 0;
+    touching += static_cast<std::int32_t>(is_touched);
+    touched |= link < counted_links ? is_touched << link : 0U;
+  }
+  next[touched_links] = static_cast<std::int32_t>(touched);
+  if (uses(touch)) {
+    next[touch] = averaged(part, state[touch], touching * link_share);
+  }
+  if (uses(head_touch)) {
+    next[head_touch] = averaged(part, state[head_touch], (touched & 1U) != 0 ? one : 0);
+  }
+  if (uses(touch_changes)) {
+    const int changed = std::popcount(touched ^ static_cast<std::uint32_t>(state[touched_links]));
+    const auto ticks_per_second = static_cast<std::int32_t>(1'000'000U / surroundings.context.tick_period_us);
+    next[touch_changes] = averaged(part, state[touch_changes], changed * link_share, ticks_per_second);
+  }
+}
+
+[[gnu::noinline]] void GaitFeatures::advance_readings(const Surroundings& surroundings, const std::int32_t* state,
+                                                      std::int32_t* next) const {
   const JointReadings& readings = surroundings.readings;
-  const bool is_inclined = readings.has(JointReadings::inclination);
-  const std::int32_t inclination = readings.pitch >> 2;
-  std::array<Input, count> inputs{};
-  inputs[pitch] = {is_inclined, inclination};
-  inputs[pitch_swing] = {is_inclined, distance(inclination, state[pitch])};
-  inputs[roll] = {is_inclined, static_cast<std::int32_t>(magnitude(readings.roll) >> 3U)};
-  inputs[current] = {readings.has(JointReadings::servo_current), in_amperes(readings.current_ma)};
-  inputs[tracking_error] = {readings.has(JointReadings::angle_of_joint),
-                            distance(surroundings.setpoint, readings.angle) >> 2};
-  if ((used & (bit(touch) | bit(head_touch) | bit(touch_changes))) != 0) {
-    sense_touch(surroundings, link_share, static_cast<std::uint32_t>(state[touched_links]), next[touched_links],
-                inputs.data());
-  }
-  for (unsigned i = 0; i < count; ++i) {
-    if (((used >> i) & 1U) != 0) {
-      next[i] = inputs[i].is_known ? averaged(part, state[i], inputs[i]) : state[i];
+  const auto average = [&](Feature feature, JointReadings::Sensor sensor, const auto& input) {
+    if (uses(feature)) {
+      next[feature] = readings.has(sensor) ? averaged(part, state[feature], input()) : state[feature];
     }
-  }
+  };
+  const std::int32_t inclination = readings.pitch >> 2;
+  average(pitch, JointReadings::inclination, [&] { return inclination; });
+  average(pitch_swing, JointReadings::inclination, [&] { return distance(inclination, state[pitch]); });
+  average(roll, JointReadings::inclination, [&] { return static_cast<std::int32_t>(magnitude(readings.roll) >> 3U); });
+  average(current, JointReadings::servo_current, [&] { return in_amperes(readings.current_ma); });
+  average(tracking_error, JointReadings::angle_of_joint,
+          [&] { return distance(surroundings.setpoint, readings.angle) >> 2; });
 }
 
 }  // namespace proleg

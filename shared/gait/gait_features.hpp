@@ -45,6 +45,11 @@ struct GaitFeatures {
 
   /// Computes one tick. state and next: state_size values each. A feature whose sensor gives nothing keeps its value.
   void advance(const Surroundings& surroundings, const std::int32_t* state, std::int32_t* next) const;
+
+ private:
+  [[nodiscard]] bool uses(Feature feature) const { return ((used >> unsigned{feature}) & 1U) != 0; }
+  void advance_touch(const Surroundings& surroundings, const std::int32_t* state, std::int32_t* next) const;
+  void advance_readings(const Surroundings& surroundings, const std::int32_t* state, std::int32_t* next) const;
 };
 
 }  // namespace proleg

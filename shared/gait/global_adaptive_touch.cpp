@@ -151,7 +151,7 @@ class GlobalAdaptiveTouch final : public SensingModule {
     std::int32_t target = 0;
     std::int32_t step = 0;
     if (stuck) {
-      const std::int32_t gait = saturate(std::int64_t{surroundings.setpoint} - state[offset]);
+      const std::int32_t gait = subtract_saturating(surroundings.setpoint, state[offset]);
       const bool up = bends_up(touched, surroundings, gait);
       const unsigned touch_state = 2 * ((touched >> in_front) & 1U) + ((touched >> behind) & 1U);
       target = up ? tuning.parameters[max_offset] : -tuning.parameters[max_offset];

@@ -174,7 +174,7 @@ class Hopf final : public PatternGenerator {
     const std::int32_t rising = tuning.derived[rising_step];
     constexpr std::int32_t band = one / 25;
     const std::int32_t share = std::clamp(old_y, -band, band) * 25 / 2 + one / 2;
-    const std::int32_t difference = saturate(std::int64_t{falling} - rising);
+    const std::int32_t difference = subtract_saturating(falling, rising);
     return static_cast<std::uint32_t>(rising) + static_cast<std::uint32_t>(multiply(difference, share, 28));
   }
 

@@ -17,7 +17,7 @@ std::int32_t potential(std::int32_t u, std::int32_t other_output, std::int32_t o
 }
 
 std::int32_t tiredness(std::int32_t v, std::int32_t own_output, std::int32_t slow_step) {
-  return add_saturating(v, multiply(saturate(std::int64_t{own_output} - v), slow_step, 30));
+  return add_saturating(v, multiply(subtract_saturating(own_output, v), slow_step, 30));
 }
 
 }  // namespace

@@ -334,8 +334,7 @@ class PushPull final : public PatternGenerator {
   [[gnu::noinline]] static void smooth(std::int32_t level, const Tuning& tuning, const std::int32_t* state,
                                        std::int32_t* next) {
     const std::int32_t step = tuning.derived[filter_step];
-    next[smoothed] =
-        add_saturating(state[smoothed], multiply(saturate(std::int64_t{level} - state[smoothed]), step, 30));
+    next[smoothed] = add_saturating(state[smoothed], multiply(subtract_saturating(level, state[smoothed]), step, 30));
     next[output_level] = add_saturating(
         state[output_level], multiply(saturate(std::int64_t{next[smoothed]} - state[output_level]), step, 30));
     // With a time constant of 1 / omega, the input of a filter minus its output is a quarter of a period ahead.

@@ -147,14 +147,14 @@ MeasuredJoint deciding_joint() {
   constexpr std::int32_t touch = 4;
   constexpr std::int32_t head_touch = 5;
   constexpr std::int32_t touch_changes = 6;
-  const std::int32_t never = raw(Unit::ratio, 7);
+  const std::int32_t beyond = raw(Unit::ratio, 7);  // every feature is below it
   for (const auto& [number, first, second] :
        {std::tuple{"2", touch, head_touch}, std::tuple{"3", head_touch, touch_changes},
         std::tuple{"4", touch_changes, touch}}) {
-    set(std::string("feature_") + number, first);
-    set(std::string("threshold_") + number, never);
+    set(std::string("feature_") + number, -first);
+    set(std::string("threshold_") + number, beyond);
     set(std::string("second_feature_") + number, second);
-    set(std::string("second_threshold_") + number, never);
+    set(std::string("second_threshold_") + number, beyond);
   }
   set("dwell", 0);
   return measured;

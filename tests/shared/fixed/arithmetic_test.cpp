@@ -21,6 +21,7 @@ constexpr std::int32_t highest = std::numeric_limits<std::int32_t>::max();
 static_assert(shift_right_rounding(3, 1) == 2);
 static_assert(saturate(std::int64_t{1} << 40) == highest);
 static_assert(add_saturating(highest, 1) == highest);
+static_assert(subtract_saturating(lowest, 1) == lowest);
 static_assert(multiply(1 << 30, 1 << 29, 30) == 1 << 29);
 static_assert(add_wrapping(highest, 1) == lowest);
 static_assert(subtract_wrapping(lowest, 1) == highest);
@@ -83,6 +84,14 @@ TEST(AddSaturating, EqualsTheClampedExactSum) {
   for (const std::int32_t a : telling_values()) {
     for (const std::int32_t b : telling_values()) {
       ASSERT_EQ(Wide{add_saturating(a, b)}, clamped(Wide{a} + b)) << a << " + " << b;
+    }
+  }
+}
+
+TEST(SubtractSaturating, EqualsTheClampedExactDifference) {
+  for (const std::int32_t a : telling_values()) {
+    for (const std::int32_t b : telling_values()) {
+      ASSERT_EQ(Wide{subtract_saturating(a, b)}, clamped(Wide{a} - b)) << a << " - " << b;
     }
   }
 }

@@ -42,6 +42,7 @@ constexpr std::array scenarios{
     ShippedScenario{"terrace_reflex", "obstacle/reflex", worlds, "A terrace, with a reflex", ""},
     ShippedScenario{"terrace", "obstacle/plain", worlds, "A terrace, without a reflex",
                     "The same wave on the same terrace, but no reflex: the robot stays at the first step."},
+    ShippedScenario{"course", "course/chooses", worlds, "A course, with a choice of gaits", ""},
     ShippedScenario{"wall", "retreat/wall", worlds, "A wall", ""},
     ShippedScenario{"mesh_world", "robots/mesh_world/mesh_world", worlds, "Hills, a ball and a crate", ""},
     ShippedScenario{"y1", "robots/y1/robot", worlds, "Y1 modules",

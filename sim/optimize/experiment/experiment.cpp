@@ -91,14 +91,17 @@ std::string method_text(const PagmoSettings& method) {
 }
 
 std::string method_text(const MapElitesSettings& method) {
-  return SettingsText()
-      .add("population", method.population)
+  SettingsText text;
+  text.add("population", method.population)
       .add("generations", method.generations)
       .add("first", method.first)
       .add("noise", method.noise)
       .add("line", method.line)
-      .add("start", method.start)
-      .text();
+      .add("start", method.start);
+  if (method.centroids > 0) {  // stores of grids, which earlier versions made, have no such setting
+    text.add("centroids", method.centroids);
+  }
+  return text.text();
 }
 
 /// The texts of some items, a line each.

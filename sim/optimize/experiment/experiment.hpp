@@ -116,6 +116,7 @@ struct MapElitesSettings {
   std::uint32_t first = 1000;        ///< random candidates of the first generation
   double noise = 0.02;               ///< standard deviation of the noise, as a share of a value's range
   double line = 0.2;                 ///< standard deviation on the line, as a share of the distance
+  std::uint32_t centroids = 0;       ///< cells of the map, of about equal size (Tessellation); 0: a grid of the axes
   Start start = Start::random;       ///< scenario: its values are among the first
 };
 
@@ -124,17 +125,19 @@ struct MapElitesSettings {
 
 using MethodSettings = std::variant<GreatDelugeSettings, GeneticSettings, PagmoSettings, MapElitesSettings>;
 
-/// An axis of a map of gaits: the range of a measure in cells of equal width.
+/// An axis of a map of gaits: the range of a measure.
 struct MapAxis {
   sim::Measure measure = sim::Measure::distance;
   double lowest = 0.0;      ///< in the measure's unit; a value below is in the first cell
   double highest = 1.0;     ///< above lowest; a value above is in the last cell
-  std::uint32_t cells = 2;  ///< 2 to max_map_cells
+  std::uint32_t cells = 2;  ///< of equal width, 2 to max_map_cells; 0 if the map has centroids
 };
 
 inline constexpr std::size_t min_map_axes = 2;
 inline constexpr std::size_t max_map_axes = 4;
 inline constexpr std::size_t max_map_cells = 50'000;  ///< of all axes together
+inline constexpr std::size_t min_centroids = 2;
+inline constexpr std::size_t max_centroids = 10'000;
 
 /// Settings that stop a candidate early if it will not come near the score it needs. Racing is possible only for one
 /// objective, which is the distance or the speed.

@@ -188,8 +188,9 @@ void write_objectives(const ExperimentForm& form, Lines& lines) {
   }
   for (std::size_t i = 0; i < axes; ++i) {
     const AxisForm& its = form.axes[i];
-    lines.element("axis", "axes." + std::to_string(i),
-                  {{"measure", its.measure}, {"lowest", its.lowest}, {"highest", its.highest}, {"cells", its.cells}});
+    Attributes axis{{"measure", its.measure}, {"lowest", its.lowest}, {"highest", its.highest}};
+    add_if_any(axis, "cells", its.cells);
+    lines.element("axis", "axes." + std::to_string(i), axis);
   }
 }
 

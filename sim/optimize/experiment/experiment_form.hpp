@@ -47,7 +47,7 @@ struct AxisForm {
   std::string measure;
   std::string lowest;
   std::string highest;
-  std::string cells;
+  std::string cells;  ///< empty in a map with centroids
 };
 
 struct TrialsForm {

@@ -139,7 +139,8 @@ std::vector<Objective> read_objectives(const XmlElement& fitness) {
   return objectives;
 }
 
-MapAxis read_axis(const XmlElement& element) {
+/// centroids: of the map; 0: a grid.
+MapAxis read_axis(const XmlElement& element, std::uint32_t centroids) {
   element.allow({"measure", "lowest", "highest", "cells"}, {});
   MapAxis axis;
   axis.measure = read_measure(element);
@@ -149,17 +150,26 @@ MapAxis read_axis(const XmlElement& element) {
     element.refuse("highest " + number_text(axis.highest) + " in " + element.label(),
                    "more than lowest, which is " + number_text(axis.lowest));
   }
-  axis.cells = static_cast<std::uint32_t>(read_whole_attribute(element, "cells", 2, max_map_cells));
+  if (centroids == 0) {
+    axis.cells = static_cast<std::uint32_t>(read_whole_attribute(element, "cells", 2, max_map_cells));
+    return axis;
+  }
+  axis.cells = 0;
+  if (element.attribute("cells")) {
+    element.refuse("cells in " + element.label() + " of a map with " + std::to_string(centroids) + " centroids",
+                   "none: an axis has cells in a grid only");
+  }
   return axis;
 }
 
 /// Reads the axes of a map, and adds their measures to the objectives.
 void read_axes(const XmlElement& fitness, Experiment& experiment) {
+  const auto* const settings = std::get_if<MapElitesSettings>(&experiment.method);
   for (const XmlElement& child : fitness.children()) {
     if (!child.is("axis")) {
       continue;
     }
-    const MapAxis axis = read_axis(child);
+    const MapAxis axis = read_axis(child, settings == nullptr ? 0 : settings->centroids);
     Objective measured;
     measured.name = declaration_of(axis.measure).name;
     measured.terms.push_back({axis.measure, 1.0});

@@ -1,15 +1,18 @@
 #pragma once
 
-// A map of gaits: the best candidate of each cell of a grid over measures of the run (MapElitesSettings).
+// A map of gaits: the best candidate of each cell over measures of the run (MapElitesSettings). The cells are those of
+// a grid, or those around centroids.
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/tessellation.hpp"
 
 namespace proleg::optimize {
 
@@ -33,7 +36,13 @@ class GaitMap {
   /// The filled cells, in the order in which they were filled.
   [[nodiscard]] const std::vector<Elite>& elites() const { return elites_; }
   [[nodiscard]] std::size_t cells() const { return positions_.size(); }
-  /// The place of a cell: its number on each axis, from 0.
+  /// A number of a place: in a grid there is one for each axis, otherwise only that of the centroid.
+  struct PlaceNumber {
+    std::string name;     ///< the measure of the axis; "number" of a centroid
+    std::uint32_t count;  ///< the number is below it
+  };
+  [[nodiscard]] std::vector<PlaceNumber> place_numbers() const;
+  /// The place of a cell: its number on each axis, or that of its centroid, from 0.
   [[nodiscard]] std::vector<std::uint32_t> place(std::size_t cell) const;
   /// The place as files and commands have it, with numbers from 1: "3,7".
   [[nodiscard]] std::string place_text(std::size_t cell) const;
@@ -41,19 +50,21 @@ class GaitMap {
   [[nodiscard]] std::optional<std::size_t> cell_at(std::span<const std::uint32_t> place) const;
   /// The cell of a run; nothing if it failed, or lacks the measure of an axis. scores: of all objectives.
   [[nodiscard]] std::optional<std::size_t> cell_of(std::span<const double> scores) const;
-  /// The middle of a cell: a value of each axis, in its unit.
+  /// Null if the cells form a grid.
+  [[nodiscard]] const Tessellation* tessellation() const { return tessellation_.get(); }
+  /// The middle of a cell, or its centroid: a value of each axis, in its unit.
   [[nodiscard]] std::vector<double> middle(std::size_t cell) const;
-  /// The middle of a cell as shares of its axes: 0 at the lowest, 1 at the highest value.
+  /// The same as shares of the axes: 0 at the lowest, 1 at the highest value.
   [[nodiscard]] std::vector<double> point(std::size_t cell) const;
   /// The candidate of a cell; null if it is empty.
   [[nodiscard]] const Elite* elite_of(std::size_t cell) const;
 
   /// The filled cells that are nearest to some values, at most `count`, the nearest first; of equally near ones the
   /// better. values: of each axis, in its unit; nothing: any. Each axis counts from 0 (lowest) to 1 (highest), values
-  /// beyond it as its ends, and a cell is as far as its nearest point.
+  /// beyond it as its ends. A cell of a grid is as far as its nearest point, another one as its centroid.
   [[nodiscard]] std::vector<Elite> nearest(std::span<const std::optional<double>> values, std::size_t count) const;
 
-  /// Whether two cells are the same or touch each other, also at a corner.
+  /// Whether two cells are the same or touch each other, in a grid also at a corner.
   [[nodiscard]] bool are_neighbours(std::size_t cell, std::size_t other) const;
 
   /// Share of the cells that are filled.
@@ -70,6 +81,7 @@ class GaitMap {
   [[nodiscard]] double gain(double score) const;
 
   const Experiment& experiment_;
+  std::shared_ptr<const Tessellation> tessellation_;
   std::vector<std::size_t> positions_;  ///< in elites_, by cell; none: empty
   std::vector<Elite> elites_;
   double qd_score_ = 0.0;

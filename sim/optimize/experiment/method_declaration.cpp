@@ -82,6 +82,7 @@ void check_pagmo(const Experiment& experiment, const PagmoSettings& settings) {
   const auto* const algorithm = std::ranges::find(pagmo_entries, settings.algorithm, &PagmoDeclaration::name);
   if (algorithm == pagmo_entries.end()) {
     std::vector<std::string> known;
+    known.reserve(pagmo_entries.size());
     for (const PagmoDeclaration& each : pagmo_entries) {
       known.emplace_back(each.name);
     }
@@ -116,6 +117,11 @@ void check_map(const Experiment& experiment) {
   const std::size_t count = experiment.axes.size();
   if (count < min_map_axes || count > max_map_axes) {
     refuse(experiment, std::to_string(count) + (count == 1 ? " <axis>" : " <axis>es") + " in <fitness>", "two to four");
+  }
+  const std::uint32_t centroids = std::get<MapElitesSettings>(experiment.method).centroids;
+  if (centroids > 0 && centroids < min_centroids) {
+    refuse(experiment, std::to_string(centroids) + " centroid",
+           std::to_string(min_centroids) + " or more, or 0 for a grid");
   }
   std::size_t cells = 1;
   for (const MapAxis& axis : experiment.axes) {

@@ -222,6 +222,8 @@ const SettingTable<MapElitesSettings>& map_elites_table() {
     made.add_number("line", &Settings::line, probabilities,
                     "standard deviation of the step towards or from another candidate of the map, as a share of the "
                     "distance to it");
+    made.add_whole("centroids", &Settings::centroids, 0, max_centroids,
+                   "cells of about equal size, whatever the number of axes; 0: a grid, with the cells of each axis");
     add_start(made);
     return made;
   }();

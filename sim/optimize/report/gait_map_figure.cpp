@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -54,11 +55,11 @@ std::string axis_text(const Experiment& experiment, std::size_t axis) {
   return with_unit(measure.name, measure.unit());
 }
 
-/// A plot of axes 1 and 2 in each column and row of axes 3 and 4.
+/// A plot of axes 1 and 2. That of a grid is in each column and row of axes 3 and 4.
 class MapPlot {
  public:
-  explicit MapPlot(const Experiment& experiment) : experiment_(experiment) {
-    for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
+  explicit MapPlot(const Experiment& experiment, const GaitMap& map) : experiment_(experiment), map_(map) {
+    for (std::size_t i = 0; i < experiment.axes.size() && map.tessellation() == nullptr; ++i) {
       cells_[i] = experiment.axes[i].cells;
     }
     plot_width_ = (map_right - sim::page_left - gap * (cells_[2] - 1.0)) / cells_[2];
@@ -66,12 +67,41 @@ class MapPlot {
   }
 
   /// elites: filled cells of the map.
-  void draw(Svg& svg, const GaitMap& map, std::span<const GaitMap::Elite> elites, const Axis& scale) const {
+  void draw(Svg& svg, std::span<const GaitMap::Elite> elites, const Axis& scale) const {
+    if (map_.tessellation() == nullptr) {
+      draw_grid(svg, elites, scale);
+    } else if (experiment_.axes.size() == 2) {
+      draw_regions(svg, elites, scale);
+    } else {
+      draw_dots(svg, elites, scale);
+    }
+    draw_names(svg);
+  }
+
+  /// Writes a text onto a cell.
+  void mark(Svg& svg, std::size_t cell, std::string_view text, bool is_best) const {
+    const Point middle = middle_of(cell);
+    if (is_best) {
+      svg.circle(middle, 11.0, R"(fill="none" stroke="#ffffff" stroke-width="4")");
+      svg.circle(middle, 11.0, R"(fill="none" stroke="#d55e00" stroke-width="2")");
+    }
+    svg.text({middle.x, middle.y + 4.0}, text, sim::TextAnchor::middle, sim::label_size, sim::ink,
+             R"(font-weight="bold" stroke="#ffffff" stroke-width="3" paint-order="stroke")");
+  }
+
+ private:
+  static constexpr double gap = 6.0;
+  static constexpr double overlap = 0.3;
+
+  static std::size_t colour_of(const GaitMap::Elite& elite, const Axis& scale) {
+    const double share = (elite.score - scale.low) / (scale.high - scale.low);
+    return static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * (colour_count - 1)));
+  }
+
+  void draw_grid(Svg& svg, std::span<const GaitMap::Elite> elites, const Axis& scale) const {
     std::array<Polyline, colour_count> starts;
     for (const GaitMap::Elite& elite : elites) {
-      const double share = (elite.score - scale.low) / (scale.high - scale.low);
-      const auto number = static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * (colour_count - 1)));
-      starts[number].push_back(start(map.place(elite.cell)));
+      starts[colour_of(elite, scale)].push_back(start(map_.place(elite.cell)));
     }
     for (std::uint32_t column = 0; column < cells_[2]; ++column) {
       for (std::uint32_t row = 0; row < cells_[3]; ++row) {
@@ -86,24 +116,52 @@ class MapPlot {
       svg.marks(starts[number], cell, colour_style("stroke", number) + height);
     }
     svg.end_group();
-    draw_names(svg);
   }
 
-  /// Writes a text onto a cell.
-  void mark(Svg& svg, const GaitMap& map, std::size_t cell, std::string_view text, bool is_best) const {
-    const Point left = start(map.place(cell));
-    const Point middle{left.x + plot_width_ / cells_[0] / 2.0, left.y};
-    if (is_best) {
-      svg.circle(middle, 11.0, R"(fill="none" stroke="#ffffff" stroke-width="4")");
-      svg.circle(middle, 11.0, R"(fill="none" stroke="#d55e00" stroke-width="2")");
+  /// The cells around the centroids, of two axes.
+  void draw_regions(Svg& svg, std::span<const GaitMap::Elite> elites, const Axis& scale) const {
+    svg.rectangle(plot_corner(0, 0), plot_width_, plot_height_, empty_style);
+    svg.begin_group("map");
+    for (const GaitMap::Elite& elite : elites) {
+      Polyline corners;
+      for (const auto& [across, up] : map_.tessellation()->corners(elite.cell)) {
+        corners.push_back(at_shares(across, up));
+      }
+      const std::size_t number = colour_of(elite, scale);
+      svg.polygon(corners, colour_style("fill", number) + " " + colour_style("stroke", number) + " stroke-width=\"" +
+                               sim::plain_number(overlap, 2) + "\"");
     }
-    svg.text({middle.x, middle.y + 4.0}, text, sim::TextAnchor::middle, sim::label_size, sim::ink,
-             R"(font-weight="bold" stroke="#ffffff" stroke-width="3" paint-order="stroke")");
+    svg.end_group();
   }
 
- private:
-  static constexpr double gap = 6.0;
-  static constexpr double overlap = 0.3;
+  /// A dot at each centroid, seen along axes 3 and 4: where several are at a place, the best is in front.
+  void draw_dots(Svg& svg, std::span<const GaitMap::Elite> elites, const Axis& scale) const {
+    svg.rectangle(plot_corner(0, 0), plot_width_, plot_height_, empty_style);
+    const Objective& objective = experiment_.objectives.front();
+    std::vector<GaitMap::Elite> order(elites.begin(), elites.end());
+    std::ranges::stable_sort(order, std::greater<>(),
+                             [&](const GaitMap::Elite& elite) { return objective.cost(elite.score); });
+    svg.begin_group("map");
+    for (const GaitMap::Elite& elite : order) {
+      svg.circle(middle_of(elite.cell), dot_radius, colour_style("fill", colour_of(elite, scale)));
+    }
+    svg.end_group();
+  }
+
+  [[nodiscard]] Point middle_of(std::size_t cell) const {
+    if (map_.tessellation() != nullptr) {
+      const std::span<const double> centroid = map_.tessellation()->centroid(cell);
+      return at_shares(centroid[0], centroid[1]);
+    }
+    const Point left = start(map_.place(cell));
+    return {left.x + plot_width_ / cells_[0] / 2.0, left.y};
+  }
+
+  /// Of a plot without columns and rows; shares of axes 1 and 2.
+  [[nodiscard]] Point at_shares(double across, double up) const {
+    const Point corner = plot_corner(0, 0);
+    return {corner.x + across * plot_width_, corner.y + (1.0 - up) * plot_height_};
+  }
 
   [[nodiscard]] Point plot_corner(std::uint32_t column, std::uint32_t row) const {
     return {sim::page_left + column * (plot_width_ + gap), map_bottom - plot_height_ - row * (plot_height_ + gap)};
@@ -145,11 +203,14 @@ class MapPlot {
       return {};
     }
     const MapAxis& its = experiment_.axes[axis];
-    return std::string("; ") + what + ": " + axis_text(experiment_, axis) + " from " + rounded_text(its.lowest) +
-           " to " + rounded_text(its.highest);
+    return std::string("; ") + (map_.tessellation() == nullptr ? what : "seen along") + ": " +
+           axis_text(experiment_, axis) + " from " + rounded_text(its.lowest) + " to " + rounded_text(its.highest);
   }
 
+  static constexpr double dot_radius = 4.0;
+
   const Experiment& experiment_;
+  const GaitMap& map_;
   std::array<std::uint32_t, max_map_axes> cells_{1, 1, 1, 1};
   double plot_width_;
   double plot_height_;
@@ -215,7 +276,7 @@ std::string draw_gait_map(const Experiment& experiment, std::span<const Evaluati
                 map.elites().size(), map.cells(), 100.0 * map.coverage(), rounded_text(map.qd_score()).c_str(),
                 evaluations.size());
   sim::draw_title(svg, experiment.title(), subtitle.data());
-  MapPlot(experiment).draw(svg, map, map.elites(), scale);
+  MapPlot(experiment, map).draw(svg, map.elites(), scale);
   draw_colours(svg, scale, with_unit(objective.name, objective.unit()));
   const double first_small = map_bottom + small_gap;
   draw_small(svg, first_small, coverage, "filled cells (%)");
@@ -231,8 +292,8 @@ std::string draw_map_with_trials(const Experiment& experiment, std::span<const G
   Svg svg(sim::page_width, map_bottom + 56.0, experiment.title(),
           "A map of gaits: what is expected of each cell after trials, whose numbers are on their cells.");
   sim::draw_title(svg, experiment.title(), subtitle);
-  const MapPlot plot(experiment);
-  plot.draw(svg, map, cells, scale);
+  const MapPlot plot(experiment, map);
+  plot.draw(svg, cells, scale);
   draw_colours(svg, scale, "expected " + with_unit(objective.name, objective.unit()));
   std::map<std::size_t, std::string> numbers;
   for (std::size_t i = 0; i < tried.size(); ++i) {
@@ -241,7 +302,7 @@ std::string draw_map_with_trials(const Experiment& experiment, std::span<const G
   }
   svg.begin_group("trials");
   for (const auto& [cell, text] : numbers) {
-    plot.mark(svg, map, cell, text, !tried.empty() && cell == tried[best]);
+    plot.mark(svg, cell, text, !tried.empty() && cell == tried[best]);
   }
   svg.end_group();
   return svg.finish();

@@ -62,11 +62,11 @@ EngineAgreement agreement_in(const Experiment& experiment, std::span<const Confi
   return agreement;
 }
 
-void add_place(const GaitMap& map, std::optional<std::size_t> cell, std::size_t axes, TableLine& line) {
+void add_place(const GaitMap& map, std::optional<std::size_t> cell, TableLine& line) {
   const std::vector<std::uint32_t> place = cell ? map.place(*cell) : std::vector<std::uint32_t>();
-  for (std::size_t axis = 0; axis < axes; ++axis) {
+  for (std::size_t i = 0; i < map.place_numbers().size(); ++i) {
     if (cell) {
-      line.add(place[axis] + 1);
+      line.add(place[i] + 1);
     } else {
       line.add("");
     }
@@ -133,9 +133,10 @@ MapAgreement agreement_of(const Experiment& experiment, std::span<const Confirma
 }
 
 std::string judged_table(const Experiment& experiment, std::span<const Confirmation> sample) {
+  const GaitMap map(experiment);
   const auto add_cell_names = [&](const char* prefix, TableLine& line) {
-    for (std::size_t axis = 0; axis < experiment.axes.size(); ++axis) {
-      line.add(prefix + one_line(experiment.objectives[1 + axis].name));
+    for (const GaitMap::PlaceNumber& number : map.place_numbers()) {
+      line.add(prefix + one_line(number.name));
     }
   };
   TableLine header;
@@ -152,10 +153,9 @@ std::string judged_table(const Experiment& experiment, std::span<const Confirmat
   }
   add_cell_names("judged:", header);
   std::string table = header.finish();
-  const GaitMap map(experiment);
   for (const Confirmation& confirmation : sample) {
     TableLine line;
-    add_place(map, map.cell_of(confirmation.evaluation.scores), experiment.axes.size(), line);
+    add_place(map, map.cell_of(confirmation.evaluation.scores), line);
     line.add(confirmation.evaluation.number);
     for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
       line.add(experiment.space.value_text(confirmation.evaluation.candidate, i));
@@ -164,7 +164,7 @@ std::string judged_table(const Experiment& experiment, std::span<const Confirmat
       line.add(confirmation.evaluation.scores[i]);
       line.add(confirmation.fresh.scores[i]);
     }
-    add_place(map, map.cell_of(confirmation.fresh.scores), experiment.axes.size(), line);
+    add_place(map, map.cell_of(confirmation.fresh.scores), line);
     table += line.finish();
   }
   return table;

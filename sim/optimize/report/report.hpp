@@ -30,8 +30,8 @@ namespace proleg::optimize {
                                                     std::span<const Evaluation> evaluations);
 
 /// Draws as SVG the map of gaits of an experiment with axes: the score of each filled cell as a colour. Axes 1 and 2
-/// are those of a plot; axes 3 and 4 repeat it in columns and rows. Below are coverage and QD score (GaitMap) against
-/// evaluations.
+/// are those of a plot; in a grid axes 3 and 4 repeat it in columns and rows. A map with centroids and more than two
+/// axes has dots, seen along the others. Below are coverage and QD score (GaitMap) against evaluations.
 [[nodiscard]] std::string draw_gait_map(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
 /// Draws as SVG a map of gaits with other scores than those of a search, such as those that are expected after trials.
@@ -42,7 +42,7 @@ namespace proleg::optimize {
                                                std::string_view subtitle);
 
 /// Table like evaluations_table(): the candidate of each filled cell of the map of gaits, by cell. The first columns
-/// are the number of the cell on each axis, from 1 ("cell:height").
+/// are the number of the cell on each axis, from 1 ("cell:height"), or that of its centroid ("cell:number").
 [[nodiscard]] std::string gait_map_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
 /// Table with tabs and a header line: each evaluation with its values, scores and measures. Numbers are the shortest

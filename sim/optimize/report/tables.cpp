@@ -69,13 +69,13 @@ std::string evaluations_table(const Experiment& experiment, std::span<const Eval
 }
 
 std::string gait_map_table(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  const GaitMap map = gait_map(experiment, evaluations);
   TableLine header;
-  for (std::size_t axis = 0; axis < experiment.axes.size(); ++axis) {
-    header.add("cell:" + one_line(experiment.objectives[1 + axis].name));
+  for (const GaitMap::PlaceNumber& number : map.place_numbers()) {
+    header.add("cell:" + one_line(number.name));
   }
   add_header(experiment, header);
   std::string table = header.finish();
-  const GaitMap map = gait_map(experiment, evaluations);
   std::vector<GaitMap::Elite> elites = map.elites();
   std::ranges::sort(elites, {}, &GaitMap::Elite::cell);
   for (const GaitMap::Elite& elite : elites) {

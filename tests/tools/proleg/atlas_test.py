@@ -146,6 +146,38 @@ class Search(Atlas):
         self.assertFalse(Path("gait_map").exists())
 
 
+class Centroids(Atlas):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        text = re.sub(r' cells="\d+"', "", cls.file.read_text()).replace("<first>", "<centroids>60</centroids><first>")
+        axis = '<axis measure="duty_factor"'
+        cls.file.write_text(text.replace(axis, '<axis measure="slip" lowest="0" highest="3"/>' + axis))
+        cls.around = cls.folder / "around"
+        cls.of_centroids = cls.search("--out", cls.around, "--evaluations", 200, "--judge", 5)
+
+    def test_are_the_cells_of_three_axes(self):
+        rows = table(self.around / "map.tsv")
+        self.assertEqual(self.of_centroids["map"]["cells"], 60)
+        self.assertEqual(self.of_centroids["map"]["filled"], len(rows))
+        self.assertGreater(len(rows), 5)
+        self.assertEqual(len({row["cell:number"] for row in rows}), len(rows))
+        self.assertEqual(self.of_centroids["judged_cells"]["cells"], len(table(self.around / "judged.tsv")))
+        self.assertIn("seen along", (self.around / "map.svg").read_text())
+
+    def test_are_named_by_their_number(self):
+        row = table(self.around / "map.tsv")[0]
+        cell = self.cell("--cell", row["cell:number"], folder=self.around)
+        self.assertEqual(cell["cell"], [int(row["cell:number"])])
+        run = json.loads(proleg("simulate", cell["scenario"], "--json").stdout)
+        self.assertEqual(run["measures"]["distance"], float(row["score:distance (m)"]))
+        near = self.cell("--near", ",".join(f"{name}={cell['measures'][name]}" for name in ("height", "slip", "duty_factor")),
+                         folder=self.around)
+        self.assertIn(str(near["cell"][0]), [row["cell:number"] for row in table(self.around / "map.tsv")])
+        self.assertIn("--cell: found '3,4', expected the numbers of a cell, as map.tsv has them: number from 1 to 60",
+                      self.refused("--of", self.around, "--cell", "3,4"))
+
+
 class Judge(Atlas):
     def test_simulates_cells_all_over_the_map_in_ode(self):
         rows = table(self.out / "judged.tsv")

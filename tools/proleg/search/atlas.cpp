@@ -51,17 +51,16 @@ std::vector<std::string> split(std::string_view text) {
 }
 
 /// "height from 1 to 25, duty_factor from 1 to 20".
-std::string places_text(const Experiment& experiment) {
+std::string places_text(const GaitMap& map) {
   std::string text;
-  for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
-    text += (text.empty() ? "" : ", ") + experiment.objectives[1 + i].name + " from 1 to " +
-            std::to_string(experiment.axes[i].cells);
+  for (const GaitMap::PlaceNumber& number : map.place_numbers()) {
+    text += (text.empty() ? "" : ", ") + number.name + " from 1 to " + std::to_string(number.count);
   }
   return text;
 }
 
 /// The cell that --cell names; it is filled.
-GaitMap::Elite named_cell(const Experiment& experiment, const GaitMap& map, const std::string& text) {
+GaitMap::Elite named_cell(const GaitMap& map, const std::string& text) {
   std::vector<std::uint32_t> place;
   for (const std::string& word : split(text)) {
     const std::optional<std::uint32_t> number = parse_whole<std::uint32_t>(word);
@@ -69,8 +68,7 @@ GaitMap::Elite named_cell(const Experiment& experiment, const GaitMap& map, cons
   }
   const std::optional<std::size_t> cell = map.cell_at(place);
   if (!cell) {
-    throw InputError("--cell", 0, in_quotes(text),
-                     "the numbers of a cell, as map.tsv has them: " + places_text(experiment));
+    throw InputError("--cell", 0, in_quotes(text), "the numbers of a cell, as map.tsv has them: " + places_text(map));
   }
   if (const GaitMap::Elite* const elite = map.elite_of(*cell)) {
     return *elite;
@@ -148,7 +146,7 @@ int write_cell(const AtlasOptions& options) {
     throw BadInput(store.string() + ": found no filled cell, expected a search that has filled some");
   }
   const GaitMap::Elite elite =
-      options.cell ? named_cell(experiment, map, *options.cell) : nearest_cell(experiment, map, *options.near);
+      options.cell ? named_cell(map, *options.cell) : nearest_cell(experiment, map, *options.near);
   const Evaluation& evaluation = evaluations[elite.candidate];
   const std::string place = map.place_text(elite.cell);
   std::string name = "cell_" + place;
@@ -208,7 +206,9 @@ int atlas_command(int argc, char** argv) {
       .add_option("--of", options.of,
                   "write the scenario of a cell of the map in this folder, into the folder or --out")
       .value_name("FOLDER");
-  command_line.add_option("--cell", options.cell, "the cell: its number on each axis, as map.tsv has it: 3,7")
+  command_line
+      .add_option("--cell", options.cell,
+                  "the cell: its number on each axis, as map.tsv has it: 3,7; of a map with centroids its one number")
       .value_name("X,Y,...");
   command_line
       .add_option("--near", options.near,

@@ -164,6 +164,58 @@ TEST(GaitMap, IsThatOfTheDefinitionInFourDimensions) {
   EXPECT_NEAR(map.qd_score(), sum, 1e-9);
 }
 
+Experiment with_centroids(std::size_t axes, std::uint32_t centroids) {
+  Experiment experiment = with_axes(std::vector<std::uint32_t>(axes, 0));
+  experiment.method = MapElitesSettings{.centroids = centroids};
+  return experiment;
+}
+
+TEST(GaitMapWithCentroids, HasACellOfOneNumberForEach) {
+  for (std::size_t axes = min_map_axes; axes <= max_map_axes; ++axes) {
+    const Experiment experiment = with_centroids(axes, 50);
+    GaitMap map(experiment);
+    ASSERT_EQ(map.cells(), 50U);
+    ASSERT_EQ(map.place_numbers().size(), 1U);
+    EXPECT_EQ(map.place_numbers().front().name, "number");
+    EXPECT_EQ(map.place_numbers().front().count, 50U);
+    for (std::size_t cell = 0; cell < map.cells(); ++cell) {
+      EXPECT_EQ(map.place(cell), std::vector{static_cast<std::uint32_t>(cell)});
+      EXPECT_EQ(map.place_text(cell), std::to_string(cell + 1));
+      EXPECT_EQ(map.cell_at(map.place(cell)), cell);
+      std::vector<double> scores = map.middle(cell);
+      ASSERT_EQ(scores.size(), axes);
+      scores.insert(scores.begin(), 1.0);
+      EXPECT_EQ(map.cell_of(scores), cell);
+      EXPECT_TRUE(map.add(cell, scores));
+    }
+    EXPECT_EQ(map.coverage(), 1.0);
+    EXPECT_FALSE(map.cell_at(std::vector<std::uint32_t>{50}));
+    EXPECT_FALSE(map.cell_at(std::vector<std::uint32_t>{1, 1}));
+    EXPECT_FALSE(map.cell_at(std::vector<std::uint32_t>{}));
+  }
+}
+
+TEST(GaitMapWithCentroids, HasValuesBeyondAnAxisInTheCellsOfItsEnds) {
+  const Experiment experiment = with_centroids(2, 20);
+  const GaitMap map(experiment);
+  EXPECT_EQ(map.cell_of(std::vector{1.0, -1e300, 1e300}), map.cell_of(std::vector{1.0, -1.0, 3.0}));
+  EXPECT_FALSE(map.cell_of(std::vector{1.0, failed, 0.0}));
+}
+
+TEST(GaitMapWithCentroids, NamesTheFilledCellWhoseCentroidIsNearest) {
+  const Experiment experiment = with_centroids(3, 30);
+  GaitMap map(experiment);
+  for (std::size_t cell = 0; cell < map.cells(); cell += 2) {
+    std::vector<double> scores = map.middle(cell);
+    scores.insert(scores.begin(), 1.0 + static_cast<double>(cell));
+    map.add(cell, scores);
+  }
+  const std::vector<double> middle = map.middle(4);
+  EXPECT_EQ(nearest(map, {middle[0], middle[1], middle[2]}, 1), (std::vector<std::size_t>{4}));
+  EXPECT_EQ(nearest(map, {std::nullopt, std::nullopt, std::nullopt}, 1), (std::vector<std::size_t>{28}))
+      << "of equally near ones the best";
+}
+
 TEST(CheckMethod, WantsTwoToFourAxesAndOneObjective) {
   const auto refusal = [](Experiment experiment) -> std::string {
     experiment.path = "map.optimise.xml";
@@ -181,6 +233,8 @@ TEST(CheckMethod, WantsTwoToFourAxesAndOneObjective) {
             "map.optimise.xml: found 5 <axis>es in <fitness>, expected two to four");
   EXPECT_EQ(refusal(with_axes({300, 300})),
             "map.optimise.xml: found more than 50000 cells of the map, expected fewer, in all");
+  EXPECT_EQ(refusal(with_centroids(2, 2)), "");
+  EXPECT_EQ(refusal(with_centroids(2, 1)), "map.optimise.xml: found 1 centroid, expected 2 or more, or 0 for a grid");
   Experiment two = with_axes({2, 2});
   two.objectives.push_back(two.objectives.front());
   EXPECT_EQ(
@@ -219,6 +273,34 @@ TEST(MapExperiment, HasTheMeasuresOfItsAxesBehindTheObjective) {
   const std::string before = experiment.fingerprint();
   files.replace("top.optimise.xml", "cells=\"30\"", "cells=\"31\"");
   EXPECT_NE(read_experiment("top.optimise.xml", files).fingerprint(), before);
+}
+
+TEST(MapExperiment, CanHaveCentroidsInPlaceOfCellsOfTheAxes) {
+  MemoryFiles files = small_map();
+  const std::string grid = read_experiment("top.optimise.xml", files).fingerprint();
+  files.replace("top.optimise.xml", "<first>", "<centroids>0</centroids><first>");
+  EXPECT_EQ(read_experiment("top.optimise.xml", files).fingerprint(), grid) << "stores of earlier versions stay valid";
+  files.replace("top.optimise.xml", "<centroids>0<", "<centroids>300<");
+  try {
+    static_cast<void>(read_experiment("top.optimise.xml", files));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("found cells in <axis> of a map with 300 centroids, expected none: an "
+                        "axis has cells in a grid only"),
+              std::string::npos)
+        << error.what();
+  }
+  files.replace("top.optimise.xml", "cells=\"30\"", "");
+  files.replace("top.optimise.xml", "cells=\"20\"", "");
+  const Experiment experiment = read_experiment("top.optimise.xml", files);
+  EXPECT_NO_THROW(check_method(experiment));
+  EXPECT_EQ(std::get<MapElitesSettings>(experiment.method).centroids, 300U);
+  EXPECT_EQ(GaitMap(experiment).cells(), 300U);
+  files.replace("top.optimise.xml", "<centroids>300<", "<centroids>301<");
+  EXPECT_NE(read_experiment("top.optimise.xml", files).fingerprint(), experiment.fingerprint());
+  files.replace("top.optimise.xml", "<centroids>301<", "<centroids>10001<");
+  EXPECT_THROW(static_cast<void>(read_experiment("top.optimise.xml", files)), InputError);
 }
 
 TEST(MapExperiment, OfWhichAnAxisIsWrongIsRefusedWithItsLine) {

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "made_up.hpp"
 #include "sim/optimize/report/report.hpp"
@@ -32,6 +35,54 @@ TEST(GaitMapFigure, RepeatsThePlotForTheThirdAndTheFourthAxis) {
   EXPECT_EQ(picture.marks("map"), 81U);
   EXPECT_TRUE(picture.has_text("height (m); columns: slip from 0 to 1"));
   EXPECT_TRUE(picture.has_text("duty_factor; rows: wave_count from 0 to 1"));
+}
+
+TEST(GaitMapFigure, HasARegionForEachFilledCellAroundACentroid) {
+  Experiment experiment = map_experiment(2, 0);
+  experiment.method = MapElitesSettings{.centroids = 12};
+  const GaitMap map(experiment);
+  std::vector<Evaluation> evaluations;
+  for (std::size_t cell = 0; cell < 9; ++cell) {
+    const std::vector<double> middle = map.middle(cell);
+    evaluations.push_back(evaluation_at(cell, {1.0 + static_cast<double>(cell), middle[0], middle[1]}));
+  }
+  const std::string svg = draw_gait_map(experiment, evaluations);
+  Picture picture(svg);
+  const std::size_t start = svg.find("class=\"map\"");
+  ASSERT_NE(start, std::string::npos);
+  const std::string regions = svg.substr(start, svg.find("</g>", start) - start);
+  std::size_t count = 0;
+  for (std::size_t at = regions.find("<polygon"); at != std::string::npos; at = regions.find("<polygon", at + 1)) {
+    ++count;
+  }
+  EXPECT_EQ(count, 9U);
+  EXPECT_TRUE(picture.has_text("9 of 12 cells filled (75.0 %), QD score 45, 9 evaluations"));
+}
+
+TEST(GaitMapFigure, HasADotForEachFilledCellAroundACentroidOfFourAxesTheBestInFront) {
+  Experiment experiment = map_experiment(4, 0);
+  experiment.method = MapElitesSettings{.centroids = 40};
+  const GaitMap map(experiment);
+  std::vector<Evaluation> evaluations;
+  for (std::size_t cell = 0; cell < 30; ++cell) {
+    std::vector<double> scores = map.middle(cell);
+    scores.insert(scores.begin(), 30.0 - static_cast<double>(cell));
+    evaluations.push_back(evaluation_at(cell, scores));
+  }
+  const std::string svg = draw_gait_map(experiment, evaluations);
+  Picture picture(svg);
+  EXPECT_TRUE(picture.has_text("height (m); seen along: slip from 0 to 1"));
+  const std::size_t start = svg.find("class=\"map\"");
+  const std::string dots = svg.substr(start, svg.find("</g>", start) - start);
+  std::vector<unsigned long> brightness;
+  constexpr std::string_view fill = "fill=\"#";
+  for (std::size_t at = dots.find(fill); at != std::string::npos; at = dots.find(fill, at + 1)) {
+    const unsigned long colour = std::stoul(dots.substr(at + fill.size(), 6), nullptr, 16);
+    brightness.push_back((colour >> 16U) + (colour >> 8U & 0xFFU) + (colour & 0xFFU));
+  }
+  EXPECT_EQ(brightness.size(), 30U);
+  EXPECT_TRUE(std::ranges::is_sorted(brightness));
+  EXPECT_LT(brightness.front(), brightness.back());
 }
 
 TEST(GaitMapFigure, IsDrawnWhateverTheEvaluationsAndStaysSmall) {

@@ -296,8 +296,8 @@ void print_table(const Options& options) {
     dump.open(options.dump);
     for (std::size_t gait = 0; gait < atlas.gaits.size(); ++gait) {
       dump << "gait\t" << cells[gait].prior;
-      for (const double place : atlas.gaits[gait].point) {
-        dump << '\t' << place;
+      for (std::size_t axis = 0; axis < atlas.experiment.axes.size(); ++axis) {
+        dump << '\t' << cells[gait].point[axis];
       }
       for (std::size_t d = 0; d < atlas.gaits[gait].candidate.size(); ++d) {
         dump << '\t' << atlas.experiment.space.value(atlas.gaits[gait].candidate, d);

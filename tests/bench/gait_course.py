@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """A course for a robot that chooses its gait, in the reduced engine: learns the rules from recordings that are made here,
-and prints how far the choosing robot comes, and how far with each gait alone.
+and prints how far the choosing robot comes, and how far with each gait alone; the same in ODE; and what rules of touch and
+current reach, which are all that a module senses.
 
 usage: /usr/bin/python3 tests/bench/gait_course.py build/host/bin [FOLDER]
 
-FOLDER: for worlds, recordings, the learned scenario and a picture of a run (course.svg); by default a temporary one. Two
+FOLDER: for worlds, recordings, the learned scenario and a picture of a run (course.svg); by default a temporary one. Five
 minutes on two cores.
 """
 
@@ -36,6 +37,7 @@ ACTUATION = """<actuation>
   </actuationModule>
 </actuation>
 """
+SENSED_BY_MODULES = [word for name in ("touch", "head_touch", "touch_changes", "current") for word in ("--feature", name)]
 ON_ITS_FEET, ON_ITS_BACK = "0 0 0", "0 180 0"
 # What proleg learn-selector gives, in figures that a person would write.
 RULES = {"feature_2": 1, "threshold_2": 0.155, "feature_3": -1, "threshold_3": -0.064, "second_feature_3": -7,
@@ -161,17 +163,17 @@ class Course:
             list(pool.map(lambda run: self.simulate(*run), runs))
         return words
 
-    def learn(self, words):
-        return self.proleg("learn-selector", *words, "--out", self.folder / "learned", "--json")
+    def learn(self, words, *options):
+        return self.proleg("learn-selector", *words, *options, "--out", self.folder / "learned", "--json")
 
-    def distances(self, rules, seconds, starts):
+    def distances(self, rules, seconds, starts, *options):
         """How far the robot comes from starts before the course, on its feet and on its back, in m: with the rules (0), and
-        with each set alone. Returns {(pose, number): [distance for each start]}."""
+        with each set alone. options: of proleg simulate. Returns {(pose, number): [distance for each start]}."""
         bodies, end = course()
         self.write("course_feet", bodies, ON_ITS_FEET)
         self.write("course_back", bodies, ON_ITS_BACK)
         keys = [(side, number) for side in ("feet", "back") for number in (0, 1, 2, 3)]
-        runs = [(f"course_{side}", seconds, self.only(number) if number else rules, "--at", f"0,{-start:.3f}")
+        runs = [(f"course_{side}", seconds, self.only(number) if number else rules, "--at", f"0,{-start:.3f}", *options)
                 for side, number in keys for start in starts]
         with ThreadPoolExecutor(2) as pool:
             results = list(pool.map(lambda run: self.simulate(*run), runs))
@@ -226,12 +228,22 @@ def main():
               f"; hysteresis {learned['parameters']['hysteresis']:.2f}")
         print(f"right {100 * learned['right']:.1f} %, on unseen recordings {100 * learned['unseen_right']:.1f} %, "
               f"{learned['changes_per_minute']:.2f} changes a minute")
-        for text, rules in (("learned rules", learned["parameters"]), ("rules of RULES", RULES)):
-            distances, end = made.distances(rules, 300, (0.07, 0.14, 0.21))
+        starts = 0.07, 0.14, 0.21
+        for text, rules, engine in (("learned rules", learned["parameters"], "reduced"), ("rules of RULES", RULES, "reduced"),
+                                    ("rules of RULES, ODE", RULES, "ode")):
+            distances, end = made.distances(rules, 300, starts, "--engine", engine)
             print(f"distances in m in 300 s with {text}; the last obstacle ends at {end:.2f} m")
             for (side, number), metres in distances.items():
                 name = f"set {number} alone" if number else "chooses"
                 print(f"  starts on its {side:5} {name:12} " + "  ".join(f"{each:6.2f}" for each in metres))
+        on_feet = [word for word in words if "_back_" not in word]
+        for window in (1500, 3000, 6000):
+            sensed = made.learn(on_feet, "--window", window, *SENSED_BY_MODULES)
+            reached = [made.simulate("course_feet", 300, sensed["parameters"] | {"window": window}, "--at", f"0,{-start:.3f}")
+                       for start in starts]
+            print(f"rules of touch and current, window {window} ms, from recordings on its feet: "
+                  f"{100 * sensed['unseen_right']:.1f} % right on unseen ones; course "
+                  + "  ".join(f"{metres:6.2f}" for metres in reached))
         recording = folder / "course.proleg"
         made.simulate("course_back", 150, RULES, "--record", recording)
         (folder / "course.svg").write_text(picture(recording, course()[0]))

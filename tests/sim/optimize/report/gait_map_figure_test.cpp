@@ -37,6 +37,12 @@ TEST(GaitMapFigure, RepeatsThePlotForTheThirdAndTheFourthAxis) {
   EXPECT_TRUE(picture.has_text("duty_factor; rows: wave_count from 0 to 1"));
 }
 
+/// What is drawn as the cells of the map.
+std::string map_group(const std::string& svg) {
+  const std::size_t start = svg.find("class=\"map\"");
+  return start == std::string::npos ? "" : svg.substr(start, svg.find("</g>", start) - start);
+}
+
 TEST(GaitMapFigure, HasARegionForEachFilledCellAroundACentroid) {
   Experiment experiment = map_experiment(2, 0);
   experiment.method = MapElitesSettings{.centroids = 12};
@@ -48,9 +54,7 @@ TEST(GaitMapFigure, HasARegionForEachFilledCellAroundACentroid) {
   }
   const std::string svg = draw_gait_map(experiment, evaluations);
   Picture picture(svg);
-  const std::size_t start = svg.find("class=\"map\"");
-  ASSERT_NE(start, std::string::npos);
-  const std::string regions = svg.substr(start, svg.find("</g>", start) - start);
+  const std::string regions = map_group(svg);
   std::size_t count = 0;
   for (std::size_t at = regions.find("<polygon"); at != std::string::npos; at = regions.find("<polygon", at + 1)) {
     ++count;
@@ -72,8 +76,7 @@ TEST(GaitMapFigure, HasADotForEachFilledCellAroundACentroidOfFourAxesTheBestInFr
   const std::string svg = draw_gait_map(experiment, evaluations);
   Picture picture(svg);
   EXPECT_TRUE(picture.has_text("height (m); seen along: slip from 0 to 1"));
-  const std::size_t start = svg.find("class=\"map\"");
-  const std::string dots = svg.substr(start, svg.find("</g>", start) - start);
+  const std::string dots = map_group(svg);
   std::vector<unsigned long> brightness;
   constexpr std::string_view fill = "fill=\"#";
   for (std::size_t at = dots.find(fill); at != std::string::npos; at = dots.find(fill, at + 1)) {

@@ -44,12 +44,12 @@ RULES = {"feature_2": 1, "threshold_2": 0.155, "feature_3": -1, "threshold_3": -
          "second_threshold_3": 0.198, "hysteresis": 0}
 
 
-def box(y, z, half_length, half_height, degrees=0):
+def box(y, z, half_length, half_height, degrees=0, half_width=1):
     return f"""    <Body type="static">
       <Translation>0 {y:.6f} {z:.6f}</Translation>
       <RotationAxis>1 0 0 {degrees}</RotationAxis>
       <Geom type="box">
-        <extents>1 {half_length:.6f} {half_height:.6f}</extents>
+        <extents>{half_width} {half_length:.6f} {half_height:.6f}</extents>
         <friction>0.5</friction>
       </Geom>
     </Body>"""
@@ -105,7 +105,7 @@ class Course:
     </odeproperties>
   </physicsengine>
   <KinBody name="floor">
-{box(0, -0.003, 1000, 0.003)}
+{box(0, -0.003, 1000, 0.003, half_width=1000)}
   </KinBody>
 {bodies}</Environment>
 <!--Pose: ,0 0 0.026,{pose},-->
@@ -163,8 +163,8 @@ class Course:
             list(pool.map(lambda run: self.simulate(*run), runs))
         return words
 
-    def learn(self, words, *options):
-        return self.proleg("learn-selector", *words, *options, "--out", self.folder / "learned", "--json")
+    def learn(self, words, *options, name="learned"):
+        return self.proleg("learn-selector", *words, *options, "--out", self.folder / name, "--json")
 
     def distances(self, rules, seconds, starts, *options):
         """How far the robot comes from starts before the course, on its feet and on its back, in m: with the rules (0), and
@@ -238,7 +238,7 @@ def main():
                 print(f"  starts on its {side:5} {name:12} " + "  ".join(f"{each:6.2f}" for each in metres))
         on_feet = [word for word in words if "_back_" not in word]
         for window in (1500, 3000, 6000):
-            sensed = made.learn(on_feet, "--window", window, *SENSED_BY_MODULES)
+            sensed = made.learn(on_feet, "--window", window, *SENSED_BY_MODULES, name=f"sensed_{window}")
             reached = [made.simulate("course_feet", 300, sensed["parameters"] | {"window": window}, "--at", f"0,{-start:.3f}")
                        for start in starts]
             print(f"rules of touch and current, window {window} ms, from recordings on its feet: "

@@ -5,7 +5,7 @@ current reach, which are all that a module senses.
 
 usage: /usr/bin/python3 tests/bench/gait_course.py build/host/bin [FOLDER]
 
-FOLDER: for worlds, recordings, the learned scenario and a picture of a run (course.svg); by default a temporary one. Five
+FOLDER: for worlds, recordings, the learned scenario and a picture of a run (course.svg); by default a temporary one. Three
 minutes on two cores.
 """
 

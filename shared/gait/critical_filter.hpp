@@ -37,6 +37,9 @@ struct CriticalFilter {
 /// new distance. With distance and rate both below `arrived` (64 + 4 / (h dt) steps) the filter arrives, so that it
 /// ends exactly on the target.
 [[nodiscard]] inline std::int32_t advance(const CriticalFilter& filter, std::int32_t distance, std::int32_t& rate) {
+  if (distance == 0 && rate == 0) {
+    return 0;  // at rest, as the filters are nearly always
+  }
   const std::int32_t step = multiply(filter.half_rate, add_saturating(distance, rate), 30);
   // Rounded as in shift_right_rounding(); in this order a processor adds each product to its sum while it multiplies.
   constexpr std::int64_t half = std::int64_t{1} << 29U;

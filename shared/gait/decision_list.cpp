@@ -21,8 +21,9 @@ struct DecisionList::Condition {
     if (feature == 0) {
       return true;
     }
-    return feature > 0 ? features[feature - 1] > subtract_saturating(threshold, relaxed_by)
-                       : features[-feature - 1] < add_saturating(threshold, relaxed_by);
+    // Without a branch: a < b where ~a > ~b.
+    const std::int32_t complement = feature < 0 ? -1 : 0;
+    return (features[index()] ^ complement) > subtract_saturating(threshold ^ complement, relaxed_by);
   }
   /// Whether every value that passes this condition passes the other one.
   [[nodiscard]] bool implies(const Condition& other) const {
@@ -41,6 +42,9 @@ struct DecisionList::Rule {
     };
     return first.feature != 0 && other.first.feature != 0 && passes(other.first) && passes(other.second);
   }
+  [[nodiscard]] bool holds(const std::int32_t* features, std::int32_t relaxed_by) const {
+    return first.feature != 0 && first.holds(features, relaxed_by) && second.holds(features, relaxed_by);
+  }
 };
 
 DecisionList::Rule DecisionList::rule(std::int32_t set) const {
@@ -51,8 +55,11 @@ DecisionList::Rule DecisionList::rule(std::int32_t set) const {
 std::int32_t DecisionList::choose(const std::int32_t* features, std::int32_t present, std::int32_t relaxed_by) const {
   for (std::int32_t set = set_count_; set > 1; --set) {
     const Rule tried = rule(set);
-    const std::int32_t easier = set == present ? relaxed_by : 0;
-    if (tried.first.feature != 0 && tried.first.holds(features, easier) && tried.second.holds(features, easier)) {
+    if (set == present) {
+      if (tried.holds(features, relaxed_by)) {
+        return set;
+      }
+    } else if (tried.holds(features, 0)) {
       return set;
     }
   }

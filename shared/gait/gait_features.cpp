@@ -9,7 +9,8 @@ namespace proleg {
 namespace {
 
 constexpr std::int32_t one = raw(Unit::ratio, 1);
-constexpr unsigned counted_links = 31;
+/// The first 31 links.
+constexpr std::uint32_t of_counted_links = (std::uint32_t{1} << 31U) - 1;
 /// The value of a state that has the links that touch.
 constexpr unsigned touched_links = GaitFeatures::count;
 
@@ -21,10 +22,14 @@ constexpr std::uint32_t of_readings = bit(GaitFeatures::pitch) | bit(GaitFeature
 constexpr std::uint32_t of_touch =
     bit(GaitFeatures::touch) | bit(GaitFeatures::head_touch) | bit(GaitFeatures::touch_changes);
 
-/// A feature a tick later. What it averages is input * times, of which the product need not fit in its number. Not
-/// inline, as the functions below: the image is small.
-[[gnu::noinline]] std::int32_t averaged(std::int32_t part, std::int32_t before, std::int32_t input,
-                                        std::int32_t times = 1) {
+/// A feature a tick later. It stays between `before` and `input`, or one step beside them: so only the sum can leave
+/// its range. Not inline, as the functions below: the image is small.
+[[gnu::noinline]] std::int32_t averaged(std::int32_t part, std::int32_t before, std::int32_t input) {
+  return add_saturating(before - multiply(part, before, 30), multiply(part, input, 30));
+}
+
+/// The same for input * times, of which the product need not fit in its number.
+std::int32_t averaged(std::int32_t part, std::int32_t before, std::int32_t input, std::int32_t times) {
   const std::int64_t gain = multiply_wide(multiply(part, input, 30), times);
   return saturate(gain + before - multiply(part, before, 30));
 }
@@ -83,19 +88,24 @@ void GaitFeatures::advance(const Surroundings& surroundings, const std::int32_t*
 [[gnu::noinline]] void GaitFeatures::advance_touch(const Surroundings& surroundings, const std::int32_t* state,
                                                    std::int32_t* next) const {
   const Contacts& contacts = surroundings.contacts;
-  std::int32_t touching = 0;
-  std::uint32_t touched = 0;
-  for (unsigned link = 0; link < contacts.link_count(); ++link) {
-    const std::uint32_t is_touched = contacts.pressed(link) ? 1 : 0;
-    touching += static_cast<std::int32_t>(is_touched);
-    touched |= link < counted_links ? is_touched << link : 0U;
+  const unsigned head = contacts.pressed(0) ? 1 : 0;
+  unsigned touching = head;
+  std::uint32_t touched = head;
+  std::uint32_t place = 2;  // 0 behind the 32nd link
+  for (unsigned link = 1; link < contacts.link_count(); ++link) {
+    if (contacts.pressed(link)) {
+      ++touching;
+      touched |= place;
+    }
+    place <<= 1U;
   }
+  touched &= of_counted_links;
   next[touched_links] = static_cast<std::int32_t>(touched);
   if (uses(touch)) {
-    next[touch] = averaged(part, state[touch], touching * link_share);
+    next[touch] = averaged(part, state[touch], static_cast<std::int32_t>(touching) * link_share);
   }
   if (uses(head_touch)) {
-    next[head_touch] = averaged(part, state[head_touch], (touched & 1U) != 0 ? one : 0);
+    next[head_touch] = averaged(part, state[head_touch], static_cast<std::int32_t>(head) * one);
   }
   if (uses(touch_changes)) {
     const int changed = std::popcount(touched ^ static_cast<std::uint32_t>(state[touched_links]));

@@ -1,6 +1,8 @@
 // Prints the costs of the core on a Cortex-M: instructions per tick and per sine, stack and memory. They are measured
 // on an emulated CPU and do not depend on the computer.
 
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <string_view>
@@ -33,8 +35,11 @@ void print_costs(cortex_m::Cpu cpu) {
     print("  receive, 4 frames", cost.receive);
     print("  advance", cost.advance);
     if (declaration.name == "SensingModule_gait_selector") {
-      print("  joint 0, which decides by touch",
-            cortex_m::measure_tick(machine, declaration.id, ticks, cortex_m::deciding_joint()).total);
+      const auto print_deciding = [&](std::string_view what, const std::array<std::int32_t, 6>& features) {
+        print(what, cortex_m::measure_tick(machine, declaration.id, ticks, cortex_m::deciding_joint(features)).total);
+      };
+      print_deciding("  joint 0, which decides by touch", cortex_m::of_touch);
+      print_deciding("  joint 0, by seven features", cortex_m::of_most_features);
     }
   }
   std::printf("  Deepest stack, bytes (bound: core_image.stack.tsv beside the image)\n");

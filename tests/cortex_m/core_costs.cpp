@@ -5,7 +5,6 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
-#include <tuple>
 
 #include "shared/gait/registry.hpp"
 
@@ -138,25 +137,21 @@ std::uint32_t contacts_of(std::uint32_t joint, unsigned tick) { return (tick + j
 
 }  // namespace
 
-MeasuredJoint deciding_joint() {
+MeasuredJoint deciding_joint(const std::array<std::int32_t, 6>& features) {
   const Declaration& selector = find_algorithm("SensingModule_gait_selector")->declaration();
   MeasuredJoint measured{0, {}};
   const auto set = [&](const std::string& name, std::int32_t value) {
     measured.parameters.emplace_back(static_cast<std::uint32_t>(find_parameter(selector, name)), value);
   };
-  constexpr std::int32_t touch = 4;
-  constexpr std::int32_t head_touch = 5;
-  constexpr std::int32_t touch_changes = 6;
-  const std::int32_t beyond = raw(Unit::ratio, 7);  // every feature is below it
-  for (const auto& [number, first, second] :
-       {std::tuple{"2", touch, head_touch}, std::tuple{"3", head_touch, touch_changes},
-        std::tuple{"4", touch_changes, touch}}) {
-    set(std::string("feature_") + number, -first);
-    set(std::string("threshold_") + number, beyond);
-    set(std::string("second_feature_") + number, second);
-    set(std::string("second_threshold_") + number, beyond);
+  const std::int32_t lowest = raw(Unit::ratio, -7);  // every feature is above it
+  // Set 2 is chosen, after the first conditions of the others held, and their second ones, "below", did not.
+  for (std::size_t rule = 0; rule < 3; ++rule) {
+    const std::string number = std::to_string(rule + 2);
+    set("feature_" + number, features.at(2 * rule));
+    set("threshold_" + number, lowest);
+    set("second_feature_" + number, rule == 0 ? features.at(1) : -features.at(2 * rule + 1));
+    set("second_threshold_" + number, lowest);
   }
-  set("dwell", 0);
   return measured;
 }
 
@@ -175,6 +170,7 @@ TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned tick
     for (std::uint32_t joint = 0; joint < joint_count; ++joint) {
       const std::uint64_t contacts =
           modules.call("proleg::Kernel::set_contacts", joint, {joint, contacts_of(joint, tick)}).instructions;
+      static_cast<void>(machine.call("benchmark_set_readings", {joint, tick}, budget));
       const std::uint64_t step = modules.call("proleg::Kernel::advance", joint, {}).instructions;
       if (joint == measured.joint) {
         contacts_cost = contacts;

@@ -3,6 +3,7 @@
 // What the core costs on a Cortex-M: instructions and stack, measured on the emulated CPU. Instructions count when they
 // are issued; the counts do not depend on the computer that measures.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -24,10 +25,17 @@ struct MeasuredJoint {
   std::vector<std::pair<std::uint32_t, std::int32_t>> parameters;  ///< number and raw value
 };
 
-/// The joint of the gait selector that decides, with rules that name all features of touch: the most expensive ones.
-[[nodiscard]] MeasuredJoint deciding_joint();
+/// The joint of the gait selector that decides, with rules of which it evaluates all conditions. features: their
+/// numbers in the rules for the sets 2, 3 and 4, two each.
+[[nodiscard]] MeasuredJoint deciding_joint(const std::array<std::int32_t, 6>& features);
+/// Rules that name the features of touch, and rules that name as many features as six conditions can, the most
+/// expensive ones: pitch_swing, for which pitch is computed too, roll, touch, touch_changes, current and
+/// tracking_error.
+constexpr std::array<std::int32_t, 6> of_touch{4, 5, 5, 6, 6, 4};
+constexpr std::array<std::int32_t, 6> of_most_features{2, 3, 4, 6, 7, 8};
 
-/// One tick of a joint of five, alone in its kernel, with an algorithm in one slot.
+/// One tick of a joint of five, alone in its kernel, with an algorithm in one slot. The cost of giving the kernel its
+/// readings is not in it: it is that of every algorithm.
 struct TickCost {
   Instructions set_contacts;
   Instructions receive;  ///< all four frames of the other joints

@@ -40,6 +40,18 @@ const proleg::StateFrame* benchmark_frame(std::uint32_t joint) {
   return &static_cast<const proleg::Kernel&>(kernels[joint]).frame(joint, 0);
 }
 
+/// Gives a joint readings of all sensors, which change with the ticks.
+void benchmark_set_readings(std::uint32_t joint, std::uint32_t tick) {
+  proleg::JointReadings readings;
+  readings.present = proleg::JointReadings::all_sensors;
+  const auto changing = static_cast<std::int32_t>((tick + joint) * 0x9E37'79B9U);
+  readings.current_ma = changing & 0x7FFF;
+  readings.pitch = changing >> 1;
+  readings.roll = changing;
+  readings.angle = -readings.pitch;
+  kernels[joint].set_readings(joint, readings);
+}
+
 /// The tick of a joint after the other joints have advanced, in one call.
 void benchmark_tick(std::uint32_t joint, std::uint32_t contacts) {
   proleg::Kernel& kernel = kernels[joint];

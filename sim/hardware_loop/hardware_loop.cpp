@@ -260,7 +260,11 @@ class HardwareLoop::Implementation {
     state_frames_.begin_tick(tick);
     injector_.advance_to(tick);
     command_latency_.begin_tick(tick, now);
-    rack_.begin_tick(tick, now);
+    if (has_missed_sync_) {
+      rack_.begin_tick_without_sync(tick, now);
+    } else {
+      rack_.begin_tick(tick, now);
+    }
     plant_ticks_.begin(tick, now);
   }
 

@@ -104,6 +104,8 @@ class JointModule {
 
   /// A SYNC ends now; for modules that count what follows it.
   virtual void note_sync(std::uint32_t /*tick*/) {}
+  /// A tick has begun without its SYNC.
+  virtual void note_missing_sync() {}
   /// The oldest problem that this function has not returned yet, as text for a person: a fault of the program, a reset
   /// by the watchdog.
   [[nodiscard]] virtual std::optional<std::string> take_problem() { return std::nullopt; }

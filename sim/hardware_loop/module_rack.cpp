@@ -212,12 +212,23 @@ void ModuleRack::catch_up_before(BusTime time) {
 }
 
 void ModuleRack::begin_tick(std::uint32_t tick, BusTime now) {
+  make_due_restarts(tick, now);
+  for (const auto& module : modules_) {
+    module->note_sync(tick);
+  }
+}
+
+void ModuleRack::begin_tick_without_sync(std::uint32_t tick, BusTime now) {
+  make_due_restarts(tick, now);
+  for (const auto& module : modules_) {
+    module->note_missing_sync();
+  }
+}
+
+void ModuleRack::make_due_restarts(std::uint32_t tick, BusTime now) {
   restarted_ = {};
   for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
     restart(options_.restarts[next_restart_].joint, now);
-  }
-  for (const auto& module : modules_) {
-    module->note_sync(tick);
   }
 }
 

@@ -56,6 +56,8 @@ class ModuleRack {
 
   /// Begins a tick at its SYNC, before the modules receive it: restarts the modules that are due.
   void begin_tick(std::uint32_t tick, BusTime now);
+  /// Begins a tick whose SYNC has not come.
+  void begin_tick_without_sync(std::uint32_t tick, BusTime now);
   /// Ends a tick at the next SYNC, before the modules receive it: reads what they computed.
   void end_tick();
 
@@ -85,6 +87,7 @@ class ModuleRack {
   [[nodiscard]] BusTime next_serial_input() const;
   void take_serial_input(BusTime now);
   [[nodiscard]] std::unique_ptr<JointModule> make_native(const ModuleParts& parts) const;
+  void make_due_restarts(std::uint32_t tick, BusTime now);
   void restart(unsigned joint, BusTime now);
   void prepare(BusTime now, BusTime quiet_until, BusTime ahead_until);
 

@@ -66,7 +66,8 @@ struct VirtualModuleOptions {
   const stm32f405::BoardProfile* board = nullptr;
   /// Called with each line that the program prints on its console (USART2).
   std::function<void(const std::string&)> console{};
-  /// Called at the end of each tick.
+  /// Called at the end of each tick that begins and ends with a SYNC: where the chip stands between bus events, and so
+  /// what it has executed by then, depends on how far it was prepared.
   std::function<void(const TickCost&)> on_tick{};
 };
 
@@ -100,6 +101,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   [[nodiscard]] std::optional<std::int32_t> pulse() const override;
   [[nodiscard]] std::size_t controller() const override { return chip_.controller(); }
   void note_sync(std::uint32_t tick) override;
+  void note_missing_sync() override { tick_.reset(); }
   [[nodiscard]] std::optional<std::string> take_problem() override;
   [[nodiscard]] bool leaves_model() const override { return leaves_model_; }
 

@@ -51,6 +51,7 @@ class AtItsOwnTime final : public JointModule {
   [[nodiscard]] std::optional<std::int32_t> pulse() const override { return module_->pulse(); }
   [[nodiscard]] std::size_t controller() const override { return module_->controller(); }
   void note_sync(std::uint32_t tick) override { module_->note_sync(tick); }
+  void note_missing_sync() override { module_->note_missing_sync(); }
   [[nodiscard]] std::optional<std::string> take_problem() override { return module_->take_problem(); }
 
  private:

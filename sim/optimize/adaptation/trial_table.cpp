@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -14,6 +15,9 @@ namespace proleg::optimize {
 namespace {
 
 constexpr std::string_view inputs_comment = "# inputs: ";
+constexpr std::string_view atlas_comment = "# atlas: ";
+constexpr std::string_view robot_comment = "# robot: ";
+constexpr std::size_t columns_of_scores = 4;  // expected, deviation, measured, failure
 
 std::string head_of(const Atlas& atlas) {
   const Experiment& experiment = atlas.experiment;
@@ -42,30 +46,60 @@ std::vector<std::string_view> columns_of(std::string_view line) {
   return columns;
 }
 
-/// A trial of a line; nothing if it is damaged.
-std::optional<MadeTrial> read_trial(const Atlas& atlas, const GaitMap& map, std::string_view line, std::size_t number) {
+/// A trial of a line; nothing if it is damaged. number: that it has to have. values: number of a gait's values.
+std::optional<NotedTrial> noted_trial(std::string_view line, std::size_t number, std::size_t axes, std::size_t values) {
   const std::vector<std::string_view> columns = columns_of(line);
-  const std::size_t scores = 2 + atlas.experiment.axes.size() + atlas.experiment.space.dimensions.size();
-  if (columns.size() != scores + 4 || parse_whole<std::size_t>(columns[0]) != number) {
+  const std::size_t first_value = 2 + axes;
+  const std::size_t scores = first_value + values;
+  if (columns.size() != scores + columns_of_scores || parse_whole<std::size_t>(columns[0]) != number) {
     return std::nullopt;
   }
-  const auto gait =
-      std::ranges::find_if(atlas.gaits, [&](const AtlasGait& one) { return map.place_text(one.cell) == columns[1]; });
-  const std::optional<double> expected = parse_number(columns[scores]);
-  const std::optional<double> deviation = parse_number(columns[scores + 1]);
-  const std::optional<double> measured = parse_number(columns[scores + 2]);
-  if (gait == atlas.gaits.end() || !expected || !deviation || !measured) {
+  std::vector<double> numbers;
+  for (std::size_t i = first_value; i < scores + 3; ++i) {
+    const std::optional<double> its = parse_number(columns[i]);
+    if (!its) {
+      return std::nullopt;
+    }
+    numbers.push_back(*its);
+  }
+  return NotedTrial{std::string(columns[1]), {numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(values)},
+                    numbers[values],         numbers[values + 1],
+                    numbers[values + 2],     std::string(columns[scores + 3])};
+}
+
+std::optional<MadeTrial> read_trial(const Atlas& atlas, const GaitMap& map, std::string_view line, std::size_t number) {
+  std::optional<NotedTrial> noted =
+      noted_trial(line, number, atlas.experiment.axes.size(), atlas.experiment.space.dimensions.size());
+  const auto gait = std::ranges::find_if(
+      atlas.gaits, [&](const AtlasGait& one) { return noted && map.place_text(one.cell) == noted->place; });
+  if (gait == atlas.gaits.end()) {
     return std::nullopt;
   }
-  return MadeTrial{static_cast<std::size_t>(gait - atlas.gaits.begin()), *expected, *deviation, *measured,
-                   std::string(columns[scores + 3])};
+  return MadeTrial{static_cast<std::size_t>(gait - atlas.gaits.begin()), noted->expected, noted->deviation,
+                   noted->measured, std::move(noted->failure)};
+}
+
+/// The line behind comments. take: called with each of these.
+template <typename Take>
+std::optional<std::string_view> line_behind_comments(TextLines& lines, const Take& take) {
+  std::optional<std::string_view> line = lines.next();
+  for (; line && line->starts_with('#'); line = lines.next()) {
+    take(*line);
+  }
+  return line;
 }
 
 }  // namespace
 
-std::string trial_table(const Atlas& atlas, const std::string& inputs, const std::vector<MadeTrial>& trials) {
+std::string trial_table(const Atlas& atlas, const TrialOrigin& origin, const std::vector<MadeTrial>& trials) {
   const GaitMap map(atlas.experiment);
-  std::string text = std::string(inputs_comment) + inputs + '\n' + head_of(atlas) + '\n';
+  std::string text;
+  for (const auto& [comment, said] :
+       {std::pair{inputs_comment, &origin.inputs}, std::pair{atlas_comment, &origin.atlas},
+        std::pair{robot_comment, &origin.robot}}) {
+    text.append(comment).append(one_line(*said)) += '\n';
+  }
+  text += head_of(atlas) + '\n';
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const MadeTrial& trial = trials[i];
     const AtlasGait& gait = atlas.gaits[trial.gait];
@@ -95,8 +129,9 @@ std::vector<MadeTrial> read_trial_table(const Atlas& atlas, const std::string& i
     throw InputError(name, 1, "trials of another atlas, scenario or program, or with other options",
                      "those of this command");
   }
-  if (const std::optional<std::string_view> head = lines.next(); !head || *head != head_of(atlas)) {
-    throw InputError(name, 2, "another head", "that of the table of these trials");
+  const std::optional<std::string_view> head = line_behind_comments(lines, [](std::string_view /*comment*/) {});
+  if (!head || *head != head_of(atlas)) {
+    throw InputError(name, lines.number(), "another head", "that of the table of these trials");
   }
   const GaitMap map(atlas.experiment);
   std::vector<MadeTrial> trials;
@@ -112,6 +147,33 @@ std::vector<MadeTrial> read_trial_table(const Atlas& atlas, const std::string& i
     trials.push_back(*trial);
   }
   return trials;
+}
+
+std::optional<TrialNotes> look_at_trials(std::string_view text, std::size_t axes) {
+  TextLines lines(text);
+  TrialNotes notes;
+  const std::optional<std::string_view> head = line_behind_comments(lines, [&](std::string_view comment) {
+    for (const auto& [begin, said] :
+         {std::pair{inputs_comment, &notes.origin.inputs}, std::pair{atlas_comment, &notes.origin.atlas},
+          std::pair{robot_comment, &notes.origin.robot}}) {
+      if (comment.starts_with(begin)) {
+        *said = comment.substr(begin.size());
+      }
+    }
+  });
+  const std::size_t columns = head ? columns_of(*head).size() : 0;
+  const std::size_t others = 2 + axes + columns_of_scores;
+  if (notes.origin.inputs.empty() || notes.origin.atlas.empty() || columns < others) {
+    return std::nullopt;
+  }
+  while (const std::optional<std::string_view> line = lines.next()) {
+    std::optional<NotedTrial> trial = noted_trial(*line, notes.trials.size() + 1, axes, columns - others);
+    if (!trial) {
+      break;
+    }
+    notes.trials.push_back(std::move(*trial));
+  }
+  return notes;
 }
 
 }  // namespace proleg::optimize

@@ -23,6 +23,11 @@ def run(command, *arguments):
     return subprocess.run([PROGRAMS / "proleg", command, *map(str, arguments)], capture_output=True, text=True)
 
 
+def lines_of_trials(folder):
+    """The lines of its table, behind comments and head."""
+    return [line for line in (folder / "trials.tsv").read_text().splitlines() if not line.startswith("#")][1:]
+
+
 class Adapt(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -74,7 +79,7 @@ class Adapt(unittest.TestCase):
         first = result["trials"][0]
         self.assertLess(first["measured"], 0.9 * first["expected"])  # the atlas does not know of the jam
         self.assertGreaterEqual(result["best"], first["measured"])
-        cells = [line.split("\t") for line in (self.folder / "jammed" / "trials.tsv").read_text().splitlines()[2:]]
+        cells = [line.split("\t") for line in lines_of_trials(self.folder / "jammed")]
         self.assertEqual([line[1] for line in cells], [",".join(map(str, trial["cell"])) for trial in result["trials"]])
         picture = ElementTree.parse(self.folder / "jammed" / "trials.svg").getroot()
         group = next(g for g in picture.iter("{http://www.w3.org/2000/svg}g") if g.get("class") == "trials")
@@ -124,7 +129,7 @@ class Adapt(unittest.TestCase):
         _, errors = program.communicate()
         self.assertEqual(program.returncode, 1, errors)
         self.assertIn("--resume", errors)
-        made = len((folder / "trials.tsv").read_text().splitlines()) - 2
+        made = len(lines_of_trials(folder))
         self.assertGreaterEqual(made, 1)
         self.assertTrue((folder / "adapted.simulation.xml").exists())
         resumed = subprocess.run([*command, "--trials", str(made), "--resume", folder, "--json"], capture_output=True,

@@ -129,7 +129,8 @@ class RobotTrials(unittest.TestCase):
 
     def made(self, out):
         """The trials that were kept."""
-        return (self.folder / out / "trials.tsv").read_text().splitlines()[2:]
+        lines = (self.folder / out / "trials.tsv").read_text().splitlines()
+        return [line for line in lines if not line.startswith("#")][1:]  # behind comments and head
 
     def simulated_bus(self):
         return f"sim:{self.scenario}"

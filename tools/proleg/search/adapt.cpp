@@ -120,6 +120,22 @@ std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const A
   return sha256_hex(text);
 }
 
+optimize::TrialOrigin origin_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options,
+                                const std::filesystem::path& folder) {
+  std::filesystem::path place = options.atlas;
+  if (std::filesystem::is_regular_file(place)) {
+    place = std::filesystem::absolute(place).parent_path();
+  }
+  std::string robot = std::filesystem::path(options.scenario.file).filename().string();
+  if (options.robot.bus) {
+    robot += " on " + *options.robot.bus;
+  }
+  for (const std::string& damage : options.damages) {
+    robot += ", " + damage;
+  }
+  return {inputs_of(atlas, scenario, options), std::filesystem::relative(place, folder).string(), std::move(robot)};
+}
+
 /// The trials of a robot, with their files.
 class Run {
  public:
@@ -128,7 +144,7 @@ class Run {
         atlas_(atlas),
         intact_(intact),
         folder_(std::move(folder)),
-        inputs_(inputs_of(atlas, intact, options)),
+        origin_(origin_of(atlas, intact, options, folder_)),
         made_(atlas, settings_of(options)) {}
 
   /// Reads the trials that were made before. Returns their number.
@@ -139,7 +155,7 @@ class Run {
     }
     std::ifstream stream(table, std::ios::binary);
     const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    for (const MadeTrial& trial : optimize::read_trial_table(atlas_, inputs_, table.string(), text)) {
+    for (const MadeTrial& trial : optimize::read_trial_table(atlas_, origin_.inputs, table.string(), text)) {
       made_.add(trial);
     }
     return resumed_ = made_.all().size();
@@ -193,7 +209,7 @@ class Run {
 
  private:
   void write_table() const {
-    write_file(folder_ / result_files[0], optimize::trial_table(atlas_, inputs_, made_.all()));
+    write_file(folder_ / result_files[0], optimize::trial_table(atlas_, origin_, made_.all()));
   }
 
   /// The scenario is that of FILE with the gait: damages by options are not in it.
@@ -246,7 +262,7 @@ class Run {
   const Atlas& atlas_;
   const sim::Scenario& intact_;  ///< without the damages of the command line
   std::filesystem::path folder_;
-  std::string inputs_;
+  optimize::TrialOrigin origin_;
   MadeTrials made_;
   std::size_t resumed_ = 0;
   bool is_stopped_ = false;

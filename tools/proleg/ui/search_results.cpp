@@ -1,9 +1,13 @@
 #include "tools/proleg/ui/search_results.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -11,8 +15,11 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/adaptation/trial_table.hpp"
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/store_summary.hpp"
+#include "sim/optimize/experiment/gait_map.hpp"
+#include "tools/proleg/ui/folder_walk.hpp"
 #include "tools/proleg/ui/search_folder.hpp"
 #include "tools/proleg/ui/session_base.hpp"
 
@@ -52,6 +59,62 @@ json dimensions_json(const optimize::SearchSpace& space) {
                           {"highest", space.value(corner, i)}});
   }
   return dimensions;
+}
+
+json axes_json(const Experiment& experiment) {
+  json axes = json::array();
+  for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
+    const optimize::Objective& measure = experiment.objectives[1 + i];
+    const optimize::MapAxis& axis = experiment.axes[i];
+    axes.push_back({{"name", measure.name},
+                    {"unit", measure.unit()},
+                    {"lowest", axis.lowest},
+                    {"highest", axis.highest},
+                    {"cells", axis.cells}});
+  }
+  return axes;
+}
+
+/// The coordinates of each, 0 to 1; null: the map is a grid, or the search has none.
+json centroids_json(const Experiment& experiment) {
+  if (experiment.axes.empty()) {
+    return json();
+  }
+  const optimize::GaitMap map(experiment);
+  const optimize::Tessellation* const tessellation = map.tessellation();
+  if (tessellation == nullptr) {
+    return json();
+  }
+  json centroids = json::array();
+  for (std::size_t i = 0; i < tessellation->count(); ++i) {
+    const std::span<const double> centroid = tessellation->centroid(i);
+    centroids.push_back(std::vector<double>(centroid.begin(), centroid.end()));
+  }
+  return centroids;
+}
+
+/// The text of a table of trials; nothing if it cannot be read, or is much larger than such tables are.
+std::optional<std::string> text_of_trials(const fs::path& table) {
+  constexpr std::uintmax_t most = 1 << 20;
+  std::error_code error;
+  if (fs::file_size(table, error) > most || error) {
+    return std::nullopt;
+  }
+  std::ifstream stream(table, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+}
+
+json trials_json(const optimize::TrialNotes& notes) {
+  json trials = json::array();
+  for (const optimize::NotedTrial& trial : notes.trials) {
+    trials.push_back({{"cell", trial.place},
+                      {"values", trial.values},
+                      {"expected", trial.expected},
+                      {"deviation", trial.deviation},
+                      {"measured", trial.measured},
+                      {"failure", text_or_null(one_line(trial.failure))}});
+  }
+  return trials;
 }
 
 /// The names of a dimension as `--set` takes them: it has a name for one joint and for all, a dimension also for some.
@@ -125,6 +188,8 @@ json SearchResults::describe(const fs::path& search) {
           {"dimensions", dimensions_json(experiment.space)},
           {"measures", std::move(measures)},
           {"has_baseline", experiment.has_baseline},
+          {"axes", axes_json(experiment)},
+          {"centroids", centroids_json(experiment)},
           {"result", has_ended ? result_of(search) : json()}};
 }
 
@@ -189,6 +254,29 @@ json SearchResults::candidate(const fs::path& search, std::uint32_t run, std::ui
           {"failure", text_or_null(one_line(evaluation.failure))},
           {"given_up", evaluation.given_up},
           {"reused", evaluation.reused}};
+}
+
+json SearchResults::adaptations(const fs::path& search, const fs::path& folder) {
+  constexpr std::array<const char*, 1> tables{"trials.tsv"};
+  const std::size_t axes = experiment_of(search).axes.size();
+  std::vector<std::pair<fs::file_time_type, json>> found;
+  for (const std::string& name : axes == 0 ? std::vector<std::string>() : folders_with(folder, tables, {})) {
+    std::error_code error;
+    const fs::path table = folder / name / tables.front();
+    const fs::file_time_type time = fs::last_write_time(table, error);
+    const std::optional<std::string> text = text_of_trials(table);
+    const std::optional<optimize::TrialNotes> notes = text ? optimize::look_at_trials(*text, axes) : std::nullopt;
+    if (notes && fs::weakly_canonical(folder / name / notes->origin.atlas, error) == search) {
+      found.emplace_back(
+          time, json{{"name", name}, {"robot", one_line(notes->origin.robot)}, {"trials", trials_json(*notes)}});
+    }
+  }
+  std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
+  json adaptations = json::array();
+  for (auto& [time, adaptation] : found) {
+    adaptations.push_back(std::move(adaptation));
+  }
+  return {{"adaptations", std::move(adaptations)}};
 }
 
 sim::Scenario SearchResults::scenario_of(const fs::path& search, std::uint32_t run, std::uint64_t number) {

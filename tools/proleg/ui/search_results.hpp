@@ -26,6 +26,8 @@ class SearchResults {
   [[nodiscard]] nlohmann::json rows(const std::filesystem::path& search, std::uint32_t run, std::uint64_t from);
   /// The value of `search.candidate`.
   [[nodiscard]] nlohmann::json candidate(const std::filesystem::path& search, std::uint32_t run, std::uint64_t number);
+  /// The value of `search.adaptations`: those in a folder, and in the folders in it, that have the map of this search.
+  [[nodiscard]] nlohmann::json adaptations(const std::filesystem::path& search, const std::filesystem::path& folder);
   /// The own world of a candidate (optimize::own_world()).
   [[nodiscard]] sim::Scenario scenario_of(const std::filesystem::path& search, std::uint32_t run, std::uint64_t number);
 

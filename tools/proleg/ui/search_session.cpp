@@ -173,13 +173,19 @@ void SearchSession::close() {
 }
 
 json SearchSession::carry_out(const host::OperationRequest& operation) {
-  static const std::map<std::string_view, Handler> handlers{
-      {"search.refresh", &SearchSession::refresh}, {"search.open", &SearchSession::open},
-      {"search.rows", &SearchSession::rows},       {"search.candidate", &SearchSession::candidate},
-      {"search.motion", &SearchSession::motion},   {"search.check", &SearchSession::check},
-      {"search.read", &SearchSession::read},       {"search.estimate", &SearchSession::estimate},
-      {"search.confirm", &SearchSession::confirm}, {"search.start", &SearchSession::start},
-      {"search.stop", &SearchSession::stop},       {"search.resume", &SearchSession::resume}};
+  static const std::map<std::string_view, Handler> handlers{{"search.refresh", &SearchSession::refresh},
+                                                            {"search.open", &SearchSession::open},
+                                                            {"search.rows", &SearchSession::rows},
+                                                            {"search.candidate", &SearchSession::candidate},
+                                                            {"search.motion", &SearchSession::motion},
+                                                            {"search.check", &SearchSession::check},
+                                                            {"search.read", &SearchSession::read},
+                                                            {"search.estimate", &SearchSession::estimate},
+                                                            {"search.adaptations", &SearchSession::adaptations},
+                                                            {"search.confirm", &SearchSession::confirm},
+                                                            {"search.start", &SearchSession::start},
+                                                            {"search.stop", &SearchSession::stop},
+                                                            {"search.resume", &SearchSession::resume}};
   return (this->*handler_of(handlers, operation.name))(operation);
 }
 
@@ -222,6 +228,10 @@ json SearchSession::rows(const host::OperationRequest& request) {
 json SearchSession::candidate(const host::OperationRequest& request) {
   return results_.candidate(folder_.find(name_in(request.arguments)), run_in(request.arguments),
                             number_in(request.arguments));
+}
+
+json SearchSession::adaptations(const host::OperationRequest& request) {
+  return results_.adaptations(folder_.find(name_in(request.arguments)), folder_.folder());
 }
 
 json SearchSession::motion(const host::OperationRequest& request) {

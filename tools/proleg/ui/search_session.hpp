@@ -41,7 +41,7 @@ class SearchSession final : private SessionThread {
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() {
     return {"search.refresh", "search.open",  "search.rows", "search.candidate",
-            "search.motion",  "search.check", "search.read"};
+            "search.motion",  "search.check", "search.read", "search.adaptations"};
   }
 
  private:
@@ -63,6 +63,7 @@ class SearchSession final : private SessionThread {
   nlohmann::json open(const host::OperationRequest& request);
   nlohmann::json rows(const host::OperationRequest& request);
   nlohmann::json candidate(const host::OperationRequest& request);
+  nlohmann::json adaptations(const host::OperationRequest& request);
   nlohmann::json motion(const host::OperationRequest& request);
   nlohmann::json check(const host::OperationRequest& request);
   nlohmann::json read(const host::OperationRequest& request);

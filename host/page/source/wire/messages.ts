@@ -469,6 +469,7 @@ export interface Operations extends ClassOperations, ModuleOperations {
   'search.open': { name: string };
   'search.rows': { name: string; run: number; from: number };
   'search.candidate': { name: string; run: number; number: number };
+  'search.adaptations': { name: string };
   'search.motion': { name: string; run: number; number: number } | Record<string, never>; // without a name that of the draft
   'search.check': { experiment: Experiment };
   'search.read': { file: string };

@@ -194,7 +194,39 @@ export interface OpenedSearch {
   dimensions: Dimension[];
   measures: string[];
   has_baseline: boolean; // evaluation 0 has the scenario's own values
+  axes: MapAxis[]; // of a map of gaits; [] if the search has none
+  centroids: number[][] | null; // of its cells, a coordinate for each axis: 0 at the lowest, 1 at the highest value; null: a grid
   result: SearchResult | null; // of a search that has ended
+}
+
+// Of a map of gaits. Its measure is the objective behind the first one, in the order of the axes.
+export interface MapAxis {
+  name: string;
+  unit: string;
+  lowest: number;
+  highest: number;
+  cells: number; // 0 if the map has centroids
+}
+
+// A trial of a gait of a map on a robot that differs (docs/adaptation.md).
+export interface AdaptationTrial {
+  cell: string; // its numbers on the axes or of its centroid, from 1: "3,7"
+  values: number[]; // one for each dimension
+  expected: number; // scores
+  deviation: number;
+  measured: number;
+  failure: string | null; // why it has no score of its own
+}
+
+export interface Adaptation {
+  name: string; // path of its folder
+  robot: string; // what made the trials
+  trials: AdaptationTrial[]; // in the order in which they were made
+}
+
+// The value of `search.adaptations`, the newest first.
+export interface SearchAdaptations {
+  adaptations: Adaptation[];
 }
 
 export const hasNoScore = 1; // flag: it failed, and has no score of its own for the first objective

@@ -103,6 +103,8 @@ export function openedSearch(part: Partial<OpenedSearch> = {}): OpenedSearch {
     dimensions: [{ name: 'amplitude:J5', unit: 'deg', count: 161, lowest: 0, highest: 40 }],
     measures: ['distance'],
     has_baseline: true,
+    axes: [],
+    centroids: null,
     result: null,
     ...part,
   };

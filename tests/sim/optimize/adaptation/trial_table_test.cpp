@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shipped_atlas.hpp"
@@ -10,6 +14,7 @@
 namespace proleg::optimize {
 namespace {
 
+const TrialOrigin origin{"abc", "../atlas", "uniform.simulation.xml, jammed:J3=20"};
 const std::vector<MadeTrial> two_trials{{1, 0.75, 0.125, 0.1, ""}, {0, 1.2, 1.25, 0.0, "the robot\tfell"}};
 
 std::string message_of(const std::string& inputs, const std::string& text) {
@@ -22,8 +27,10 @@ std::string message_of(const std::string& inputs, const std::string& text) {
 }
 
 TEST(TrialTable, SaysOfEachTrialItsCellGaitAndScores) {
-  EXPECT_EQ(trial_table(small_atlas(), "abc", two_trials),
+  EXPECT_EQ(trial_table(small_atlas(), origin, two_trials),
             "# inputs: abc\n"
+            "# atlas: ../atlas\n"
+            "# robot: uniform.simulation.xml, jammed:J3=20\n"
             "trial\tcell\theight (m)\tduty_factor\tamplitude:J5 (deg)\tamplitude:J4 (deg)\tamplitude:J3 (deg)\t"
             "amplitude:J2 (deg)\tamplitude:J1 (deg)\texpected (m)\tdeviation (m)\tmeasured (m)\tfailure\n"
             "1\t25,20\t0.049\t0.395\t30\t30\t30\t30\t30\t0.75\t0.125\t0.1\t\n"
@@ -33,7 +40,7 @@ TEST(TrialTable, SaysOfEachTrialItsCellGaitAndScores) {
 TEST(TrialTable, IsReadBack) {
   const Atlas atlas = small_atlas();
   const std::vector<MadeTrial> read =
-      read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, "abc", two_trials));
+      read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, origin, two_trials));
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].gait, 1U);
   EXPECT_EQ(read[0].expected, 0.75);
@@ -45,7 +52,7 @@ TEST(TrialTable, IsReadBack) {
 }
 
 TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
-  const std::string table = trial_table(small_atlas(), "abc", two_trials);
+  const std::string table = trial_table(small_atlas(), origin, two_trials);
   EXPECT_NE(message_of("abd", table).find("trials.tsv:1: found trials of another atlas"), std::string::npos);
   EXPECT_NE(message_of("abc", "").find("trials.tsv:1: found no table"), std::string::npos);
   const auto with = [&](const std::string& old_text, const std::string& new_text) {
@@ -53,11 +60,48 @@ TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
     changed.replace(changed.find(old_text), old_text.size(), new_text);
     return message_of("abc", changed);
   };
-  EXPECT_NE(with("trial\tcell", "trail\tcell").find("trials.tsv:2:"), std::string::npos);
-  EXPECT_NE(with("\n2\t1,1\t", "\n2\t8,1\t").find("trials.tsv:4:"), std::string::npos) << "no gait in this cell";
-  EXPECT_NE(with("\n2\t1,1\t", "\n3\t1,1\t").find("trials.tsv:4:"), std::string::npos) << "trial 2 is missing";
-  EXPECT_NE(with("0.125\t0.1\t", "0.125\tinf\t").find("trials.tsv:3:"), std::string::npos);
-  EXPECT_NE(with("0.125\t0.1\t", "0.125\t").find("trials.tsv:3:"), std::string::npos);
+  EXPECT_NE(with("trial\tcell", "trail\tcell").find("trials.tsv:4:"), std::string::npos);
+  EXPECT_NE(with("\n2\t1,1\t", "\n2\t8,1\t").find("trials.tsv:6:"), std::string::npos) << "no gait in this cell";
+  EXPECT_NE(with("\n2\t1,1\t", "\n3\t1,1\t").find("trials.tsv:6:"), std::string::npos) << "trial 2 is missing";
+  EXPECT_NE(with("0.125\t0.1\t", "0.125\tinf\t").find("trials.tsv:5:"), std::string::npos);
+  EXPECT_NE(with("0.125\t0.1\t", "0.125\t").find("trials.tsv:5:"), std::string::npos);
+}
+
+TEST(TrialTable, OfAVersionWithoutTheAtlasIsReadToo) {
+  std::string table = trial_table(small_atlas(), origin, two_trials);
+  table.erase(table.find("# atlas"), table.find("trial\t") - table.find("# atlas"));
+  EXPECT_EQ(read_trial_table(small_atlas(), "abc", "trials.tsv", table).size(), 2U);
+  EXPECT_FALSE(look_at_trials(table, 2)) << "whose atlas is not known";
+}
+
+TEST(TrialTable, SaysWithoutItsAtlasWhatWasTriedAndWhere) {
+  const std::string table = trial_table(small_atlas(), origin, two_trials);
+  const std::optional<TrialNotes> notes = look_at_trials(table, 2);
+  ASSERT_TRUE(notes);
+  EXPECT_EQ(notes->origin.inputs, "abc");
+  EXPECT_EQ(notes->origin.atlas, "../atlas");
+  EXPECT_EQ(notes->origin.robot, "uniform.simulation.xml, jammed:J3=20");
+  ASSERT_EQ(notes->trials.size(), 2U);
+  EXPECT_EQ(notes->trials[0].place, "25,20");
+  EXPECT_EQ(notes->trials[0].values, (std::vector<double>{30, 30, 30, 30, 30}));
+  EXPECT_EQ(notes->trials[0].expected, 0.75);
+  EXPECT_EQ(notes->trials[0].deviation, 0.125);
+  EXPECT_EQ(notes->trials[0].measured, 0.1);
+  EXPECT_EQ(notes->trials[1].failure, "the robot fell");
+}
+
+TEST(TrialTable, IsLookedAtUpToWhatIsDamaged) {
+  const std::string table = trial_table(small_atlas(), origin, two_trials);
+  for (std::size_t size = 0; size <= table.size(); ++size) {
+    const std::optional<TrialNotes> notes = look_at_trials(std::string_view(table).substr(0, size), 2);
+    for (const NotedTrial& trial : notes ? notes->trials : std::vector<NotedTrial>()) {
+      EXPECT_EQ(trial.values.size(), 5U) << size;
+      EXPECT_GE(trial.expected, 0.75) << size;
+    }
+  }
+  EXPECT_EQ(look_at_trials(table.substr(0, table.size() - 20), 2)->trials.size(), 1U);
+  EXPECT_FALSE(look_at_trials("evaluation\tscore\n0\t1\n", 2));
+  EXPECT_FALSE(look_at_trials("", 2));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@ Usage: searches_test.py SOURCE PROGRAMS"""
 
 import contextlib
 import json
+import re
 import shutil
 import signal
 import sqlite3
@@ -252,6 +253,49 @@ def odd_stores_end_nothing(program):
     assert all(len(scores) == 2 for scores in program.must("search.rows", name=name, **{"from": 0})["scores"])
 
 
+def adaptations_are_found_with_their_map(program):
+    """What `proleg adapt` has tried on a damaged robot, beside the map that it was chosen from, as both have it in their tables."""
+    def run(*words):
+        subprocess.run([PROGRAMS / "proleg", *words], check=True, stdout=subprocess.DEVNULL)
+
+    atlas, scenario = program.folder / "atlas", program.folder / "uniform.simulation.xml"
+    run("atlas", program.folder / "gait_map.optimise.xml", "--evaluations", "300", "--out", atlas)
+    opened = program.must("search.open", name="atlas")
+    assert [(axis["name"], axis["unit"], axis["lowest"], axis["highest"], axis["cells"]) for axis in opened["axes"]] == [
+        ("height", "m", 0, 0.05, 25), ("duty_factor", "", 0.2, 0.4, 20)], opened["axes"]
+    assert opened["centroids"] is None
+    assert program.must("search.adaptations", name="atlas") == {"adaptations": []}
+    run("adapt", scenario, "--atlas", atlas, "--seconds", "1", "--trials", "3", "--alpha", "1", "--damage", "jammed:J3=20",
+        "--out", program.folder / "deep/jammed")
+    run("adapt", scenario, "--atlas", atlas / "store.sqlite", "--seconds", "1", "--trials", "1", "--out", program.folder / "intact")
+    shutil.copytree(program.folder / "intact", program.folder / "elsewhere/intact")  # its path leads to no atlas
+    found = program.must("search.adaptations", name="atlas")["adaptations"]
+    assert [(its["name"], its["robot"]) for its in found] == [
+        ("intact", "uniform.simulation.xml"), ("deep/jammed", "uniform.simulation.xml, jammed:J3=20")], found
+    table = [line.split("\t") for line in (program.folder / "deep/jammed/trials.tsv").read_text().splitlines() if line[0] in "123"]
+    assert len(table) == 3
+    for trial, columns in zip(found[1]["trials"], table):
+        assert trial["cell"] == columns[1] and trial["failure"] is None
+        assert [trial["expected"], trial["deviation"], trial["measured"]] == [float(number) for number in columns[-4:-1]]
+        assert trial["values"] == [float(number) for number in columns[-9:-4]]
+    others = program.must("search.start", name="no map", experiment=experiment(evaluations="10"))["name"]
+    program.when(others, lambda its: its["state"] == "ended")
+    assert program.must("search.open", name=others)["axes"] == []
+    assert program.must("search.adaptations", name=others) == {"adaptations": []}
+    (program.folder / "intact/trials.tsv").write_bytes(b"\xff\0# atlas: ../atlas\n" * 100)
+    assert [its["name"] for its in program.must("search.adaptations", name="atlas")["adaptations"]] == ["deep/jammed"]
+    program.refused("search.adaptations", name="../atlas")
+
+    # Cells around centroids have theirs.
+    text = (program.folder / "gait_map.optimise.xml").read_text()
+    text = re.sub(r' cells="\d+"', "", text).replace("<first>", "<centroids>40</centroids><first>")
+    (program.folder / "centroids.optimise.xml").write_text(text)
+    run("optimise", program.folder / "centroids.optimise.xml", "--engine", "reduced", "--evaluations", "20", "--out", program.folder / "round")
+    opened = program.must("search.open", name="round")
+    assert len(opened["centroids"]) == 40 and all(0 <= share <= 1 for centroid in opened["centroids"] for share in centroid)
+    assert all(len(centroid) == len(opened["axes"]) == 2 for centroid in opened["centroids"])
+
+
 def files_of_experiments_are_offered(program):
     program.searches()
     titles = {entry["title"]: entry["file"] for entry in program.document()["experiments"]}
@@ -277,6 +321,7 @@ def main():
             a_search_outlives_the_program(program)
             searches_of_others_are_found(program)
             files_of_experiments_are_offered(program)
+            adaptations_are_found_with_their_map(program)
             program.process.send_signal(signal.SIGINT)
             assert program.process.wait() == 0
 

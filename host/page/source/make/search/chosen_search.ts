@@ -1,7 +1,8 @@
 // The search that is shown: what it is, its evaluations, and the candidate that is chosen in it.
 import { computed, signal } from '@preact/signals-core';
-import type { OpenedSearch, SearchCandidate, SearchConfirmation, SearchEntry, SearchRows } from '../../wire/messages.js';
+import type { Adaptation, OpenedSearch, SearchAdaptations, SearchCandidate, SearchConfirmation, SearchEntry, SearchRows } from '../../wire/messages.js';
 import { Front } from './front.js';
+import { GaitMap } from './gait_map.js';
 import { Ranking } from './ranking.js';
 import { RowReader } from './row_reader.js';
 import { RowStore } from './row_store.js';
@@ -10,6 +11,7 @@ import { isRead } from './search_text.js';
 
 const tablePeriod = 500; // milliseconds: the tables and charts follow at most twice a second
 const openPeriod = 2000; // milliseconds after which a search is opened again that could not be
+const adaptationPeriod = 2000; // milliseconds between two looks at the adaptations that have the map of the search
 
 // The evaluations of one repetition.
 export interface ShownRows {
@@ -18,6 +20,7 @@ export interface ShownRows {
   store: RowStore;
   rankings: readonly Ranking[]; // by objective
   front: Front | null; // of two objectives
+  map: GaitMap | null; // of a search that has one
 }
 
 export class ChosenSearch {
@@ -33,7 +36,16 @@ export class ChosenSearch {
   readonly candidate = signal<SearchCandidate | null>(null);
   readonly candidateProblem = signal<string | null>(null);
   readonly confirmation = signal<SearchConfirmation | 'running' | null>(null); // whether the candidate's gait is real
+  readonly pointedCell = signal<number | null>(null); // of the map
+  readonly adaptations = signal<Adaptation[]>([]); // that have this map
+  // The adaptation whose trials are shown: the newest, unless another one or none was chosen.
+  readonly adaptation = computed(() => {
+    const name = this.adaptationName.value;
+    return (name === null ? this.adaptations.value[0] : this.adaptations.value.find((each) => each.name === name)) ?? null;
+  });
   readonly ranking = computed(() => this.rows.value?.rankings[this.objective.value] ?? null);
+  private readonly adaptationName = signal<string | null>(null); // '': none; null: nothing was chosen
+  private adaptationsAskedAt = -Infinity;
   private rowsBegun = 0;
   private openedOf = ''; // state of the search when it was opened
   private openedAt = -Infinity;
@@ -63,6 +75,10 @@ export class ChosenSearch {
     }
     const rows = this.rows.peek();
     if (rows === null) return;
+    if (rows.map !== null && now - this.adaptationsAskedAt >= adaptationPeriod) {
+      this.adaptationsAskedAt = now;
+      void this.readAdaptations();
+    }
     // The list has the evaluations of all repetitions together, not of each.
     const announced = this.opened.peek()?.runs === 1 ? entry.made : 0;
     rows.reader.advance(now, announced, entry.state === 'running' || entry.state === 'stopping');
@@ -70,6 +86,7 @@ export class ChosenSearch {
       this.shownAt = now;
       rows.rankings.forEach((ranking) => ranking.update());
       rows.front?.update();
+      rows.map?.update();
       this.shownCount.value = rows.store.count;
     }
   }
@@ -79,6 +96,11 @@ export class ChosenSearch {
     this.run.value = run;
     this.chooseCandidate(null);
     this.beginRows();
+  }
+
+  // name: '' for none.
+  chooseAdaptation(name: string): void {
+    this.adaptationName.value = name;
   }
 
   chooseCandidate(number: number | null): void {
@@ -130,6 +152,7 @@ export class ChosenSearch {
     this.rows.peek()?.reader.close();
     this.shownCount.value = 0;
     this.shownAt = -Infinity;
+    this.pointedCell.value = null;
     if (opened === null) return;
     const store = new RowStore(opened.objectives.length, opened.dimensions.length);
     const run = this.run.peek();
@@ -137,7 +160,15 @@ export class ChosenSearch {
     const rankings = opened.objectives.map(({ maximise }, objective) => new Ranking(store, objective, maximise));
     const [first, second] = opened.objectives;
     const front = opened.objectives.length === 2 ? new Front(store, [first!.maximise, second!.maximise]) : null;
-    this.rows.value = { id: ++this.rowsBegun, reader, store, rankings, front };
+    const map = opened.axes.length === 0 ? null : new GaitMap(store, opened.axes, opened.centroids, first!.maximise);
+    this.rows.value = { id: ++this.rowsBegun, reader, store, rankings, front, map };
+  }
+
+  private async readAdaptations(): Promise<void> {
+    // Without a connection the page says so.
+    const answer = (await this.host.page.operations.ask('search.adaptations', { name: this.name }).catch(() => null)) as SearchAdaptations | null;
+    if (answer === null || this.isClosed) return;
+    if (JSON.stringify(answer.adaptations) !== JSON.stringify(this.adaptations.peek())) this.adaptations.value = answer.adaptations;
   }
 
   private async readCandidate(number: number): Promise<void> {

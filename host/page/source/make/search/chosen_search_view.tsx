@@ -3,6 +3,7 @@ import { useSignal } from '@preact/signals';
 import type { OpenedSearch, SearchEntry } from '../../wire/messages.js';
 import { CandidateTable } from './candidate_table.js';
 import type { ChosenSearch } from './chosen_search.js';
+import { MapView } from './map_view.js';
 import { MotionControls } from './motion_controls.js';
 import { searchApp, type SearchApp } from './search_app.js';
 import { SearchCharts } from './search_charts.js';
@@ -170,6 +171,7 @@ export function ChosenSearchView({ app: host }: { app: SearchHost }) {
       {opened !== null && <Result chosen={chosen} opened={opened} />}
       {opened !== null && rows !== null && ranking !== null && (
         <>
+          <MapView chosen={chosen} opened={opened} rows={rows} />
           <SearchCharts chosen={chosen} opened={opened} rows={rows} ranking={ranking} />
           <Choices chosen={chosen} opened={opened} />
           {chosen.shownCount.value >= rows.store.capacity && <p class="hint">The page shows the first {countText(rows.store.capacity)} evaluations.</p>}

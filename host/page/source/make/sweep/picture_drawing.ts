@@ -4,7 +4,8 @@ import type { SweptQuantity } from '../../wire/messages.js';
 import type { CanvasSize } from '../search/keep_drawn.js';
 import { axisTicks, padded } from '../search/score_points.js';
 import { shortNumber } from '../search/search_text.js';
-import { colourPlace, meanRange, type Cells } from './sweep_cells.js';
+import { colourOf } from '../search/value_colours.js';
+import { meanRange, type Cells } from './sweep_cells.js';
 
 const edge = { left: 62, right: 12, top: 10, bottom: 36 }; // CSS pixels
 const pixelsPerLabel = { x: 56, y: 20 };
@@ -28,12 +29,6 @@ interface Area {
 
 function areaOf({ width, height }: Pick<CanvasSize, 'width' | 'height'>): Area {
   return { left: edge.left, right: width - edge.right, top: edge.top, bottom: height - edge.bottom };
-}
-
-export function colourOf(value: number, range: readonly [number, number], { strip }: Pick<ChartTheme, 'strip'>): string {
-  const place = Math.max(-1, Math.min(1, colourPlace(value, range)));
-  const colour = strip[Math.round(((place + 1) / 2) * (strip.length - 1))]!;
-  return `rgb(${colour & 255} ${(colour >> 8) & 255} ${(colour >> 16) & 255})`;
 }
 
 // The cell at a place of the canvas; null: there is none.

@@ -71,12 +71,3 @@ export function meanRange({ mean }: Cells): [number, number] | null {
   }
   return low <= high ? [low, high] : null;
 }
-
-// Where a mean is on a scale from -1, dark blue, over 0, pale, to 1, dark orange: as in the picture of the sweep's folder,
-// positive ones are blue, negative ones orange, and if both occur 0 is pale.
-export function colourPlace(value: number, [low, high]: readonly [number, number]): number {
-  const least = 0.12; // so that no value looks like none
-  if (low < 0 && high > 0) return -value / Math.max(-low, high);
-  const share = high > low ? (value - low) / (high - low) : 1;
-  return low >= 0 ? -(least + (1 - least) * share) : least + (1 - least) * (1 - share);
-}

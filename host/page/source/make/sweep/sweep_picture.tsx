@@ -1,12 +1,10 @@
 // The picture of a sweep: a line or a map. The mouse and the arrow keys go from cell to cell; a click or Enter chooses one.
 import { useEffect, useRef } from 'preact/hooks';
-import { chartTheme } from '../../panels/chart_theme.js';
-import { isDark } from '../../view/theme.js';
 import type { OpenedSweep } from '../../wire/messages.js';
+import { ColourLegend } from '../search/colour_legend.js';
 import { keepDrawn } from '../search/keep_drawn.js';
-import { shortNumber } from '../search/search_text.js';
 import type { ChosenSweep } from './chosen_sweep.js';
-import { cellAt, colourOf, drawPicture } from './picture_drawing.js';
+import { cellAt, drawPicture } from './picture_drawing.js';
 import { bestCell, meanRange, variedQuantities, type Cells } from './sweep_cells.js';
 import { cellName, cellText } from './sweep_text.js';
 
@@ -18,7 +16,6 @@ interface Measured {
 
 function Legend({ cells, measure, isMap, hasBest }: { cells: Cells; measure: string; isMap: boolean; hasBest: boolean }) {
   const range = meanRange(cells);
-  const theme = chartTheme(isDark.value);
   const marks = (
     <>
       {hasBest && <i class={isMap ? 'frame-mark' : 'ring-mark'} aria-hidden="true" />} {hasBest && 'best'} <b class="problem">×</b> no run has a value {isMap && <b class="problem">▪</b>} {isMap && 'some runs have none'}
@@ -31,16 +28,10 @@ function Legend({ cells, measure, isMap, hasBest }: { cells: Cells; measure: str
       </p>
     );
   }
-  const steps = 12;
-  const colours = range === null ? [] : Array.from({ length: steps + 1 }, (_, i) => colourOf(range[0] + (i / steps) * (range[1] - range[0]), range, theme));
   return (
     <p class="hint legend-line">
       {measure}{' '}
-      {range !== null && (
-        <span class="colour-legend" data-testid="colour-legend">
-          {shortNumber(range[0], 3)} <i aria-hidden="true" style={{ background: `linear-gradient(to right, ${colours.join(', ')})` }} /> {shortNumber(range[1], 3)}
-        </span>
-      )}{' '}
+      {range !== null && <ColourLegend range={range} />}{' '}
       {marks}
     </p>
   );

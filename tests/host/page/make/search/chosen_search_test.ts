@@ -134,3 +134,61 @@ describe('the chosen candidate', () => {
     assert.equal(search.candidateProblem.value, null);
   });
 });
+
+describe('a search with a map of gaits', () => {
+  const axis = { name: 'height', unit: 'm', lowest: 0, highest: 1, cells: 2 };
+  const objective = { name: 'distance', unit: 'm', maximise: true };
+  const trial = { cell: '1,2', values: [0], expected: 1, deviation: 0.1, measured: 0.9, failure: null };
+  const newest = { name: 'a', robot: 'one.simulation.xml', trials: [trial] };
+  const other = { name: 'b', robot: 'two.simulation.xml', trials: [] };
+
+  async function shownMap() {
+    const program = new SearchProgram();
+    const search = new ChosenSearch(program.host, 'searches/wave');
+    search.advance(0, entry({ made: 2 }));
+    await program.last('search.open').answer(openedSearch({ objectives: [objective, objective, objective], axes: [axis, axis] }));
+    search.advance(100, entry({ made: 2 }));
+    await program.last('search.rows').answer({ from: 0, made: 2, scores: [[1, 0.2, 0.9], [2, 0.9, 0.9]], values: [[0], [1]], flags: [0, 0] });
+    search.advance(700, entry({ made: 2 }));
+    return { program, search };
+  }
+
+  it('has the best of each cell', async () => {
+    const { search } = await shownMap();
+    const { map } = search.rows.value!;
+    assert.deepEqual([...map!.elites].map(([cell, row]) => [map!.nameOf(cell), row]), [['1,2', 0], ['2,2', 1]]);
+    assert.equal((await shown()).search.rows.value?.map, null, 'a search without one');
+  });
+
+  it('shows the trials of the newest adaptation, of one that was chosen, or of none', async () => {
+    const { program, search } = await shownMap();
+    assert.equal(search.adaptation.value, null);
+    await program.last('search.adaptations').answer({ adaptations: [newest, other] });
+    assert.equal(search.adaptation.value, newest);
+    search.chooseAdaptation('b');
+    assert.equal(search.adaptation.value, other);
+    search.chooseAdaptation('');
+    assert.equal(search.adaptation.value, null);
+    search.advance(3000, entry({ made: 2 }));
+    await program.last('search.adaptations').answer({ adaptations: [other, newest] });
+    assert.equal(search.adaptation.value, null, 'none was chosen');
+  });
+
+  it('asks for adaptations again while it is shown, and keeps them when the answer does not come', async () => {
+    const { program, search } = await shownMap();
+    await program.last('search.adaptations').answer({ adaptations: [newest] });
+    const before = search.adaptations.value;
+    for (let now = 1000; now < 5000; now += 100) search.advance(now, entry({ made: 2 }));
+    assert.ok(program.ofName('search.adaptations').length >= 2);
+    await program.last('search.adaptations').answer({ adaptations: [{ ...newest }] });
+    assert.equal(search.adaptations.value, before, 'nothing is drawn again for the same answer');
+    await program.last('search.adaptations').refuse('no connection');
+    assert.equal(search.adaptations.value, before);
+  });
+
+  it('asks for no adaptations without a map', async () => {
+    const { program, search } = await shown();
+    search.advance(9000, entry({ made: 3 }));
+    assert.equal(program.ofName('search.adaptations').length, 0);
+  });
+});

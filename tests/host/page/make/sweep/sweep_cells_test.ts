@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { cellAt } from '../../../../../host/page/source/make/sweep/picture_drawing.js';
-import { bestCell, colourPlace, emptyCells, meanRange, placesOf, takeCells, variedQuantities } from '../../../../../host/page/source/make/sweep/sweep_cells.js';
+import { bestCell, emptyCells, meanRange, placesOf, takeCells, variedQuantities } from '../../../../../host/page/source/make/sweep/sweep_cells.js';
 import { cellName, cellText } from '../../../../../host/page/source/make/sweep/sweep_text.js';
 
 const quantity = (name: string, unit: string, values: string[], isSeed = false) => ({ name, unit, values, is_seed: isSeed });
@@ -38,16 +38,6 @@ describe('the cells of a sweep', () => {
     assert.equal(bestCell(cellsOf([null, null]), true), null);
     assert.equal(meanRange(cellsOf([null])), null);
     assert.deepEqual(meanRange(cellsOf([3, null, -1])), [-1, 3]);
-  });
-
-  it('are blue where positive and orange where negative, dark at the ends; 0 is pale only between both signs', () => {
-    assert.equal(colourPlace(8, [2, 8]), -1);
-    assert.ok(colourPlace(2, [2, 8]) < 0 && colourPlace(2, [2, 8]) > -0.2);
-    assert.equal(colourPlace(-8, [-8, -2]), 1);
-    assert.ok(colourPlace(-2, [-8, -2]) > 0 && colourPlace(-2, [-8, -2]) < 0.2);
-    assert.ok(colourPlace(0, [-1, 4]) === 0);
-    assert.equal(colourPlace(1, [-1, 4]), -colourPlace(-1, [-1, 4]));
-    assert.equal(colourPlace(3, [3, 3]), -1);
   });
 
   it('are where the picture has them', () => {

@@ -35,11 +35,14 @@ void print_costs(cortex_m::Cpu cpu) {
     print("  receive, 4 frames", cost.receive);
     print("  advance", cost.advance);
     if (declaration.name == "SensingModule_gait_selector") {
-      const auto print_deciding = [&](std::string_view what, const std::array<std::int32_t, 6>& features) {
-        print(what, cortex_m::measure_tick(machine, declaration.id, ticks, cortex_m::deciding_joint(features)).total);
+      const auto print_deciding = [&](std::string_view what, const cortex_m::MeasuredJoint& joint) {
+        print(what, cortex_m::measure_tick(machine, declaration.id, ticks, joint).total);
       };
-      print_deciding("  joint 0, which decides by touch", cortex_m::of_touch);
-      print_deciding("  joint 0, by seven features", cortex_m::of_most_features);
+      print_deciding("  joint 0, which decides by touch", cortex_m::deciding_joint(cortex_m::of_touch));
+      cortex_m::MeasuredJoint joint = cortex_m::deciding_joint(cortex_m::of_most_features);
+      print_deciding("  joint 0, by seven features", joint);
+      joint.parameters.emplace_back(static_cast<std::uint32_t>(find_parameter(declaration, "dwell")), 0);
+      print_deciding("  the same while its set changes", joint);
     }
   }
   std::printf("  Deepest stack, bytes (bound: core_image.stack.tsv beside the image)\n");

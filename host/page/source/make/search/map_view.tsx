@@ -25,20 +25,21 @@ function cellText({ opened, map }: Shown, cell: number): string {
   return `Cell ${map.nameOf(cell)}: ${row === undefined ? 'empty' : `${name} ${withUnit(map.scoreOf(cell), unit)}, candidate ${row}`}`;
 }
 
-function MapChart({ shown, adaptation }: { shown: Shown; adaptation: Adaptation | null }) {
+function MapChart({ shown }: { shown: Shown }) {
   const { chosen, opened, map } = shown;
   const canvas = useRef<HTMLCanvasElement>(null);
   const { name, maximise } = opened.objectives[0]!;
-  const trials = adaptation === null ? [] : trialCells(adaptation, map, maximise);
-  const drawn = useRef(trials);
-  drawn.current = trials;
   const chosenCell = () => [...map.elites].find(([, row]) => row === chosen.number.peek())?.[0] ?? null;
   useEffect(
     () =>
       keepDrawn(
         canvas.current as HTMLCanvasElement,
         () => void [chosen.shownCount.value, chosen.number.value, chosen.pointedCell.value, chosen.adaptation.value],
-        (context, size, theme) => drawMap(context, { map, trials: drawn.current, chosen: chosenCell(), pointed: chosen.pointedCell.peek() }, maximise, size, theme),
+        (context, size, theme) => {
+          const adaptation = chosen.adaptation.peek();
+          const trials = adaptation === null ? [] : trialCells(adaptation, map, maximise);
+          drawMap(context, { map, trials, chosen: chosenCell(), pointed: chosen.pointedCell.peek() }, maximise, size, theme);
+        },
       ),
     [map],
   );
@@ -61,12 +62,13 @@ function MapChart({ shown, adaptation }: { shown: Shown; adaptation: Adaptation 
   };
   const told = chosen.pointedCell.value ?? chosenCell();
   const axes = map.axes.map((axis) => axis.name);
+  const adaptation = chosen.adaptation.value;
   return (
     <div
       role="application"
       tabIndex={0}
       class="sweep-frame"
-      aria-label={`Map of gaits: ${name} over ${axes.join(' and ')}${trials.length > 0 ? `, with the trials of ${adaptation!.name}` : ''}. The arrow keys go from cell to cell, Enter shows the gait.`}
+      aria-label={`Map of gaits: ${name} over ${axes.join(' and ')}${adaptation === null ? '' : `, with the trials of ${adaptation.name}`}. The arrow keys go from cell to cell, Enter shows the gait.`}
       aria-description={told === null ? undefined : cellText(shown, told)}
       data-testid="gait-map"
       onKeyDown={move}
@@ -163,7 +165,7 @@ export function MapView({ chosen, opened, rows }: Omit<Shown, 'map'>) {
         Map of gaits: {countText(map.elites.size)} of {countText(map.cellCount)} cells are filled. {unit === '' ? name : `${name} (${unit})`} {range !== null && <ColourLegend range={range} />}
         {map.axes.length > 2 && ' Of cells at one place the best is in front.'}
       </p>
-      <MapChart shown={shown} adaptation={chosen.adaptation.value} />
+      <MapChart shown={shown} />
       <p role="status" class="cell-text" data-testid="map-cell">
         {told === null ? 'Point at a cell, or use the arrow keys, to read its score.' : cellText(shown, told)}
       </p>

@@ -1,7 +1,6 @@
 // Prints the costs of the core on a Cortex-M: instructions per tick and per sine, stack and memory. They are measured
 // on an emulated CPU and do not depend on the computer.
 
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <exception>

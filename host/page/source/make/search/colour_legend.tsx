@@ -1,8 +1,7 @@
 // The legend of a map. It follows the theme of the page, so it is not where the colours are computed.
-import { chartTheme } from '../../panels/chart_theme.js';
+import { chartTheme, colourOf } from '../../panels/chart_theme.js';
 import { isDark } from '../../view/theme.js';
 import { shortNumber } from './search_text.js';
-import { colourOf } from './value_colours.js';
 
 // The colours of a range of values.
 export function ColourLegend({ range }: { range: readonly [number, number] }) {

@@ -1,11 +1,10 @@
 // Draws a map of gaits over its first two axes, with the trials of an adaptation on it, and says which cell is where.
-import type { ChartTheme } from '../../panels/chart_theme.js';
+import { colourOf, type ChartTheme } from '../../panels/chart_theme.js';
 import type { MapAxis } from '../../wire/messages.js';
 import type { GaitMap } from './gait_map.js';
 import type { CanvasSize } from './keep_drawn.js';
 import { axisTicks } from './score_points.js';
 import { shortNumber } from './search_text.js';
-import { colourOf } from './value_colours.js';
 
 const edge = { left: 62, right: 12, top: 10, bottom: 36 }; // CSS pixels
 const pixelsPerTick = { x: 90, y: 36 };

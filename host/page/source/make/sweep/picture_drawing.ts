@@ -1,10 +1,9 @@
 // Draws what a sweep has measured: over one quantity a line of means with their standard deviations, over two a map.
-import type { ChartTheme } from '../../panels/chart_theme.js';
+import { colourOf, type ChartTheme } from '../../panels/chart_theme.js';
 import type { SweptQuantity } from '../../wire/messages.js';
 import type { CanvasSize } from '../search/keep_drawn.js';
 import { axisTicks, padded } from '../search/score_points.js';
 import { shortNumber } from '../search/search_text.js';
-import { colourOf } from '../search/value_colours.js';
 import { meanRange, type Cells } from './sweep_cells.js';
 
 const edge = { left: 62, right: 12, top: 10, bottom: 36 }; // CSS pixels

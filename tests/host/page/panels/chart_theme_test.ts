@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourPlace } from '../../../../../host/page/source/make/search/value_colours.js';
+import { colourPlace } from '../../../../host/page/source/panels/chart_theme.js';
 
 describe('the colours of a map', () => {
   it('are blue where positive and orange where negative, dark at the ends; 0 is pale only between both signs', () => {

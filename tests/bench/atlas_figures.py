@@ -2,9 +2,10 @@
 """Prints how much of a map of gaits MAP-Elites, random search and CMA-ES fill with the same number of evaluations: coverage and QD
 score, mean and standard deviation over some seeds. The map is that of sim/scenarios/travelling_wave/gait_map.optimise.xml, in the
 reduced engine. CMA-ES searches for the distance alone (cma_es.optimise.xml, which starts again and again); the map is filled with all
-its evaluations afterwards, as with those of the others.
+its evaluations afterwards, as with those of the others. A search of 100000 evaluations takes about 20 minutes on two cores, and 15 of
+them hours: --keep writes the figures of each into a file, and does not make those again that it finds there.
 
-usage: tests/bench/atlas_figures.py BUILD_FOLDER [--evaluations N] [--seeds K] [--seconds S] [--json],
+usage: tests/bench/atlas_figures.py BUILD_FOLDER [--evaluations N] [--seeds K] [--seconds S] [--keep FILE] [--json],
 e.g. tests/bench/atlas_figures.py build/host --evaluations 10000 --seeds 5
 """
 
@@ -71,9 +72,23 @@ def search(proleg, file, folder, evaluations, seed):
     return json.loads(result.stdout)
 
 
+def kept_figures(file):
+    """The figures of searches that an earlier run has kept, by (method, seed, evaluations that were asked for, simulated seconds)."""
+    kept = {}
+    if file and file.exists():
+        for line, text in enumerate(file.read_text().splitlines(), 1):
+            try:
+                row = json.loads(text)
+                kept[tuple(row["search"])] = row["figures"]
+            except (ValueError, KeyError, TypeError):
+                sys.exit(f"{file}:{line}: found '{text[:40]}', expected a line that --keep has written")
+    return kept
+
+
 def figures(proleg, options):
-    """For each method the figures of each seed: coverage, QD score, best distance, and evaluations a second."""
+    """For each method the figures of each seed: coverage, QD score, best distance, and number of evaluations."""
     found = {method: [] for method in METHODS}
+    kept = kept_figures(options.keep)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         files = write_files(folder, options.evaluations, options.seconds)
@@ -83,6 +98,10 @@ def figures(proleg, options):
             cells *= axis[3]
         for seed in range(1, options.seeds + 1):
             for method in METHODS:
+                key = (method, seed, options.evaluations, options.seconds)
+                if key in kept:
+                    found[method].append(kept[key])
+                    continue
                 out = folder / f"{method}_{seed}"
                 begin = time.monotonic()
                 result = search(proleg, files[method], out, options.evaluations, seed)
@@ -93,6 +112,9 @@ def figures(proleg, options):
                     sys.exit(f"atlas_figures: {method}, seed {seed}: the table has another map ({its}) than the result ({result['map']})")
                 found[method].append(its)
                 shutil.rmtree(out)
+                if options.keep:
+                    with options.keep.open("a", encoding="utf-8") as lines:
+                        print(json.dumps({"search": key, "figures": its}), file=lines)
                 print(f"{method}, seed {seed}: {result['evaluations']} evaluations in {time.monotonic() - begin:.0f} s, coverage "
                       f"{100 * its['coverage']:.1f} %, QD score {its['qd_score']:.1f}", file=sys.stderr, flush=True)
     return found
@@ -110,6 +132,7 @@ def main():
     parser.add_argument("--evaluations", type=int, default=10_000)
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--seconds", type=float, help="simulated time of a run; default: that of the scenario")
+    parser.add_argument("--keep", type=Path, metavar="FILE", help="figures of finished searches, of one program and scenario")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     found = figures(options.build.resolve() / "bin/proleg", options)

@@ -16,11 +16,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t peripheral_bits_start = 0x4200'0000;
-constexpr std::uint32_t peripheral_bits_end = 0x4400'0000;
-constexpr std::uint32_t peripherals_start = 0x4000'0000;
-constexpr std::uint32_t ram_bits_start = 0x2200'0000;
-constexpr std::uint32_t ram_bits_end = ram_bits_start + ChipMemory::ram_size * 32;
+using namespace address_map;
 
 /// The bit that a word of a bit-band alias region stands for (DDI 0403, B3.1; RM0090, 2.3.3).
 struct AliasedBit {
@@ -74,6 +70,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     sleep_priority_ = Nvic::no_priority;
     state_ = State::running;
     exceptions_.reset();
+    apply_traps();
   }
 
   State run(std::uint64_t instructions) {
@@ -85,7 +82,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
         done + std::min(std::max<std::uint64_t>(instructions, 1), std::numeric_limits<std::uint64_t>::max() - done);
     while (prepare() && engine_.instructions() < limit_) {
       const std::uint64_t before = engine_.instructions();
-      engine_.set_limit(nvic_.wants_attention() ? 0 : limit_);
+      engine_.set_limit(limit_);
       handle(engine_.run());
       require_progress(engine_.instructions() - before);
     }
@@ -148,12 +145,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     exceptions_.discard_vectors();
   }
 
-  [[nodiscard]] std::uint32_t core_register(unsigned number) const {
-    if (number == 15 && engine_.is_running()) {
-      return engine_.block();
-    }
-    return engine_.read(named(number));
-  }
+  [[nodiscard]] std::uint32_t core_register(unsigned number) const { return engine_.read(named(number)); }
 
   void set_core_register(unsigned number, std::uint32_t value) {
     constexpr std::uint32_t number_mask = 0x1FF;
@@ -165,11 +157,11 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     if (address >= SystemControl::start) {
       return system_control_.load(address, size);
     }
-    if (address >= peripheral_bits_start && address < peripheral_bits_end) {
+    if (address - peripheral_bits_start < peripheral_bits_size) {
       const AliasedBit aliased = peripheral_bit(address);
       return surroundings_->load(aliased.address, 4) >> aliased.bit & 1U;
     }
-    if (address < ram_bits_end) {
+    if (address - ram_bits_start < ram_bits_size) {
       const AliasedBit aliased = ram_bit(address);
       return static_cast<std::uint32_t>(*engine_.ram(aliased.address, 1)) >> aliased.bit & 1U;
     }
@@ -179,12 +171,13 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
   void store(std::uint32_t address, unsigned size, std::uint32_t value) override {
     if (address >= SystemControl::start) {
       system_control_.store(address, size, value);
-    } else if (address >= peripheral_bits_start && address < peripheral_bits_end) {
+      apply_traps();
+    } else if (address - peripheral_bits_start < peripheral_bits_size) {
       const AliasedBit aliased = peripheral_bit(address);
       const std::uint32_t bit = 1U << aliased.bit;
       const std::uint32_t old = surroundings_->load(aliased.address, 4);
       surroundings_->store(aliased.address, 4, (value & 1U) != 0 ? old | bit : old & ~bit);
-    } else if (address < ram_bits_end) {
+    } else if (address - ram_bits_start < ram_bits_size) {
       const AliasedBit aliased = ram_bit(address);
       std::uint8_t& byte = *engine_.ram(aliased.address, 1);
       const unsigned bit = 1U << aliased.bit;
@@ -202,9 +195,8 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     if (stop_requested_ || wants_halt_ || !writes_.empty() || engine_.instructions() >= limit_) {
       return true;
     }
-    if (nvic_.wants_attention()) {
-      // While it is masked, every block checks again.
-      return exceptions_.takes_next();
+    if (exceptions_.takes_next()) {
+      return true;
     }
     engine_.set_limit(limit_);
     return false;
@@ -237,7 +229,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     if (halt_reason_.empty()) {
       halt_reason_ = std::move(reason);
       if (engine_.is_running()) {
-        halt_reason_ += ", by the code from " + hexadecimal(engine_.block()) + " on";
+        halt_reason_ += ", by the code at " + hexadecimal(engine_.pc());
       }
     }
     wants_halt_ = true;
@@ -269,7 +261,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     }
   }
 
-  /// A write to flash or system memory in the middle of a block, which waits for the end of the block.
+  /// A write to flash or system memory by an instruction, which waits for the end of the instruction.
   struct Write {
     std::uint32_t address;
     std::vector<std::uint8_t> bytes;
@@ -321,7 +313,9 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     return state_ != State::running;
   }
 
-  /// The work between blocks. False: the run ends.
+  void apply_traps() { engine_.set_traps(system_control_.traps_unaligned(), system_control_.traps_division_by_zero()); }
+
+  /// The work between two runs of the engine. False: the run ends.
   bool prepare() {
     if (prepare_to_stop()) {
       return false;
@@ -340,52 +334,55 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     }
   }
 
-  void handle(Engine::End end) {
+  void handle(End end) {
     switch (end) {
-      case Engine::End::stopped:
-      case Engine::End::stepped:
-      case Engine::End::yielded:
+      case End::none:
+      case End::stopped:
+      case End::stepped:
         break;
-      case Engine::End::breakpoint:
+      case End::breakpoint:
         state_ = State::at_breakpoint;
         break;
-      case Engine::End::wait_for_interrupt:
+      case End::wait_for_interrupt:
         sleep();
         break;
-      case Engine::End::wait_for_event:
+      case End::wait_for_event:
         if (!exceptions_.take_event()) {
           sleep();
         }
         break;
-      case Engine::End::supervisor_call:
+      case End::supervisor_call:
         exceptions_.call_supervisor();
         break;
-      case Engine::End::exception_return:
+      case End::exception_return:
         exceptions_.return_from_handler(engine_.exception_return_value());
         if (exceptions_.current() == 0 && system_control_.sleeps_on_exit()) {
           sleep();
         }
         break;
-      case Engine::End::breakpoint_instruction:
+      case End::breakpoint_instruction:
         exceptions_.raise_breakpoint();
         break;
-      case Engine::End::no_coprocessor:
+      case End::no_coprocessor:
         exceptions_.raise_no_coprocessor();
         break;
-      case Engine::End::undefined_instruction:
+      case End::undefined_instruction:
         exceptions_.raise_undefined_instruction();
         break;
-      case Engine::End::invalid_state:
+      case End::invalid_state:
         exceptions_.raise_invalid_state();
         break;
-      case Engine::End::unaligned_exclusive:
-        exceptions_.raise_unaligned_access();
+      case End::unaligned_access:
+        exceptions_.raise_unaligned_access(engine_.fault());
         break;
-      case Engine::End::memory_fault:
+      case End::divide_by_zero:
+        exceptions_.raise_divide_by_zero();
+        break;
+      case End::memory_fault:
         exceptions_.raise_memory_fault(engine_.fault());
         break;
-      case Engine::End::failed:
-        halt("the emulator cannot continue at " + hexadecimal(engine_.pc()));
+      case End::floating_point:
+        halt("an instruction of the FPU, which is not modelled, at " + hexadecimal(engine_.pc()));
         break;
     }
   }

@@ -1,21 +1,17 @@
 #pragma once
 
 // A Cortex-M4 (ARMv7-M Architecture Reference Manual, DDI 0403) with its memory: executes a program, takes interrupts
-// and faults. Instructions are executed by Unicorn; exceptions, NVIC, SCB and SysTick, which Unicorn lacks, are here.
+// and faults.
 //
 // It differs from the chip in this:
-// - Interrupts are taken between blocks (instructions up to the next branch), not between instructions.
-// - An instruction takes one cycle. DWT_CYCCNT counts instructions.
+// - An instruction takes one cycle. DWT_CYCCNT counts instructions. An interrupt is taken before the next instruction.
 // - Nothing is at address 0, where the chip shows the flash a second time; only the vector table is found there. So a
 //   null pointer is a fault.
-// - There is no MPU; unprivileged code may use everything except the special registers.
-// - CCR.UNALIGN_TRP and DIV_0_TRP do nothing: unaligned accesses work, also those that always fault on the chip, and a
-//   division by zero gives 0.
-// - The FPU works, but its registers are not saved at exceptions, and FPCCR is not modelled.
-// - Exceptions do not clear the monitor of LDREX and STREX; instead STREX fails if the memory has another value.
-// - BASEPRI reads back its lower four bits, which the chip reads as 0. They have no effect.
-// - A store that the bus rejects is a precise fault. Its instruction is found by the addresses in the block: if several
-//   fit, the first is named.
+// - The MPU guards the stack only (memory_protection.hpp); unprivileged code may use everything except the special
+//   registers.
+// - There is no FPU: its instructions halt the CPU if CPACR allows them.
+// - What the manual calls UNPREDICTABLE is an undefined instruction, and an unaligned access to registers a fault.
+// - A store that the bus rejects is a precise fault.
 
 #include <cstdint>
 #include <memory>
@@ -52,20 +48,20 @@ class Cpu {
     halted,     ///< halt() was called, or the program used what is not modelled: until reset()
   };
 
-  /// Executes about this many instructions, at least one if the CPU runs: up to the end of the block in which the
-  /// number is reached. Ends earlier when it sleeps, pauses, halts or locks up, and, still running, when the program
-  /// has set SysTick, so that next_system_tick() may have changed. Interrupts that are pending are taken.
+  /// Executes this many instructions, at least one if the CPU runs. Ends earlier when it sleeps, pauses, halts or locks
+  /// up, and, still running, when the program has set SysTick, so that next_system_tick() may have changed. Interrupts
+  /// that are pending are taken.
   State run(std::uint64_t instructions);
   [[nodiscard]] State state() const;
   /// Executed since the CPU was made, with those that an IT block skips, since they take time on the M4. In a callback:
-  /// those of the blocks before, and of the current one.
+  /// with the present one.
   [[nodiscard]] std::uint64_t instructions() const;
 
-  /// run() ends before the next block.
+  /// run() ends before the next instruction.
   void pause();
-  /// Shortens the present run(): it ends before the next block once instructions() has reached this number.
+  /// Shortens the present run(): it ends when instructions() has reached this number.
   void limit(std::uint64_t instructions);
-  /// Ends it until reset(), before the next block; for what is not modelled.
+  /// Ends it until reset(), before the next instruction; for what is not modelled.
   void halt(std::string reason = {});
   /// The reason of the first halt() since reset(): one line that names what was found; empty if there was none.
   [[nodiscard]] const std::string& halt_reason() const;
@@ -84,12 +80,12 @@ class Cpu {
   /// To be called when CpuSurroundings::core_period() has changed.
   void change_core_period();
 
-  /// Any memory but registers; throws std::out_of_range for an address without memory. Writes to flash discard the code
-  /// that was translated there. A write to flash in the middle of a block reaches the program with the next block.
+  /// Any memory but registers; throws std::out_of_range for an address without memory. A write to flash in a callback
+  /// reaches the program with the next instruction.
   void read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
   void write(std::uint32_t address, std::span<const std::uint8_t> bytes);
 
-  /// r0-r12, sp, lr, pc, xpsr: 0 to 16. In the middle of a block, pc is that of its begin.
+  /// r0-r12, sp, lr, pc, xpsr: 0 to 16. In a callback, pc is that of the present instruction.
   [[nodiscard]] std::uint32_t core_register(unsigned number) const;
   void set_core_register(unsigned number, std::uint32_t value);
   /// Number of the exception being handled, 0 in thread mode.

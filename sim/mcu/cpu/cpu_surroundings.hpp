@@ -46,7 +46,7 @@ struct ChipMemory {
 class CpuSurroundings {
  public:
   /// An access in 0x40000000 to 0x5FFFFFFF, of 1, 2 or 4 bytes; one to a bit-band alias arrives as load and store of
-  /// the word. These are called in the middle of a block: they must not throw, and may use all functions of the CPU
+  /// the word. These are called by an instruction: they must not throw, and may use all functions of the CPU
   /// except reset(), run(), step(), set_breakpoints() and set_core_register().
   [[nodiscard]] virtual std::uint32_t load(std::uint32_t address, unsigned size) = 0;
   virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
@@ -56,7 +56,7 @@ class CpuSurroundings {
   /// For SysTick: local time and period of its clock (HCLK).
   [[nodiscard]] virtual LocalTime now() const = 0;
   [[nodiscard]] virtual LocalTime core_period() const = 0;
-  /// SYSRESETREQ. The run ends before the next block; the caller of run() must call reset().
+  /// SYSRESETREQ. The run ends before the next instruction; the caller of run() must call reset().
   virtual void reset_requested() = 0;
 
  protected:

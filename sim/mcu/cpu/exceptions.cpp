@@ -33,6 +33,7 @@ constexpr std::uint32_t invstate = 1U << 17U;
 constexpr std::uint32_t invpc = 1U << 18U;
 constexpr std::uint32_t nocp = 1U << 19U;
 constexpr std::uint32_t unaligned = 1U << 24U;
+constexpr std::uint32_t divbyzero = 1U << 25U;
 // HFSR (DDI 0403, B3.2.16).
 constexpr std::uint32_t vecttbl = 1U << 1U;
 constexpr std::uint32_t forced = 1U << 30U;
@@ -84,12 +85,9 @@ void Exceptions::reset() {
   }
 }
 
-/// Sets mode, flags and CONTROL, whose bits Unicorn lets change in certain modes only.
 void Exceptions::set_mode(unsigned number, std::uint32_t flags, std::uint32_t new_control) {
-  const std::uint32_t as_handler = (flags & ~exception_number_mask) | exception::reset;
-  const std::uint32_t as_thread = flags & ~exception_number_mask;
-  engine_->write(std::array{xpsr, control, xpsr, control, xpsr},
-                 std::array<std::uint32_t, 5>{as_handler, 0, as_thread, new_control, as_thread | number});
+  engine_->write(std::array{control, xpsr}, std::array{new_control, (flags & ~exception_number_mask) | number});
+  engine_->clear_exclusive();
   current_ = number;
 }
 
@@ -155,14 +153,9 @@ void Exceptions::enter(unsigned number) {
     std::memcpy(memory, frame.data(), frame_size);
   }
   const std::uint32_t new_flags = (flags & ~(exception_number_mask | it_state_mask)) | thumb_state;
-  if (old_control == 0) {
-    engine_->write(std::array{sp, lr, xpsr}, std::array{place, exc_return, new_flags | number});
-    current_ = number;
-  } else {
-    engine_->write(std::array{sp, lr}, std::array{place, exc_return});
-    // The handler keeps nPRIV, and works on the main stack.
-    set_mode(number, new_flags, old_control & unprivileged);
-  }
+  engine_->write(std::array{sp, lr}, std::array{place, exc_return});
+  // The handler keeps nPRIV, and works on the main stack.
+  set_mode(number, new_flags, old_control & unprivileged);
   event_ = true;
   const bool is_forbidden = system_control_->protection().forbids(place);
   const bool is_lost = place >= ChipMemory::reserved_start && !is_forbidden && place < ChipMemory::ram_start;
@@ -194,10 +187,8 @@ void Exceptions::enter(unsigned number) {
 }
 
 void Exceptions::enter_without_frame(unsigned number, std::uint32_t exc_return) {
-  const std::uint32_t flags = engine_->read(xpsr);
-  engine_->write(std::array{lr, xpsr},
-                 std::array{exc_return, (flags & ~(exception_number_mask | it_state_mask)) | thumb_state | number});
-  current_ = number;
+  engine_->write(lr, exc_return);
+  set_mode(number, (engine_->read(xpsr) & ~it_state_mask) | thumb_state, engine_->read(control));
   nvic_->activate(number);
   event_ = true;
   go_to(vector(number));
@@ -270,16 +261,10 @@ void Exceptions::return_from_handler(std::uint32_t exc_return) {
   const std::uint32_t new_sp = place + frame_size + (was_aligned ? 4U : 0U);
   const std::uint32_t flags = frame[7] & ~frame_was_aligned;
   engine_->set_pc(frame[6]);
-  current_ = returned_to;
-  if (exc_return != return_to_process && values[2] == 0) {
-    engine_->write(std::array{r0, r1, r2, r3, r12, lr, sp, xpsr},
-                   std::array{frame[0], frame[1], frame[2], frame[3], frame[4], frame[5], new_sp, flags | thumb_state});
-  } else {
-    engine_->write(std::array{r0, r1, r2, r3, r12, lr, exc_return == return_to_process ? psp : msp},
-                   std::array{frame[0], frame[1], frame[2], frame[3], frame[4], frame[5], new_sp});
-    set_mode(returned_to, flags | thumb_state,
-             (values[2] & unprivileged) | (exc_return == return_to_process ? process_stack : 0U));
-  }
+  engine_->write(std::array{r0, r1, r2, r3, r12, lr, exc_return == return_to_process ? psp : msp},
+                 std::array{frame[0], frame[1], frame[2], frame[3], frame[4], frame[5], new_sp});
+  set_mode(returned_to, flags | thumb_state,
+           (values[2] & unprivileged) | (exc_return == return_to_process ? process_stack : 0U));
   event_ = true;
   if ((flags & thumb_state) == 0) {
     raise_invalid_state();
@@ -387,9 +372,13 @@ void Exceptions::raise_no_coprocessor() {
   raise(exception::usage_fault, nocp, "FPU or coprocessor instruction while CPACR forbids it");
 }
 
-void Exceptions::raise_unaligned_access() {
-  raise(exception::usage_fault, unaligned, "load or store exclusive at an address that is not aligned");
+void Exceptions::raise_unaligned_access(const MemoryFault& fault) {
+  raise(
+      exception::usage_fault, unaligned,
+      "access of " + std::to_string(fault.size) + " bytes at " + hexadecimal(fault.address) + ", which is not aligned");
 }
+
+void Exceptions::raise_divide_by_zero() { raise(exception::usage_fault, divbyzero, "division by zero"); }
 
 void Exceptions::raise_breakpoint() {
   note("BKPT without a debugger");

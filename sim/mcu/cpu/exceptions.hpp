@@ -41,7 +41,8 @@ class Exceptions {
   void raise_invalid_state();
   void raise_no_coprocessor();
   void raise_breakpoint();
-  void raise_unaligned_access();
+  void raise_unaligned_access(const MemoryFault& fault);
+  void raise_divide_by_zero();
 
   [[nodiscard]] bool is_locked_up() const { return locked_up_; }
   [[nodiscard]] std::vector<CpuFault> take_faults();

@@ -87,6 +87,9 @@ class SystemControl {
   /// Address of the vector table.
   [[nodiscard]] std::uint32_t vector_table() const { return vector_table_; }
   [[nodiscard]] bool sleeps_on_exit() const { return (control_ & 2U) != 0; }
+  /// CCR.UNALIGN_TRP, CCR.DIV_0_TRP.
+  [[nodiscard]] bool traps_unaligned() const { return (configuration_ & 8U) != 0; }
+  [[nodiscard]] bool traps_division_by_zero() const { return (configuration_ & 0x10U) != 0; }
   /// CCR.STKALIGN, CCR.NONBASETHRDENA.
   [[nodiscard]] bool aligns_stack() const { return (configuration_ & 0x200U) != 0; }
   [[nodiscard]] bool allows_any_thread_entry() const { return (configuration_ & 1U) != 0; }

@@ -1,10 +1,9 @@
 #pragma once
 
-// Thumb instructions: their length, and their memory access, by which the one that caused a fault is found.
+// What the first halfword of a Thumb instruction says.
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace proleg::sim {
@@ -32,16 +31,5 @@ namespace proleg::sim {
   }
   return count;
 }
-
-struct MemoryAccess {
-  std::uint32_t first = 0;  ///< lowest address
-  std::uint32_t size = 0;   ///< bytes from there
-  bool is_store = false;
-};
-
-/// The access of the instruction of these two halfwords (ARMv7-M, A5.2 and A5.3); the second counts for instructions of
-/// four bytes. registers: r0 to r15 before it, r15 being its own address. Nothing if it is neither load nor store.
-[[nodiscard]] std::optional<MemoryAccess> memory_access(std::uint16_t first, std::uint16_t second,
-                                                        std::span<const std::uint32_t, 16> registers);
 
 }  // namespace proleg::sim

@@ -398,11 +398,15 @@ void interrupt_handler() {
   order.add(at(nvic_iabr));
   order.add(at(icsr));
   // 20 is below 21, 22 above both, 23 as 21.
+  // Without barriers models differ in when what is pending is taken.
   if (number == 16 + 20) {
     at(nvic_ispr) = 1U << 21U;
+    asm volatile("dsb\nisb" ::: "memory");
     at(icsr) = 1U << 28U;
+    asm volatile("dsb\nisb" ::: "memory");
   } else if (number == 16 + 21) {
     at(nvic_ispr) = 1U << 22U | 1U << 23U;
+    asm volatile("dsb\nisb" ::: "memory");
   }
   order.add(0x8000'0000U + number);
   order.add(at(nvic_ispr));

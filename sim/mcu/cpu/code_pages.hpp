@@ -1,0 +1,53 @@
+#pragma once
+
+// Decoded instructions of a flash.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/mcu/cpu/instruction.hpp"
+
+namespace proleg::sim {
+
+/// What may be executed in a stretch of the flash: an instruction for each halfword, as it is outside IT blocks and in
+/// one. It never changes. All chips in which the stretch has the same contents share it, also on several threads: 20
+/// copies would displace each other from the processor's cache.
+struct CodePage {
+  static constexpr std::uint32_t size = 1024;  ///< bytes
+
+  /// Behind the last halfword are what leads to the next page, for instructions of two and of four bytes.
+  using Instructions = std::array<Instruction, size / 2 + 2>;
+  Instructions plain;
+  Instructions in_it_block;
+};
+
+class CodePages {
+ public:
+  /// The contents must outlive it.
+  explicit CodePages(std::span<const std::uint8_t> flash);
+
+  /// The instruction at an even offset.
+  [[nodiscard]] const Instruction* at(std::uint32_t offset, bool in_it_block) {
+    const CodePage* page = pages_[offset / CodePage::size];
+    if (page == nullptr) [[unlikely]] {
+      page = &decode(offset / CodePage::size);
+    }
+    return &(in_it_block ? page->in_it_block : page->plain)[offset % CodePage::size / 2];
+  }
+
+  /// The contents have changed there. No instruction of the page may be in use.
+  void discard(std::uint32_t offset, std::uint32_t size);
+
+ private:
+  const CodePage& decode(std::uint32_t number);
+
+  std::span<const std::uint8_t> flash_;
+  std::vector<const CodePage*> pages_;                  ///< null if none of its instructions was executed yet
+  std::vector<std::shared_ptr<const CodePage>> owned_;  ///< the same
+};
+
+}  // namespace proleg::sim

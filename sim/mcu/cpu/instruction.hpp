@@ -1,0 +1,74 @@
+#pragma once
+
+// An instruction of the Cortex-M4 as it is executed: decoded once, with the function that does its work.
+
+#include <cstdint>
+
+namespace proleg::sim {
+
+class Core;
+struct Instruction;
+
+/// Executes an instruction. Returns the one that follows; the same one if it was not executed, and Core::end says why.
+using Execute = const Instruction* (*)(Core& core, const Instruction& instruction);
+
+/// Numbers of registers that have a name.
+inline constexpr unsigned stack_pointer = 13;
+inline constexpr unsigned link_register = 14;
+inline constexpr unsigned program_counter = 15;
+[[nodiscard]] constexpr bool is_sp_or_pc(unsigned number) {
+  return number == stack_pointer || number == program_counter;
+}
+
+/// How the second operand is shifted (DDI 0403, A7.4).
+enum class Shift : std::uint8_t { lsl, lsr, asr, ror, rrx };
+
+/// The instruction behind one of n halfwords stands n places behind it. What a field means is said where the
+/// instruction is decoded; a name is that of the manual's pseudocode.
+struct Instruction {
+  Execute execute = nullptr;
+  Execute conditional = nullptr;  ///< in an IT block: what `execute` calls if the condition holds
+  std::uint32_t address = 0;
+  std::uint32_t immediate = 0;
+  std::uint8_t d = 0;  ///< destination register; RdLo
+  std::uint8_t n = 0;  ///< first operand; base of an address
+  std::uint8_t m = 0;  ///< second operand; offset of an address
+  std::uint8_t a = 0;  ///< third operand; RdHi; second register of a pair
+  std::uint8_t halfwords = 1;
+  Shift shift = Shift::lsl;
+  std::uint8_t amount = 0;  ///< of the shift
+  std::uint8_t option = 0;
+};
+
+/// The one behind it in memory.
+[[nodiscard]] inline const Instruction* after(const Instruction& instruction) {
+  return &instruction + instruction.halfwords;
+}
+
+/// The halfwords to be decoded.
+struct Encoding {
+  std::uint32_t address = 0;
+  std::uint16_t first = 0;
+  std::uint16_t second = 0;  ///< counts for instructions of four bytes
+  bool in_it_block = false;
+  /// Decoded instructions from here on, this many bytes, stand beside the decoded one, so that a branch can be an
+  /// offset.
+  std::uint32_t near_start = 0;
+  std::uint32_t near_bytes = 0;
+
+  /// Bits of the first halfword; of the second.
+  [[nodiscard]] unsigned bits(unsigned lowest, unsigned width = 1) const {
+    return first >> lowest & ((1U << width) - 1U);
+  }
+  [[nodiscard]] unsigned more(unsigned lowest, unsigned width = 1) const {
+    return second >> lowest & ((1U << width) - 1U);
+  }
+  [[nodiscard]] std::uint8_t reg(unsigned lowest, unsigned width = 3) const {
+    return static_cast<std::uint8_t>(bits(lowest, width));
+  }
+  [[nodiscard]] std::uint8_t more_reg(unsigned lowest) const { return static_cast<std::uint8_t>(more(lowest, 4)); }
+  /// PC as an operand.
+  [[nodiscard]] std::uint32_t pc() const { return address + 4; }
+};
+
+}  // namespace proleg::sim

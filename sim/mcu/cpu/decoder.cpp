@@ -31,14 +31,14 @@ const Instruction* continue_behind(Core& core, const Instruction& instruction) {
 
 /// An instruction of an IT block (DDI 0403, A7.3.3).
 const Instruction* execute_if(Core& core, const Instruction& instruction) {
-  const std::uint8_t state = core.it_state;
+  const unsigned state = core.it_state;
   const auto rest = static_cast<std::uint8_t>((state & 7U) == 0 ? 0U : (state & 0xE0U) | (state << 1U & 0x1FU));
   const Instruction* const behind = after(instruction);
   core.it_state = rest;
   if (core.holds(state >> 4U)) {
     const Instruction* const next = instruction.conditional(core, instruction);
     if (core.end >= End::breakpoint_instruction) {  // it was not executed
-      core.it_state = state;
+      core.it_state = static_cast<std::uint8_t>(state);
       return next;
     }
     if (next != behind) {

@@ -2,6 +2,7 @@
 
 #include "sim/mcu/cpu/core.hpp"
 #include "sim/mcu/cpu/decoder.hpp"
+#include "sim/mcu/cpu/nvic.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -160,9 +161,7 @@ const Instruction* clear_exclusive(Core& core, const Instruction& instruction) {
 
 /// FAULTMASK is not set by the handlers of NMI and HardFault.
 void set_faultmask(Core& core, std::uint32_t value) {
-  constexpr unsigned nmi = 2;
-  constexpr unsigned hard_fault = 3;
-  if (value == 0 || (core.exception != nmi && core.exception != hard_fault)) {
+  if (value == 0 || (core.exception != exception::nmi && core.exception != exception::hard_fault)) {
     core.faultmask = value;
   }
 }
@@ -201,12 +200,11 @@ bool is_special_register(unsigned number) {
 /// MRS: the number is `immediate`. Unprivileged code reads 0 for all but the flags.
 const Instruction* read_special(Core& core, const Instruction& instruction) {
   constexpr std::uint32_t flags = 0xF80F'0000;
-  constexpr std::uint32_t exception_number = 0x1FF;
   const unsigned number = instruction.immediate;
   std::uint32_t value = 0;
   if (number <= special::last_of_status) {
     const bool has_number = (number & 1U) != 0 && core.is_privileged();
-    value = core.xpsr() & ((has_number ? exception_number : 0U) | ((number & 4U) == 0 ? flags : 0U));
+    value = core.xpsr() & ((has_number ? exception_number_mask : 0U) | ((number & 4U) == 0 ? flags : 0U));
   } else if (number == special::control) {
     value = core.control;
   } else if (core.is_privileged()) {
@@ -232,7 +230,7 @@ const Instruction* read_special(Core& core, const Instruction& instruction) {
 
 /// MSR to a register that only privileged code changes.
 void write_privileged(Core& core, unsigned number, std::uint32_t value) {
-  constexpr std::uint32_t implemented_priority = 0xF0;
+  constexpr std::uint32_t implemented_priority = Nvic::implemented_priority;
   switch (number) {
     case special::msp:
     case special::psp:

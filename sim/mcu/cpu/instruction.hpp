@@ -16,9 +16,7 @@ using Execute = const Instruction* (*)(Core& core, const Instruction& instructio
 inline constexpr unsigned stack_pointer = 13;
 inline constexpr unsigned link_register = 14;
 inline constexpr unsigned program_counter = 15;
-[[nodiscard]] constexpr bool is_sp_or_pc(unsigned number) {
-  return number == stack_pointer || number == program_counter;
-}
+[[nodiscard]] inline bool is_sp_or_pc(unsigned number) { return number == stack_pointer || number == program_counter; }
 
 /// How the second operand is shifted (DDI 0403, A7.4).
 enum class Shift : std::uint8_t { lsl, lsr, asr, ror, rrx };

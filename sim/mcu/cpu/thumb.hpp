@@ -9,13 +9,13 @@
 namespace proleg::sim {
 
 /// Length in bytes of the Thumb instruction that begins with this halfword (ARMv7-M reference manual, A5.1).
-[[nodiscard]] constexpr std::size_t instruction_size(std::uint16_t first_halfword) {
+[[nodiscard]] inline std::size_t instruction_size(std::uint16_t first_halfword) {
   return (first_halfword >> 11U) >= 0x1DU ? 4 : 2;
 }
 
 /// Whether an instruction belongs to a coprocessor: the FPU is numbers 10 and 11, and the core uses no other
 /// (ARMv7-M reference manual, A5.3.18).
-[[nodiscard]] constexpr bool is_coprocessor_instruction(std::uint16_t first_halfword) {
+[[nodiscard]] inline bool is_coprocessor_instruction(std::uint16_t first_halfword) {
   return (first_halfword & 0xEC00U) == 0xEC00U;
 }
 

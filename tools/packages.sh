@@ -4,7 +4,7 @@
 # The libraries of the programs.
 library_packages=(
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
-  libdw-dev
+  libdw-dev libunicorn-dev
   libpagmo-dev libga-dev  # the optimiser
   libassimp-dev libqhull-dev  # meshes of links and worlds
   liburdfdom-dev  # robots in URDF
@@ -43,7 +43,7 @@ test_packages=(
   openocd dfu-util stm32flash libusb-1.0-0-dev  # flash an empty chip: the tests run them on one that is a program
   openssl           # certificates
   strace            # shows what a test reads
-  qemu-system-arm libunicorn-dev  # other models of the CPU, to compare with
+  qemu-system-arm   # another model of the CPU, to compare with
   "${aarch64_packages[@]}"  # another processor, which must compute the same
   libmujoco-dev     # the engine MuJoCo
   liburdfdom-tools  # check_urdf, which reads an exported robot

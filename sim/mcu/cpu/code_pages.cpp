@@ -8,31 +8,32 @@
 #include <utility>
 
 #include "sim/mcu/cpu/cpu_surroundings.hpp"
-#include "sim/mcu/cpu/decoder.hpp"
 #include "sim/mcu/cpu/thumb.hpp"
 
 namespace proleg::sim {
 namespace {
 
 /// memory: that of the page, and the halfword behind it.
-std::shared_ptr<const CodePage> decoded(std::uint32_t address, std::span<const std::uint8_t> memory) {
+std::shared_ptr<const CodePage> decoded(const InstructionSet& instructions, std::uint32_t address,
+                                        std::span<const std::uint8_t> memory) {
   auto page = std::make_shared<CodePage>();
   for (std::uint32_t offset = 0; offset < CodePage::size; offset += 2) {
     Encoding code{address + offset, halfword_at(memory, offset), halfword_at(memory, offset + 2), false, address,
                   CodePage::size};
-    page->plain[offset / 2] = decode(code);
+    page->plain[offset / 2] = instructions.decode(code);
     code.in_it_block = true;
-    page->in_it_block[offset / 2] = decode(code);
+    page->in_it_block[offset / 2] = instructions.decode(code);
   }
   for (std::uint32_t behind = 0; behind < 2; ++behind) {
     const std::uint32_t place = CodePage::size / 2 + behind;
-    page->plain[place] = page->in_it_block[place] = continuation(address + 2 * place);
+    page->plain[place] = page->in_it_block[place] = instructions.continuation(address + 2 * place);
   }
   return page;
 }
 
 /// The page of this memory, which all chips share.
-std::shared_ptr<const CodePage> shared_page(std::uint32_t address, std::span<const std::uint8_t> memory) {
+std::shared_ptr<const CodePage> shared_page(const InstructionSet& instructions, std::uint32_t address,
+                                            std::span<const std::uint8_t> memory) {
   static std::mutex mutex;
   static std::map<std::pair<std::uint32_t, std::string>, std::weak_ptr<const CodePage>> pages;
   const std::pair key(address, std::string(memory.begin(), memory.end()));
@@ -45,15 +46,15 @@ std::shared_ptr<const CodePage> shared_page(std::uint32_t address, std::span<con
   }
   // Those of a flash that has changed, and of chips that are gone.
   std::erase_if(pages, [](const auto& page) { return page.second.expired(); });
-  const std::shared_ptr<const CodePage> page = decoded(address, memory);
+  const std::shared_ptr<const CodePage> page = decoded(instructions, address, memory);
   pages[key] = page;
   return page;
 }
 
 }  // namespace
 
-CodePages::CodePages(std::span<const std::uint8_t> flash)
-    : flash_(flash), pages_(flash.size() / CodePage::size), owned_(pages_.size()) {}
+CodePages::CodePages(std::span<const std::uint8_t> flash, const InstructionSet& instructions)
+    : flash_(flash), instructions_(&instructions), pages_(flash.size() / CodePage::size), owned_(pages_.size()) {}
 
 const CodePage& CodePages::decode(std::uint32_t number) {
   const std::uint32_t offset = number * CodePage::size;
@@ -61,7 +62,7 @@ const CodePage& CodePages::decode(std::uint32_t number) {
   memory.fill(0xFF);  // behind the flash
   const auto contents = flash_.subspan(offset, std::min<std::size_t>(memory.size(), flash_.size() - offset));
   std::copy(contents.begin(), contents.end(), memory.begin());
-  owned_[number] = shared_page(ChipMemory::flash_start + offset, memory);
+  owned_[number] = shared_page(*instructions_, ChipMemory::flash_start + offset, memory);
   pages_[number] = owned_[number].get();
   return *pages_[number];
 }

@@ -27,8 +27,8 @@ struct CodePage {
 
 class CodePages {
  public:
-  /// The contents must outlive it.
-  explicit CodePages(std::span<const std::uint8_t> flash);
+  /// Both must outlive it.
+  CodePages(std::span<const std::uint8_t> flash, const InstructionSet& instructions);
 
   /// The instruction at an even offset.
   [[nodiscard]] const Instruction* at(std::uint32_t offset, bool in_it_block) {
@@ -46,6 +46,7 @@ class CodePages {
   const CodePage& decode(std::uint32_t number);
 
   std::span<const std::uint8_t> flash_;
+  const InstructionSet* instructions_;
   std::vector<const CodePage*> pages_;                  ///< null if none of its instructions was executed yet
   std::vector<std::shared_ptr<const CodePage>> owned_;  ///< the same
 };

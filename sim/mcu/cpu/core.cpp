@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "sim/mcu/cpu/decoder.hpp"
 #include "sim/mcu/cpu/thumb.hpp"
 
 namespace proleg::sim {
@@ -81,12 +80,12 @@ const Instruction* Core::branch_exchange(const Instruction& instruction, std::ui
 const Instruction* Core::outside_flash(std::uint32_t address) {
   const std::uint32_t even = address & ~1U;
   if (!thumb) {
-    single_[0] = invalid_state(even);
+    single_[0] = instruction_set_->invalid_state(even);
     return single_.data();
   }
   const std::uint32_t offset = even - ChipMemory::ram_start;
   if (offset > ChipMemory::ram_size - 2) {
-    single_[0] = fetch_fault(even);
+    single_[0] = instruction_set_->fetch_fault(even);
     return single_.data();
   }
   const std::uint8_t* const place = memory->ram.data() + offset;
@@ -96,9 +95,9 @@ const Instruction* Core::outside_flash(std::uint32_t address) {
   code.first = halfword_at({place, 2}, 0);
   code.second = rest >= 4 ? halfword_at({place, 4}, 2) : std::uint16_t{0};
   code.in_it_block = it_state != 0;
-  single_[0] = decode(code);
+  single_[0] = instruction_set_->decode(code);
   // Decoded anew each time, since a program may have written it.
-  single_[single_[0].halfwords] = continuation(even + 2U * single_[0].halfwords);
+  single_[single_[0].halfwords] = instruction_set_->continuation(even + 2U * single_[0].halfwords);
   return single_.data();
 }
 

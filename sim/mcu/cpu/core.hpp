@@ -90,7 +90,11 @@ struct Memory {
 
 class Core {
  public:
-  explicit Core(EngineClient& owner) : client(owner), memory(std::make_unique<Memory>()), pages(memory->flash) {}
+  Core(EngineClient& owner, const InstructionSet& instruction_set)
+      : client(owner),
+        memory(std::make_unique<Memory>()),
+        pages(memory->flash, instruction_set),
+        instruction_set_(&instruction_set) {}
 
   // Registers (DDI 0403, B1.4). Those that instructions use; the program counter is the present instruction.
   std::array<std::uint32_t, 15> r{};  ///< r13 is the stack pointer in use
@@ -252,6 +256,7 @@ class Core {
   [[nodiscard]] bool store_elsewhere(std::uint32_t address, unsigned size, std::uint32_t value);
   [[nodiscard]] const Instruction* outside_flash(std::uint32_t address);
 
+  const InstructionSet* instruction_set_;
   std::uint32_t other_stack_pointer_ = 0;
   bool uses_process_stack_ = false;
   /// An instruction outside the flash, and what leads to the one behind it.

@@ -97,8 +97,6 @@ Instruction standing_in(Execute execute, std::uint32_t address) {
   return instruction;
 }
 
-}  // namespace
-
 Instruction decode(const Encoding& code) {
   const bool is_wide = instruction_size(code.first) == 4;
   Instruction instruction = is_wide ? decode_wide(code) : decode_narrow(code);
@@ -115,10 +113,14 @@ Instruction decode(const Encoding& code) {
   return instruction;
 }
 
-const Instruction* do_nothing(Core& /*core*/, const Instruction& instruction) { return after(instruction); }
-
 Instruction continuation(std::uint32_t address) { return standing_in(&continue_behind, address); }
 Instruction fetch_fault(std::uint32_t address) { return standing_in(&fail_fetch, address); }
 Instruction invalid_state(std::uint32_t address) { return standing_in(&refuse_state, address); }
+
+}  // namespace
+
+const InstructionSet thumb_instructions{&decode, &continuation, &fetch_fault, &invalid_state};
+
+const Instruction* do_nothing(Core& /*core*/, const Instruction& instruction) { return after(instruction); }
 
 }  // namespace proleg::sim

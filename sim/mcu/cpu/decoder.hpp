@@ -9,15 +9,8 @@
 
 namespace proleg::sim {
 
-/// What the halfwords at an address say. What the manual calls UNPREDICTABLE is an undefined instruction, too.
-[[nodiscard]] Instruction decode(const Encoding& code);
-
-/// Not an instruction: leads to the one at the address, behind the last of a page.
-[[nodiscard]] Instruction continuation(std::uint32_t address);
-/// In place of an instruction at an address without memory.
-[[nodiscard]] Instruction fetch_fault(std::uint32_t address);
-/// In place of the instruction at the target of a branch that cleared EPSR.T.
-[[nodiscard]] Instruction invalid_state(std::uint32_t address);
+/// What the manual calls UNPREDICTABLE is an undefined instruction, too.
+extern const InstructionSet thumb_instructions;
 
 /// Executes hints, barriers and preloads: nothing.
 [[nodiscard]] const Instruction* do_nothing(Core& core, const Instruction& instruction);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/mcu/cpu/core.hpp"
+#include "sim/mcu/cpu/decoder.hpp"
 
 namespace proleg::sim {
 
@@ -42,7 +43,7 @@ enum class CoreRegister : std::uint8_t {
 
 class Engine {
  public:
-  explicit Engine(EngineClient& client) : core_(client) {}
+  explicit Engine(EngineClient& client) : core_(client, thumb_instructions) {}
 
   /// Executes from pc() on.
   End run();

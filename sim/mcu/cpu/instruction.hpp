@@ -69,4 +69,16 @@ struct Encoding {
   [[nodiscard]] std::uint32_t pc() const { return address + 4; }
 };
 
+/// What makes instructions. The state on which they work has it from its owner, since they need that state.
+struct InstructionSet {
+  /// What the halfwords at an address say.
+  Instruction (*decode)(const Encoding& code);
+  /// Not an instruction: leads to the one at the address, behind the last that was decoded.
+  Instruction (*continuation)(std::uint32_t address);
+  /// In place of an instruction at an address without memory.
+  Instruction (*fetch_fault)(std::uint32_t address);
+  /// In place of the instruction at the target of a branch that cleared EPSR.T.
+  Instruction (*invalid_state)(std::uint32_t address);
+};
+
 }  // namespace proleg::sim

@@ -4,7 +4,7 @@
 # The libraries of the programs.
 library_packages=(
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
-  libdw-dev libunicorn-dev
+  libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
   libassimp-dev libqhull-dev  # meshes of links and worlds
   liburdfdom-dev  # robots in URDF

@@ -1,5 +1,9 @@
 // Branches, IT blocks, hints, special registers, and what ends a run.
 
+#include <array>
+#include <cstddef>
+#include <utility>
+
 #include "sim/mcu/cpu/core.hpp"
 #include "sim/mcu/cpu/decoder.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
@@ -46,41 +50,12 @@ const Instruction* call_register(Core& core, const Instruction& instruction) {
   return core.exchange(target);
 }
 
+/// By condition, without "always" (14).
 template <bool is_near>
-Execute conditional_jump(unsigned condition) {
-  switch (condition) {
-    case 0:
-      return &jump_if<0, is_near>;
-    case 1:
-      return &jump_if<1, is_near>;
-    case 2:
-      return &jump_if<2, is_near>;
-    case 3:
-      return &jump_if<3, is_near>;
-    case 4:
-      return &jump_if<4, is_near>;
-    case 5:
-      return &jump_if<5, is_near>;
-    case 6:
-      return &jump_if<6, is_near>;
-    case 7:
-      return &jump_if<7, is_near>;
-    case 8:
-      return &jump_if<8, is_near>;
-    case 9:
-      return &jump_if<9, is_near>;
-    case 10:
-      return &jump_if<10, is_near>;
-    case 11:
-      return &jump_if<11, is_near>;
-    case 12:
-      return &jump_if<12, is_near>;
-    case 13:
-      return &jump_if<13, is_near>;
-    default:
-      return nullptr;
-  }
+constexpr auto conditional_jumps = []<std::size_t... condition>(std::index_sequence<condition...>) {
+  return std::array<Execute, sizeof...(condition)>{&jump_if<condition, is_near>...};
 }
+(std::make_index_sequence<14>());
 
 /// Whether the target stands beside the branch. Behind an IT block it does not: the next instruction stands among those
 /// outside.
@@ -103,12 +78,12 @@ Instruction branch(const Encoding& code, std::uint32_t distance) {
 }
 
 Instruction conditional_branch(const Encoding& code, unsigned condition, std::uint32_t distance) {
-  if (code.in_it_block) {
+  if (code.in_it_block || condition >= conditional_jumps<true>.size()) {
     return {};
   }
   Instruction instruction;
   const bool is_near = set_target(instruction, code, code.pc() + distance);
-  instruction.execute = is_near ? conditional_jump<true>(condition) : conditional_jump<false>(condition);
+  instruction.execute = (is_near ? conditional_jumps<true> : conditional_jumps<false>).at(condition);
   return instruction;
 }
 

@@ -104,7 +104,7 @@ const Instruction* Core::outside_flash(std::uint32_t address) {
 bool Core::note_unaligned(std::uint32_t address, std::uint32_t size) {
   fault = {address, size, false, false};
   finish(End::unaligned_access, nullptr);
-  return true;
+  return false;
 }
 
 bool Core::note_fault(std::uint32_t address, unsigned size, bool is_store) {
@@ -119,8 +119,8 @@ bool Core::load_elsewhere(std::uint32_t address, unsigned size, std::uint32_t& v
     std::memcpy(&value, place, size);
     return true;
   };
-  if (traps_unaligned && (address & (size - 1)) != 0) {
-    return !note_unaligned(address, size);
+  if ((traps_unaligned || is_register(address)) && !is_aligned(address, size)) {
+    return false;
   }
   if (const std::uint32_t offset = address - ChipMemory::ccm_start; offset <= ChipMemory::ccm_size - size) {
     return take(memory->ccm.data() + offset);
@@ -130,9 +130,6 @@ bool Core::load_elsewhere(std::uint32_t address, unsigned size, std::uint32_t& v
     return take(memory->system.data() + offset);
   }
   if (is_register(address)) {
-    if ((address & (size - 1)) != 0) {
-      return !note_unaligned(address, size);
-    }
     value = client.load(address, size);
     return true;
   }
@@ -144,17 +141,14 @@ bool Core::load_elsewhere(std::uint32_t address, unsigned size, std::uint32_t& v
 }
 
 bool Core::store_elsewhere(std::uint32_t address, unsigned size, std::uint32_t value) {
-  if (traps_unaligned && (address & (size - 1)) != 0) {
-    return !note_unaligned(address, size);
+  if ((traps_unaligned || is_register(address)) && !is_aligned(address, size)) {
+    return false;
   }
   if (const std::uint32_t offset = address - ChipMemory::ccm_start; offset <= ChipMemory::ccm_size - size) {
     std::memcpy(memory->ccm.data() + offset, &value, size);
     return true;
   }
   if (is_register(address)) {
-    if ((address & (size - 1)) != 0) {
-      return !note_unaligned(address, size);
-    }
     client.store(address, size, value);
     return true;
   }

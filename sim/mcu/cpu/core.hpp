@@ -200,11 +200,11 @@ class Core {
   [[nodiscard]] bool load(std::uint32_t address, std::uint32_t& value) {
     const std::uint32_t in_ram = address - ChipMemory::ram_start;
     if (in_ram <= ChipMemory::ram_size - sizeof(Value)) [[likely]] {
-      return !traps<Value>(address) && fetch<Value>(memory->ram.data() + in_ram, value);
+      return may_access<Value>(address) && fetch<Value>(memory->ram.data() + in_ram, value);
     }
     const std::uint32_t in_flash = address - ChipMemory::flash_start;
     if (in_flash <= ChipMemory::flash_size - sizeof(Value)) {
-      return !traps<Value>(address) && fetch<Value>(memory->flash.data() + in_flash, value);
+      return may_access<Value>(address) && fetch<Value>(memory->flash.data() + in_flash, value);
     }
     return load_elsewhere(address, sizeof(Value), value);
   }
@@ -212,7 +212,7 @@ class Core {
   [[nodiscard]] bool store(std::uint32_t address, std::uint32_t value) {
     const std::uint32_t in_ram = address - ChipMemory::ram_start;
     if (in_ram <= ChipMemory::ram_size - sizeof(Value)) [[likely]] {
-      if (traps<Value>(address)) {
+      if (!may_access<Value>(address)) {
         return false;
       }
       const auto stored = static_cast<Value>(value);
@@ -224,7 +224,7 @@ class Core {
   }
   /// Whether the address of an access that must be aligned is; notes the fault if not.
   [[nodiscard]] bool is_aligned(std::uint32_t address, std::uint32_t size) {
-    return (address & (size - 1)) == 0 || !note_unaligned(address, size);
+    return (address & (size - 1)) == 0 || note_unaligned(address, size);
   }
 
   /// Ends the run; returns the instruction from which it continues.
@@ -245,12 +245,11 @@ class Core {
     return true;
   }
   template <typename Value>
-  [[nodiscard]] bool traps(std::uint32_t address) {
-    return sizeof(Value) > 1 && traps_unaligned && (address & (sizeof(Value) - 1)) != 0 &&
-           note_unaligned(address, sizeof(Value));
+  [[nodiscard]] bool may_access(std::uint32_t address) {
+    return sizeof(Value) == 1 || !traps_unaligned || is_aligned(address, sizeof(Value));
   }
-  /// Notes the fault; true.
-  bool note_unaligned(std::uint32_t address, std::uint32_t size);
+  // These note a fault; false.
+  [[nodiscard]] bool note_unaligned(std::uint32_t address, std::uint32_t size);
   [[nodiscard]] bool note_fault(std::uint32_t address, unsigned size, bool is_store);
   [[nodiscard]] bool load_elsewhere(std::uint32_t address, unsigned size, std::uint32_t& value);
   [[nodiscard]] bool store_elsewhere(std::uint32_t address, unsigned size, std::uint32_t value);

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <utility>
 
 #include "sim/mcu/cpu/core.hpp"
 #include "sim/mcu/cpu/decoder.hpp"
@@ -14,7 +16,7 @@ enum class Operation : std::uint8_t { conjunction, bic, orr, orn, eor, add, adc,
 /// constant: Instruction::immediate, whose option is the carry of its expansion; plain: a register; shifted: by a
 /// constant.
 enum class Operand : std::uint8_t { constant, plain, shifted };
-/// What becomes of the result.
+/// Where the result goes.
 enum class Result : std::uint8_t { written, written_with_flags, only_flags };
 
 /// Instruction::option of a constant: what the expansion does to the carry flag.
@@ -109,58 +111,21 @@ const Instruction* compute(Core& core, const Instruction& instruction) {
   return after(instruction);
 }
 
-template <Operation operation, Operand kind>
-Execute with_result(Result result) {
-  switch (result) {
-    case Result::written:
-      return &compute<operation, kind, Result::written>;
-    case Result::written_with_flags:
-      return &compute<operation, kind, Result::written_with_flags>;
-    default:
-      return &compute<operation, kind, Result::only_flags>;
-  }
+/// Each operation with each operand and result, in the order of their numbers.
+constexpr std::size_t operand_count = 3;
+constexpr std::size_t result_count = 3;
+constexpr std::size_t operation_count = 12;
+constexpr auto executions = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array<Execute, sizeof...(i)>{
+      &compute<static_cast<Operation>(i / (operand_count * result_count)),
+               static_cast<Operand>(i / result_count % operand_count), static_cast<Result>(i % result_count)>...};
 }
-
-template <Operand kind>
-Execute execution(Operation operation, Result result) {
-  using enum Operation;
-  switch (operation) {
-    case conjunction:
-      return with_result<conjunction, kind>(result);
-    case bic:
-      return with_result<bic, kind>(result);
-    case orr:
-      return with_result<orr, kind>(result);
-    case orn:
-      return with_result<orn, kind>(result);
-    case eor:
-      return with_result<eor, kind>(result);
-    case add:
-      return with_result<add, kind>(result);
-    case adc:
-      return with_result<adc, kind>(result);
-    case sbc:
-      return with_result<sbc, kind>(result);
-    case sub:
-      return with_result<sub, kind>(result);
-    case rsb:
-      return with_result<rsb, kind>(result);
-    case mov:
-      return with_result<mov, kind>(result);
-    default:
-      return with_result<mvn, kind>(result);
-  }
-}
+(std::make_index_sequence<operation_count * operand_count * result_count>());
 
 Execute execution(Operation operation, Operand kind, Result result) {
-  switch (kind) {
-    case Operand::constant:
-      return execution<Operand::constant>(operation, result);
-    case Operand::plain:
-      return execution<Operand::plain>(operation, result);
-    default:
-      return execution<Operand::shifted>(operation, result);
-  }
+  const std::size_t number =
+      (static_cast<std::size_t>(operation) * operand_count + static_cast<std::size_t>(kind)) * result_count;
+  return executions.at(number + static_cast<std::size_t>(result));
 }
 
 /// ADD and MOV to PC.
@@ -350,34 +315,6 @@ bool may_use(const Named& named, unsigned d, unsigned n) {
          (d != program_counter && (d != stack_pointer || (may_be_of_sp && n == stack_pointer)));
 }
 
-/// PKHBT and PKHTB.
-template <bool is_top>
-const Instruction* pack_halves(Core& core, const Instruction& instruction) {
-  const std::uint32_t a = core.r[instruction.n];
-  const std::uint32_t b = shifted(core.r[instruction.m], instruction.shift, instruction.amount, 0).value;
-  core.r[instruction.d] = is_top ? (a & 0xFFFF'0000U) | (b & 0xFFFFU) : (a & 0xFFFFU) | (b & 0xFFFF'0000U);
-  return after(instruction);
-}
-
-/// The two bits of the type and the five of the constant of a shift.
-void set_shift(Instruction& instruction, const Encoding& code) {
-  set_constant_shift(instruction, code.more(4, 2), code.more(12, 3) << 2U | code.more(6, 2));
-}
-
-Instruction pack(const Encoding& code) {
-  Instruction instruction;
-  instruction.d = code.more_reg(8);
-  instruction.n = code.reg(0, 4);
-  instruction.m = code.more_reg(0);
-  set_shift(instruction, code);
-  const bool is_valid = code.bits(4) == 0 && code.more(4) == 0 && !is_sp_or_pc(instruction.d) &&
-                        !is_sp_or_pc(instruction.n) && !is_sp_or_pc(instruction.m);
-  if (is_valid) {
-    instruction.execute = code.more(5) == 0 ? &pack_halves<false> : &pack_halves<true>;
-  }
-  return instruction;
-}
-
 // A5.3.2.
 struct Expanded {
   std::uint32_t value;
@@ -398,99 +335,10 @@ Expanded expanded(const Encoding& code) {
   return {value, value >> 31U != 0 ? sets_carry : clears_carry, true};
 }
 
-/// SSAT and USAT (bit 0 of the option: unsigned); the immediate is the number of bits.
-const Instruction* saturate(Core& core, const Instruction& instruction) {
-  const auto value =
-      static_cast<std::int32_t>(shifted(core.r[instruction.n], instruction.shift, instruction.amount, 0).value);
-  const std::int64_t highest = (std::int64_t{1} << instruction.immediate) - 1;
-  const std::int64_t lowest = instruction.option != 0 ? 0 : -highest - 1;
-  const std::int64_t limited = value < lowest ? lowest : value > highest ? highest : value;
-  core.saturated = core.saturated || limited != value;
-  core.r[instruction.d] = static_cast<std::uint32_t>(limited);
-  return after(instruction);
-}
-
-/// SSAT16 and USAT16.
-const Instruction* saturate_halves(Core& core, const Instruction& instruction) {
-  const std::uint32_t values = core.r[instruction.n];
-  const std::int32_t highest = (std::int32_t{1} << instruction.immediate) - 1;
-  const std::int32_t lowest = instruction.option != 0 ? 0 : -highest - 1;
-  std::uint32_t result = 0;
-  for (unsigned half = 0; half < 2; ++half) {
-    const std::int32_t value = static_cast<std::int16_t>(values >> 16U * half);
-    const std::int32_t limited = value < lowest ? lowest : value > highest ? highest : value;
-    core.saturated = core.saturated || limited != value;
-    result |= (static_cast<std::uint32_t>(limited) & 0xFFFFU) << 16U * half;
-  }
-  core.r[instruction.d] = result;
-  return after(instruction);
-}
-
 /// MOVT.
 const Instruction* move_top(Core& core, const Instruction& instruction) {
   core.r[instruction.d] = (core.r[instruction.d] & 0xFFFFU) | instruction.immediate << 16U;
   return after(instruction);
-}
-
-/// SBFX and UBFX: the field begins at bit `amount` and has `option` bits.
-template <bool is_signed>
-const Instruction* extract_field(Core& core, const Instruction& instruction) {
-  const std::uint32_t on_top = core.r[instruction.n] << (32U - instruction.amount - instruction.option);
-  const unsigned shift = 32U - instruction.option;
-  core.r[instruction.d] =
-      is_signed ? static_cast<std::uint32_t>(static_cast<std::int32_t>(on_top) >> shift) : on_top >> shift;
-  return after(instruction);
-}
-
-/// BFI and BFC (n is the PC): the field of the mask `immediate` begins at bit `amount`.
-const Instruction* insert_field(Core& core, const Instruction& instruction) {
-  const std::uint32_t field = instruction.n == program_counter ? 0U : core.r[instruction.n] << instruction.amount;
-  core.r[instruction.d] = (core.r[instruction.d] & ~instruction.immediate) | (field & instruction.immediate);
-  return after(instruction);
-}
-
-Instruction saturation(const Encoding& code) {
-  Instruction instruction;
-  instruction.d = code.more_reg(8);
-  instruction.n = code.reg(0, 4);
-  const bool is_unsigned = code.bits(7) != 0;
-  const unsigned amount = code.more(12, 3) << 2U | code.more(6, 2);
-  const bool is_right_shift = code.bits(5) != 0;
-  const bool is_of_halves = is_right_shift && amount == 0;
-  instruction.option = is_unsigned ? 1 : 0;
-  instruction.immediate = code.more(0, 5);
-  instruction.shift = is_right_shift ? Shift::asr : Shift::lsl;
-  instruction.amount = static_cast<std::uint8_t>(amount);
-  const bool is_valid = code.bits(10) == 0 && code.more(5) == 0 && !is_sp_or_pc(instruction.d) &&
-                        !is_sp_or_pc(instruction.n) && (!is_of_halves || code.more(4) == 0);
-  if (is_valid) {
-    instruction.execute = is_of_halves ? &saturate_halves : &saturate;
-  }
-  return instruction;
-}
-
-Instruction bit_field(const Encoding& code) {
-  Instruction instruction;
-  instruction.d = code.more_reg(8);
-  instruction.n = code.reg(0, 4);
-  const unsigned lowest = code.more(12, 3) << 2U | code.more(6, 2);
-  const unsigned last = code.more(0, 5);
-  instruction.amount = static_cast<std::uint8_t>(lowest);
-  if (code.bits(10) != 0 || code.more(5) != 0 || is_sp_or_pc(instruction.d) || instruction.n == stack_pointer) {
-    return instruction;
-  }
-  if (code.bits(5, 2) == 3) {  // BFI, BFC
-    if (last >= lowest) {
-      instruction.immediate = (last == 31 ? ~0U : (1U << (last + 1)) - 1U) & ~((1U << lowest) - 1U);
-      instruction.execute = &insert_field;
-    }
-    return instruction;
-  }
-  if (instruction.n != program_counter && lowest + last < 32) {
-    instruction.option = static_cast<std::uint8_t>(last + 1);
-    instruction.execute = code.bits(7) != 0 ? &extract_field<false> : &extract_field<true>;
-  }
-  return instruction;
 }
 
 }  // namespace
@@ -524,7 +372,7 @@ Instruction decode_shifted_register(const Encoding& code) {
   const unsigned d = code.more(8, 4);
   const unsigned m = code.more(0, 4);
   if (code.bits(5, 4) == 6) {
-    return pack(code);
+    return decode_packing(code);
   }
   const bool sets_flags = code.bits(4) != 0;
   const Named named = operation_of(code.bits(5, 4), n, d, sets_flags);
@@ -589,17 +437,8 @@ Instruction decode_plain_constant(const Encoding& code) {
       instruction.immediate = long_constant;
       return instruction;
     }
-    case 0b10000:
-    case 0b10010:
-    case 0b11000:
-    case 0b11010:
-      return saturation(code);
-    case 0b10100:
-    case 0b10110:
-    case 0b11100:
-      return bit_field(code);
     default:
-      return {};
+      return decode_saturation_or_field(code);
   }
 }
 

@@ -24,6 +24,9 @@ extern const InstructionSet thumb_instructions;
 [[nodiscard]] Instruction decode_shifted_register(const Encoding& code);
 [[nodiscard]] Instruction decode_modified_constant(const Encoding& code);
 [[nodiscard]] Instruction decode_plain_constant(const Encoding& code);
+/// Of these, halves of two registers in one; saturation and fields of a register.
+[[nodiscard]] Instruction decode_packing(const Encoding& code);
+[[nodiscard]] Instruction decode_saturation_or_field(const Encoding& code);
 /// Shifts by a register, extensions, sums of halves and bytes, and others of registers (A5.3.12 to A5.3.15), and those
 /// of two bytes.
 [[nodiscard]] Instruction decode_register_processing(const Encoding& code);

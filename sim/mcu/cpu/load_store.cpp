@@ -1,6 +1,9 @@
 // Loads and stores of one register, of two, of several, and exclusive ones.
 
+#include <array>
 #include <bit>
+#include <cstddef>
+#include <utility>
 
 #include "sim/mcu/cpu/core.hpp"
 #include "sim/mcu/cpu/decoder.hpp"
@@ -96,76 +99,33 @@ const Instruction* store_one(Core& core, const Instruction& instruction) {
   return after(instruction);
 }
 
-template <Mode mode>
-Execute loading(Type type) {
-  switch (type) {
-    case Type::word:
-      return &load_one<Type::word, mode>;
-    case Type::half:
-      return &load_one<Type::half, mode>;
-    case Type::byte:
-      return &load_one<Type::byte, mode>;
-    case Type::signed_half:
-      return &load_one<Type::signed_half, mode>;
-    default:
-      return &load_one<Type::signed_byte, mode>;
-  }
-}
+/// The functions by mode; of one register by type, too.
+constexpr std::size_t mode_count = 5;
+constexpr std::size_t type_count = 5;
+constexpr auto modes = std::make_index_sequence<mode_count>();
+constexpr auto types_and_modes = std::make_index_sequence<type_count * mode_count>();
 
-template <Mode mode>
-Execute storing(Type type) {
-  switch (type) {
-    case Type::word:
-      return &store_one<Type::word, mode>;
-    case Type::half:
-      return &store_one<Type::half, mode>;
-    default:
-      return &store_one<Type::byte, mode>;
-  }
+constexpr auto loads_of_one = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array<Execute, sizeof...(i)>{
+      &load_one<static_cast<Type>(i / mode_count), static_cast<Mode>(i % mode_count)>...};
 }
+(types_and_modes);
+constexpr auto stores_of_one = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array<Execute, sizeof...(i)>{
+      &store_one<static_cast<Type>(i / mode_count), static_cast<Mode>(i % mode_count)>...};
+}
+(types_and_modes);
+constexpr auto loads_of_pc = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array<Execute, sizeof...(i)>{&load_pc<static_cast<Mode>(i)>...};
+}
+(modes);
 
-/// The function of a load to a register that is not the PC.
 Execute loading(Type type, Mode mode) {
-  switch (mode) {
-    case Mode::offset:
-      return loading<Mode::offset>(type);
-    case Mode::indexed:
-      return loading<Mode::indexed>(type);
-    case Mode::absolute:
-      return loading<Mode::absolute>(type);
-    case Mode::post_indexed:
-      return loading<Mode::post_indexed>(type);
-    default:
-      return loading<Mode::pre_indexed>(type);
-  }
-}
-
-Execute loading_pc(Mode mode) {
-  switch (mode) {
-    case Mode::offset:
-      return &load_pc<Mode::offset>;
-    case Mode::indexed:
-      return &load_pc<Mode::indexed>;
-    case Mode::absolute:
-      return &load_pc<Mode::absolute>;
-    case Mode::post_indexed:
-      return &load_pc<Mode::post_indexed>;
-    default:
-      return &load_pc<Mode::pre_indexed>;
-  }
+  return loads_of_one.at(static_cast<std::size_t>(type) * mode_count + static_cast<std::size_t>(mode));
 }
 
 Execute storing(Type type, Mode mode) {
-  switch (mode) {
-    case Mode::offset:
-      return storing<Mode::offset>(type);
-    case Mode::indexed:
-      return storing<Mode::indexed>(type);
-    case Mode::post_indexed:
-      return storing<Mode::post_indexed>(type);
-    default:
-      return storing<Mode::pre_indexed>(type);
-  }
+  return stores_of_one.at(static_cast<std::size_t>(type) * mode_count + static_cast<std::size_t>(mode));
 }
 
 // Several registers: `immediate` is the list; `amount` their number.
@@ -266,18 +226,14 @@ const Instruction* store_two(Core& core, const Instruction& instruction) {
   return after(instruction);
 }
 
-Execute for_two(bool is_load, Mode mode) {
-  switch (mode) {
-    case Mode::offset:
-      return is_load ? &load_two<Mode::offset> : &store_two<Mode::offset>;
-    case Mode::absolute:
-      return is_load ? &load_two<Mode::absolute> : nullptr;
-    case Mode::post_indexed:
-      return is_load ? &load_two<Mode::post_indexed> : &store_two<Mode::post_indexed>;
-    default:
-      return is_load ? &load_two<Mode::pre_indexed> : &store_two<Mode::pre_indexed>;
-  }
+constexpr auto loads_of_two = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array<Execute, sizeof...(i)>{&load_two<static_cast<Mode>(i)>...};
 }
+(modes);
+constexpr auto stores_of_two = []<std::size_t... i>(std::index_sequence<i...>) {
+  return std::array<Execute, sizeof...(i)>{&store_two<static_cast<Mode>(i)>...};
+}
+(modes);
 
 template <Type type>
 const Instruction* load_exclusive(Core& core, const Instruction& instruction) {
@@ -522,7 +478,7 @@ Instruction decode_dual_or_exclusive(const Encoding& code) {
       (is_load && instruction.d == instruction.a)) {
     return {};
   }
-  instruction.execute = for_two(is_load, mode);
+  instruction.execute = (is_load ? loads_of_two : stores_of_two).at(static_cast<std::size_t>(mode));
   return instruction;
 }
 
@@ -550,7 +506,7 @@ Instruction decode_single(const Encoding& code) {
       return {};
     }
     // PLD, PLI, and those that are reserved for hints, for smaller sizes.
-    instruction.execute = size == 2 ? loading_pc(mode) : &do_nothing;
+    instruction.execute = size == 2 ? loads_of_pc.at(static_cast<std::size_t>(mode)) : &do_nothing;
     return instruction;
   }
   if (instruction.d == stack_pointer && type != Type::word) {

@@ -49,7 +49,7 @@ const Instruction* extend_both(Core& core, const Instruction& instruction) {
   return after(instruction);
 }
 
-/// Sums and differences of halves or bytes. Instruction::option: bits 0 to 2 the operation, 3 and 4 what becomes of the
+/// Sums and differences of halves or bytes. Instruction::option: bits 0 to 2 the operation, 3 and 4 the limit of the
 /// results, 5 unsigned.
 enum class Lanes : std::uint8_t {
   add_bytes = 0,

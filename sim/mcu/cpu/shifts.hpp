@@ -48,4 +48,9 @@ inline void set_constant_shift(Instruction& instruction, unsigned type, unsigned
   instruction.amount = static_cast<std::uint8_t>(constant == 0 && (type == 1 || type == 2) ? 32 : constant);
 }
 
+/// The two bits of the type and the five of the constant of a shift.
+inline void set_shift(Instruction& instruction, const Encoding& code) {
+  set_constant_shift(instruction, code.more(4, 2), code.more(12, 3) << 2U | code.more(6, 2));
+}
+
 }  // namespace proleg::sim

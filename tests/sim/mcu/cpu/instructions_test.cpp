@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cstring>
 #include <iomanip>
@@ -277,9 +278,9 @@ struct Form {
 
 // A5.3 and the pages of A7.7.
 constexpr Form forms[]{
-    {"LDMIA", "1110100010W1nnnnP0lllllllllllll0", "n"},
+    {"LDMIA", "1110100010W1nnnnPM0lllllllllllll", "n"},
     {"STMIA", "1110100010W0nnnn0M0lllllllllllll", "n"},
-    {"LDMDB", "1110100100W1nnnnP0lllllllllllll0", "n"},
+    {"LDMDB", "1110100100W1nnnnPM0lllllllllllll", "n"},
     {"STMDB", "1110100100W0nnnn0M0lllllllllllll", "n"},
     {"LDRD offset", "11101001U101nnnnttttuuuuiiiiiiii", "n", "n"},
     {"LDRD pre-indexed", "11101001U111nnnnttttuuuuiiiiiiii", "n"},
@@ -448,7 +449,9 @@ class Drawn {
     const std::string_view name = form_->name;
     const auto starts = [&](std::string_view text) { return name.starts_with(text); };
     if (starts("LDM") || starts("STM")) {
-      return true;  // the number of registers, and the base among them
+      const bool is_kept = field('W') != 0;
+      return std::popcount(second()) < 2 || (is_kept && (second() >> field('n') & 1U) != 0) ||
+             (field('M') != 0 && has('P') && field('P') != 0);
     }
     if (starts("LDRD") || starts("STRD")) {
       const bool is_kept = name.find("indexed") != std::string_view::npos;
@@ -461,13 +464,18 @@ class Drawn {
              (field('P') == 0 && !is_kept) || (is_kept && field('t') == 15);
     }
     if (starts("MOV register")) {
-      return true;  // the stack pointer only without a shift
+      const bool is_of_sp = field('d') == 13 || field('m') == 13;
+      const bool is_plain = field('S') == 0 && field('i') == 0 && field('t') == 0;
+      return is_of_sp && (!is_plain || field('d') == field('m'));
     }
     if (name.ends_with("constant") && !has('P')) {
       return field('c') == 0;  // repeated zeros
     }
-    if (starts("SBFX") || starts("UBFX") || starts("BFI")) {
-      return true;  // a field that ends behind the word
+    if (starts("SBFX") || starts("UBFX")) {
+      return field('i') + field('w') > 31;
+    }
+    if (starts("BFI")) {
+      return field('w') < field('i');
     }
     if (starts("B with")) {
       return field('c') >= 14;

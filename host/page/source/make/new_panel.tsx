@@ -1,7 +1,7 @@
 // New: a robot, its gait and its world in four steps. Each choice makes the draft anew, so that the drawings, the 3D view
 // and the next half minute show it at once. Nothing is on disk before the last step.
 import { signal } from '@preact/signals-core';
-import { useEffect } from 'preact/hooks';
+import { useEffect, useState } from 'preact/hooks';
 import type { NewScenario, RobotKind } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
 import { algorithmTitle } from '../state/robot_text.js';
@@ -34,7 +34,6 @@ const friction = [
 
 // What has been chosen; it stays while the panel is closed.
 class Choices {
-  readonly step = signal(0);
   readonly kind = signal('');
   readonly axes = signal<string | null>(null); // null: those of the kind
   readonly algorithm = signal('');
@@ -194,14 +193,13 @@ export function LossQuestion({ app }: { app: MakeApp }) {
 
 export function NewPanel({ app }: { app: MakeApp }) {
   const obstacle = app.obstacle();
-  const step = choices.step.value;
+  const [step, setStep] = useState(0);
   const last = steps.length - 1;
   const wouldLose = app.wouldLose();
   const send = () => {
     app.makeNew(choices.words, (refusal) => (choices.problem.value = refusal));
   };
   useEffect(() => {
-    choices.step.value = 0;
     if (obstacle === null && !wouldLose) send();
   }, [obstacle, wouldLose]);
   if (wouldLose) return <LossQuestion app={app} />;
@@ -217,7 +215,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
       <ol class="steps">
         {steps.map((each, i) => (
           <li key={each}>
-            <button type="button" aria-current={i === step ? 'step' : undefined} onClick={() => (choices.step.value = i)}>
+            <button type="button" aria-current={i === step ? 'step' : undefined} onClick={() => setStep(i)}>
               {i + 1}. {each}
             </button>
           </li>
@@ -227,7 +225,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
       <form
         onSubmit={(event) => {
           event.preventDefault();
-          if (step < last) choices.step.value = step + 1;
+          if (step < last) setStep(step + 1);
           else void create();
         }}
       >
@@ -257,7 +255,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
           </p>
         )}
         <div class="fields">
-          <button type="button" disabled={step === 0} onClick={() => (choices.step.value = step - 1)}>
+          <button type="button" disabled={step === 0} onClick={() => setStep(step - 1)}>
             Back
           </button>
           <button type="submit" class="primary" disabled={obstacle !== null}>

@@ -2,10 +2,11 @@
 // reads, and what a person writes by hand.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, it } from 'node:test';
+import type { Page } from 'playwright-core';
 import { seriousProblems } from './support/accessibility.js';
 import { assertNothingIsCut } from './support/layout.js';
 import { useUi } from './support/ui_fixture.js';
@@ -26,6 +27,11 @@ function contents(file: string): unknown {
   return JSON.parse(json, (name, value: unknown) =>
     places.has(name) ? undefined : typeof value === 'number' ? Math.round(value * 1e9) / 1e9 : value,
   );
+}
+
+// Waits for a step of the panel New.
+async function atStep(page: Page, step: string): Promise<void> {
+  await page.getByTestId('new-panel').locator('[aria-current=step]', { hasText: step }).waitFor();
 }
 
 describe('a new robot', () => {
@@ -99,12 +105,11 @@ describe('a new robot', () => {
     await focus(/^caterpillar/);
     await page.keyboard.press('ArrowDown');
     await page.getByText('CUBO').first().waitFor();
-    await focus('Next');
-    await page.keyboard.press('Enter');
-    await focus('Next');
-    await page.keyboard.press('Enter');
-    await focus('Next');
-    await page.keyboard.press('Enter');
+    for (const step of ['2. gait', '3. world', '4. name']) {
+      await focus('Next');
+      await page.keyboard.press('Enter');
+      await atStep(page, step);
+    }
     await focus('name of the robot and of its folder');
     await page.keyboard.type('cubes');
     await page.keyboard.press('Enter');
@@ -114,13 +119,30 @@ describe('a new robot', () => {
     assert.match(readFileSync(join(folder, 'cubes/robot.robot.xml'), 'utf8'), /CUBO/);
   });
 
-  it('says which name is taken, and writes nothing', async () => {
+  it('is at the same step when control was given up and taken again', async () => {
     const { page } = ui.viewer;
     await page.keyboard.press('3');
     await page.getByTestId('draft-file').waitFor();
     await page.keyboard.press('n');
+    for (let i = 0; i < 2; i++) await page.getByRole('button', { name: 'Next' }).click();
+    await atStep(page, '3. world');
+    await ui.viewer.lookOn();
+    await page.getByTestId('new-panel').getByText('Take control first').waitFor();
+    assert.ok(await page.getByRole('button', { name: 'Next' }).isDisabled());
+    await ui.viewer.takeControl();
+    await page.getByTestId('new-panel').getByText('Take control first').waitFor({ state: 'detached' });
+    await page.getByRole('button', { name: 'Next' }).click();
+    await atStep(page, '4. name');
+  });
+
+  it('says which name is taken, and writes nothing', async () => {
+    const { page } = ui.viewer;
+    mkdirSync(join(folder, 'taken'));
+    await page.keyboard.press('3');
+    await page.getByTestId('draft-file').waitFor();
+    await page.keyboard.press('n');
     for (let i = 0; i < 3; i++) await page.getByRole('button', { name: 'Next' }).click();
-    await page.getByRole('textbox', { name: 'name of the robot and of its folder' }).fill('cubes');
+    await page.getByRole('textbox', { name: 'name of the robot and of its folder' }).fill('taken');
     await page.getByRole('button', { name: 'Create and start' }).click();
     await page.getByTestId('new-panel').getByRole('alert').filter({ hasText: 'a folder that exists' }).waitFor();
     await page.getByRole('textbox', { name: 'name of the robot and of its folder' }).fill('../out');

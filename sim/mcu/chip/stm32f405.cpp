@@ -8,6 +8,7 @@
 #include "sim/mcu/chip/oscillator.hpp"
 #include "sim/mcu/chip/peripheral_map.hpp"
 #include "sim/mcu/chip/pins.hpp"
+#include "sim/mcu/chip/timed_peripherals.hpp"
 #include "sim/mcu/peripherals/adc.hpp"
 #include "sim/mcu/peripherals/bxcan.hpp"
 #include "sim/mcu/peripherals/chip_identity.hpp"
@@ -67,7 +68,16 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       rcc_.attach(*peripheral);
       map_.add(*peripheral);
     }
-    timed_ = {&rcc_, &flash_, &iwdg_, &timer_2_, &timer_3_, &timer_5_, &usart_, &adc_, &can_};
+    using enum TimedPeripherals::Effect;
+    timed_.add(rcc_, on_others);
+    timed_.add(flash_, on_others);
+    timed_.add(iwdg_, on_others);
+    timed_.add(timer_2_, on_itself);
+    timed_.add(timer_3_, on_others);
+    timed_.add(timer_5_, on_itself);
+    timed_.add(usart_, on_others);
+    timed_.add(adc_, on_others);
+    timed_.add(can_, on_itself);
     cpu_.write(system_memory_address, system_memory(settings.unique_id));
   }
 
@@ -198,7 +208,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       timer_3_.advance();
       adc_.advance();
     });
-    next_internal_event_.reset();
+    timed_.forget();
   }
 
   /// Applies a change outside of the chip at the present time.
@@ -262,31 +272,17 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     anchor_instructions_ = cpu_.instructions();
   }
 
-  [[nodiscard]] LocalTime next_internal_event() const {
-    if (!next_internal_event_) {
-      LocalTime next = std::min(pins_.next_edge(), falling_lines_.next());
-      for (const Peripheral* peripheral : timed_) {
-        next = std::min(next, peripheral->next_event());
-      }
-      next_internal_event_ = next;
-    }
-    return std::min(*next_internal_event_, cpu_.next_system_tick());
-  }
+  [[nodiscard]] LocalTime next_internal_event() const { return std::min(timed_.next_event(), next_other_event()); }
   /// Time of the next event, without events that only a CPU that executes can see.
   [[nodiscard]] LocalTime next_visible_event() const {
-    if (!next_visible_event_) {
-      LocalTime next = std::min(pins_.next_edge(), falling_lines_.next());
-      for (const Peripheral* peripheral : timed_) {
-        next = std::min(next, peripheral->next_visible_event());
-      }
-      next_visible_event_ = next;
-    }
-    return std::min(*next_visible_event_, cpu_.next_system_tick());
+    return std::min(timed_.next_visible_event(), next_other_event());
+  }
+  [[nodiscard]] LocalTime next_other_event() const {
+    return std::min({pins_.next_edge(), falling_lines_.next(), cpu_.next_system_tick()});
   }
   /// To be called when the time of the next event may have changed.
   void invalidate_next_events() {
-    next_internal_event_.reset();
-    next_visible_event_.reset();
+    timed_.forget();
     next_event_.reset();
   }
 
@@ -300,11 +296,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     if (falling_lines_.next() <= time) {
       falling_lines_.finish([this](unsigned position) { cpu_.set_interrupt(position, false); });
     }
-    for (Peripheral* peripheral : timed_) {
-      if (peripheral->next_event() <= time) {
-        guard([&] { peripheral->advance(); });
-      }
-    }
+    timed_.for_due(time, [this](Peripheral& peripheral) { guard([&] { peripheral.advance(); }); });
     pins_.look();
     invalidate_next_events();
     static_cast<void>(follow_core_clock(time));
@@ -386,6 +378,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   // Resets.
 
   void reset_peripherals() {
+    map_.forget_answers();
     for (Peripheral* peripheral : peripherals_) {
       peripheral->reset();
     }
@@ -450,17 +443,20 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   // Memory and registers of the CPU.
 
-  /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess if it has no clock.
-  std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const {
-    const auto found = map_.find(address, size);
-    rcc_.require_clock(*found.first, found.second);
-    return found;
+  /// The peripheral at an address. Throws UnmodelledAccess if it has no clock.
+  PeripheralMap::Place find(std::uint32_t address, unsigned size) {
+    const PeripheralMap::Place place = map_.find(address, size);
+    if (!place.answers) {
+      rcc_.require_clock(*place.peripheral, place.offset);
+      map_.note_answer(address);
+    }
+    return place;
   }
 
   std::uint32_t load(std::uint32_t address, unsigned size) override {
     std::uint32_t value = 0;
     guard([&] {
-      const auto [peripheral, offset] = find(address, size);
+      const auto [peripheral, offset, answers] = find(address, size);
       if (bus_latency(*peripheral) != 0) {
         falling_lines_.finish([this](unsigned position) { cpu_.set_interrupt(position, false); });
       }
@@ -476,7 +472,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   void store(std::uint32_t address, unsigned size, std::uint32_t value) override {
     guard([&] {
-      const auto [peripheral, offset] = find(address, size);
+      const auto [peripheral, offset, answers] = find(address, size);
       const LocalTime time = now();
       if (peripheral == &can_) {
         watch_can(offset, value);
@@ -485,11 +481,15 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         compare_watch_(oscillator_.when(time), value);
       }
       pins_.look();
+      if (peripheral == &rcc_) {
+        map_.forget_answers();
+      }
       store_latency_ = bus_latency(*peripheral);
       peripheral->write(offset, value);
       store_latency_ = 0;
       pins_.look();
-      invalidate_next_events();
+      timed_.forget_after_write(*peripheral);
+      next_event_.reset();
       if (follow_core_clock(time)) {
         cpu_.pause();
       }
@@ -636,11 +636,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   static constexpr unsigned program_counter = 15;
 
   std::vector<Peripheral*> peripherals_;
-  std::vector<Peripheral*> timed_;  ///< the peripherals that act by themselves
+  TimedPeripherals timed_;
   PeripheralMap map_;
-  mutable std::optional<LocalTime> next_internal_event_;  ///< nothing: not computed; without events of SysTick
-  mutable std::optional<LocalTime> next_visible_event_;   ///< nothing: not computed; without events of SysTick
-  mutable std::optional<BusTime> next_event_;
+  mutable std::optional<BusTime> next_event_;  ///< nothing: not computed
   FallingLines falling_lines_;
   LocalTime store_latency_ = 0;  ///< while a store is done: bus_latency()
   LocalTime anchor_time_ = 0;    ///< local time when the CPU had executed anchor_instructions_

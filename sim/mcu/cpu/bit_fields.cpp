@@ -15,7 +15,7 @@ const Instruction* pack_halves(Core& core, const Instruction& instruction) {
   const std::uint32_t a = core.r[instruction.n];
   const std::uint32_t b = shifted(core.r[instruction.m], instruction.shift, instruction.amount, 0).value;
   core.r[instruction.d] = is_top ? (a & 0xFFFF'0000U) | (b & 0xFFFFU) : (a & 0xFFFFU) | (b & 0xFFFF'0000U);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SSAT and USAT (bit 0 of the option: unsigned); the immediate is the number of bits.
@@ -27,7 +27,7 @@ const Instruction* saturate(Core& core, const Instruction& instruction) {
   const std::int64_t limited = std::clamp<std::int64_t>(value, lowest, highest);
   core.saturated = core.saturated || limited != value;
   core.r[instruction.d] = static_cast<std::uint32_t>(limited);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SSAT16 and USAT16.
@@ -43,7 +43,7 @@ const Instruction* saturate_halves(Core& core, const Instruction& instruction) {
     result |= (static_cast<std::uint32_t>(limited) & 0xFFFFU) << 16U * half;
   }
   core.r[instruction.d] = result;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SBFX and UBFX: the field begins at bit `amount` and has `option` bits.
@@ -53,14 +53,14 @@ const Instruction* extract_field(Core& core, const Instruction& instruction) {
   const unsigned shift = 32U - instruction.option;
   core.r[instruction.d] =
       is_signed ? static_cast<std::uint32_t>(static_cast<std::int32_t>(on_top) >> shift) : on_top >> shift;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// BFI and BFC (n is the PC): the field of the mask `immediate` begins at bit `amount`.
 const Instruction* insert_field(Core& core, const Instruction& instruction) {
   const std::uint32_t field = instruction.n == program_counter ? 0U : core.r[instruction.n] << instruction.amount;
   core.r[instruction.d] = (core.r[instruction.d] & ~instruction.immediate) | (field & instruction.immediate);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 Instruction saturation(const Encoding& code) {

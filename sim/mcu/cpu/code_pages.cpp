@@ -13,20 +13,25 @@
 namespace proleg::sim {
 namespace {
 
-/// memory: that of the page, and the halfword behind it.
+/// memory: CodePage::reach bytes.
 std::shared_ptr<const CodePage> decoded(const InstructionSet& instructions, std::uint32_t address,
                                         std::span<const std::uint8_t> memory) {
   auto page = std::make_shared<CodePage>();
-  for (std::uint32_t offset = 0; offset < CodePage::size; offset += 2) {
-    Encoding code{address + offset, halfword_at(memory, offset), halfword_at(memory, offset + 2), false, address,
-                  CodePage::size};
-    page->plain[offset / 2] = instructions.decode(code);
+  const auto outside = std::span(page->instructions).first(CodePage::slots);
+  const auto in_it_block = std::span(page->instructions).subspan(CodePage::slots);
+  for (std::uint32_t i = 0; i < CodePage::size / 2; ++i) {
+    Encoding code{address + 2 * i, halfword_at(memory, 2 * i), halfword_at(memory, 2 * i + 2), false, address, memory};
+    outside[i] = instructions.decode(code);
     code.in_it_block = true;
-    page->in_it_block[offset / 2] = instructions.decode(code);
+    in_it_block[i] = instructions.decode(code);
   }
-  for (std::uint32_t behind = 0; behind < 2; ++behind) {
-    const std::uint32_t place = CodePage::size / 2 + behind;
-    page->plain[place] = page->in_it_block[place] = instructions.continuation(address + 2 * place);
+  for (std::uint32_t i = CodePage::size / 2; i < CodePage::slots; ++i) {
+    outside[i] = in_it_block[i] = instructions.continuation(address + 2 * i);
+  }
+  for (Instruction& first : outside.first(CodePage::size / 2)) {
+    if (const Execute both = instructions.joined(first, *after(first)); both != nullptr) {
+      first.execute = both;
+    }
   }
   return page;
 }
@@ -58,7 +63,7 @@ CodePages::CodePages(std::span<const std::uint8_t> flash, const InstructionSet& 
 
 const CodePage& CodePages::decode(std::uint32_t number) {
   const std::uint32_t offset = number * CodePage::size;
-  std::array<std::uint8_t, CodePage::size + 2> memory;
+  std::array<std::uint8_t, CodePage::reach> memory;
   memory.fill(0xFF);  // behind the flash
   const auto contents = flash_.subspan(offset, std::min<std::size_t>(memory.size(), flash_.size() - offset));
   std::copy(contents.begin(), contents.end(), memory.begin());
@@ -68,8 +73,7 @@ const CodePage& CodePages::decode(std::uint32_t number) {
 }
 
 void CodePages::discard(std::uint32_t offset, std::uint32_t size) {
-  // The last instruction of a page reaches into the next one.
-  const std::uint32_t first = offset < 2 ? 0 : (offset - 2) / CodePage::size;
+  const std::uint32_t first = offset < CodePage::reach ? 0 : (offset - CodePage::reach) / CodePage::size + 1;
   const std::uint32_t last = (offset + size - 1) / CodePage::size;
   for (std::uint32_t page = first; page <= last && page < pages_.size(); ++page) {
     pages_[page] = nullptr;

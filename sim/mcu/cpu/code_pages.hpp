@@ -14,15 +14,17 @@
 namespace proleg::sim {
 
 /// What may be executed in a stretch of the flash: an instruction for each halfword, as it is outside IT blocks and in
-/// one. It never changes. All chips in which the stretch has the same contents share it, also on several threads: 20
-/// copies would displace each other from the processor's cache.
+/// one. It never changes. All chips in which the stretch and the one behind it have the same contents share it, also on
+/// several threads: 20 copies would displace each other from the processor's cache.
 struct CodePage {
   static constexpr std::uint32_t size = 1024;  ///< bytes
+  /// Bytes on which its instructions depend: a word that they load can be that far behind their page.
+  static constexpr std::uint32_t reach = 2 * size + 4;
+  /// Of the instructions outside of IT blocks. Behind the last halfword are what leads to the next page, for
+  /// instructions of two and of four bytes.
+  static constexpr std::uint32_t slots = size / 2 + 2;
 
-  /// Behind the last halfword are what leads to the next page, for instructions of two and of four bytes.
-  using Instructions = std::array<Instruction, size / 2 + 2>;
-  Instructions plain;
-  Instructions in_it_block;
+  std::array<Instruction, 2 * slots> instructions;  ///< those in IT blocks behind the others
 };
 
 class CodePages {
@@ -36,7 +38,7 @@ class CodePages {
     if (page == nullptr) [[unlikely]] {
       page = &decode(offset / CodePage::size);
     }
-    return &(in_it_block ? page->in_it_block : page->plain)[offset % CodePage::size / 2];
+    return &page->instructions[offset % CodePage::size / 2 + (in_it_block ? CodePage::slots : 0)];
   }
 
   /// The contents have changed there. No instruction of the page may be in use.

@@ -1,5 +1,6 @@
 // Branches, IT blocks, hints, special registers, and what ends a run.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -16,15 +17,15 @@ namespace {
 template <bool is_near>
 const Instruction* jump(Core& core, const Instruction& instruction) {
   if constexpr (is_near) {
-    return &instruction + static_cast<std::int32_t>(instruction.immediate);
+    return core.go_on(near_target(instruction));
   } else {
-    return core.branch(instruction.immediate);
+    return core.go_on(core.branch(instruction.immediate));
   }
 }
 
 template <unsigned condition, bool is_near>
 const Instruction* jump_if(Core& core, const Instruction& instruction) {
-  return core.holds(condition) ? jump<is_near>(core, instruction) : after(instruction);
+  return core.holds(condition) ? jump<is_near>(core, instruction) : core.go_on(after(instruction));
 }
 
 template <bool is_near>
@@ -36,18 +37,18 @@ const Instruction* call(Core& core, const Instruction& instruction) {
 /// CBZ, CBNZ.
 template <bool if_zero, bool is_near>
 const Instruction* jump_by_register(Core& core, const Instruction& instruction) {
-  return (core.r[instruction.n] == 0) == if_zero ? jump<is_near>(core, instruction) : after(instruction);
+  return (core.r[instruction.n] == 0) == if_zero ? jump<is_near>(core, instruction) : core.go_on(after(instruction));
 }
 
 const Instruction* jump_to_register(Core& core, const Instruction& instruction) {
-  return core.branch_exchange(instruction, core.r[instruction.m]);
+  return core.go_on(core.branch_exchange(instruction, core.r[instruction.m]));
 }
 
 /// BLX, which does not return from exceptions.
 const Instruction* call_register(Core& core, const Instruction& instruction) {
   const std::uint32_t target = core.r[instruction.m];
   core.r[link_register] = (instruction.address + 2) | 1U;
-  return core.exchange(target);
+  return core.go_on(core.exchange(target));
 }
 
 /// By condition, without "always" (14).
@@ -60,7 +61,7 @@ constexpr auto conditional_jumps = []<std::size_t... condition>(std::index_seque
 /// Whether the target stands beside the branch. Behind an IT block it does not: the next instruction stands among those
 /// outside.
 bool set_target(Instruction& instruction, const Encoding& code, std::uint32_t target) {
-  const bool is_near = !code.in_it_block && target - code.near_start < code.near_bytes;
+  const bool is_near = !code.in_it_block && code.is_in_page() && target - code.page < CodePage::size;
   instruction.immediate =
       is_near ? static_cast<std::uint32_t>(static_cast<std::int32_t>(target - code.address) / 2) : target;
   return is_near;
@@ -88,9 +89,14 @@ Instruction conditional_branch(const Encoding& code, unsigned condition, std::ui
 }
 
 /// Instruction::option: condition and mask.
+template <bool is_in_page>
 const Instruction* begin_it_block(Core& core, const Instruction& instruction) {
   core.it_state = instruction.option;
-  return core.at(instruction.address + 2);
+  if constexpr (is_in_page) {
+    return core.go_on(after(instruction) + CodePage::slots);
+  } else {
+    return core.go_on(core.at(instruction.address + 2));
+  }
 }
 
 const Instruction* wait_for_event(Core& core, const Instruction& instruction) {
@@ -103,7 +109,7 @@ const Instruction* wait_for_interrupt(Core& core, const Instruction& instruction
 
 const Instruction* send_event(Core& core, const Instruction& instruction) {
   core.client.send_event();
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 Execute hint(unsigned number) {
@@ -129,7 +135,7 @@ const Instruction* break_here(Core& core, const Instruction& instruction) {
 
 const Instruction* clear_exclusive(Core& core, const Instruction& instruction) {
   core.is_exclusive = false;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 // Special registers (DDI 0403, B5.1.1, B5.2.1 to B5.2.3).
@@ -153,7 +159,7 @@ const Instruction* change_masks(Core& core, const Instruction& instruction) {
     }
     core.attend();
   }
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// Their numbers in MRS and MSR.
@@ -200,7 +206,7 @@ const Instruction* read_special(Core& core, const Instruction& instruction) {
     }
   }
   core.r[instruction.d] = value;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// MSR to a register that only privileged code changes.
@@ -250,7 +256,7 @@ const Instruction* write_special(Core& core, const Instruction& instruction) {
   } else if (core.is_privileged()) {
     write_privileged(core, number, value);
   }
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 Instruction special_register(const Encoding& code) {
@@ -313,7 +319,7 @@ Instruction it_or_hint(const Encoding& code) {
   }
   const bool has_one = (mask & (mask - 1)) == 0;
   if (!code.in_it_block && condition != 15 && (condition != 14 || has_one)) {
-    instruction.execute = &begin_it_block;
+    instruction.execute = code.is_in_page() ? &begin_it_block<true> : &begin_it_block<false>;
     instruction.option = static_cast<std::uint8_t>(code.bits(0, 8));
   }
   return instruction;
@@ -336,6 +342,13 @@ Instruction compare_and_branch(const Encoding& code) {
 }
 
 }  // namespace
+
+std::optional<unsigned> condition_of_near_jump(Execute execute) {
+  const auto found = std::ranges::find(conditional_jumps<true>, execute);
+  return found != conditional_jumps<true>.end()
+             ? std::optional(static_cast<unsigned>(found - conditional_jumps<true>.begin()))
+             : std::nullopt;
+}
 
 Instruction decode_narrow_control(const Encoding& code) {
   Instruction instruction;

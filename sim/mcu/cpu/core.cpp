@@ -23,7 +23,26 @@ bool is_register(std::uint32_t address) {
          address - ram_bits_start < ram_bits_size;
 }
 
+/// By condition: bits by the flags N, Z, C and V as a number, in which V is bit 0.
+constexpr auto flags_for_condition = [] {
+  std::array<std::uint16_t, 16> sets{};
+  for (unsigned condition = 0; condition < sets.size(); ++condition) {
+    for (unsigned flags = 0; flags < 16; ++flags) {
+      const ConditionFlags each{(flags & 8U) != 0, (flags & 4U) != 0, (flags & 2U) != 0, (flags & 1U) != 0};
+      if (condition_holds(condition, each)) {
+        sets.at(condition) = static_cast<std::uint16_t>(sets.at(condition) | 1U << flags);
+      }
+    }
+  }
+  return sets;
+}();
+
 }  // namespace
+
+bool Core::holds_now(unsigned condition) const {
+  const unsigned flags = negative >> 31U << 3U | (zero == 0 ? 4U : 0U) | carry << 1U | overflow >> 31U;
+  return (flags_for_condition[condition] >> flags & 1U) != 0;
+}
 
 std::uint32_t Core::xpsr() const {
   return (negative >> 31U) << negative_bit | (zero == 0 ? 1U : 0U) << zero_bit | carry << carry_bit |

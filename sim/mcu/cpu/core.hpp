@@ -2,6 +2,7 @@
 
 // The state of a Cortex-M4 and its memory, on which instructions work.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -88,6 +89,37 @@ struct Memory {
   std::array<std::uint8_t, ChipMemory::system_memory_size> system;
 };
 
+/// N, Z, C and V.
+struct ConditionFlags {
+  bool negative;
+  bool zero;
+  bool carry;
+  bool overflow;
+};
+
+/// Whether a condition, 0 to 15, holds (DDI 0403, A7.3.1).
+[[nodiscard]] constexpr bool condition_holds(unsigned condition, const ConditionFlags& flags) {
+  const bool is_opposite = (condition & 1U) != 0;
+  switch (condition >> 1U) {
+    case 0:
+      return flags.zero != is_opposite;
+    case 1:
+      return flags.carry != is_opposite;
+    case 2:
+      return flags.negative != is_opposite;
+    case 3:
+      return flags.overflow != is_opposite;
+    case 4:
+      return (flags.carry && !flags.zero) != is_opposite;
+    case 5:
+      return (flags.negative == flags.overflow) != is_opposite;
+    case 6:
+      return (flags.negative == flags.overflow && !flags.zero) != is_opposite;
+    default:
+      return true;
+  }
+}
+
 class Core {
  public:
   Core(EngineClient& owner, const InstructionSet& instruction_set)
@@ -114,8 +146,9 @@ class Core {
   bool is_exclusive = false;  ///< the monitor of LDREX and STREX
 
   // The run.
-  std::uint64_t instructions = 0;  ///< begun, with the present one
-  std::uint64_t limit = 0;         ///< EngineClient::stops() is called from here on
+  std::uint64_t limit = 0;         ///< EngineClient::stops() is called from this number of instructions on
+  std::uint64_t end_of_chain = 0;  ///< instructions() when `left` is 0
+  std::uint32_t left = 0;          ///< instructions that may begin before the engine looks again
   const Instruction* present = nullptr;
   End end = End::none;
   MemoryFault fault;
@@ -139,26 +172,12 @@ class Core {
   /// To be called when mode or CONTROL has changed.
   void select_stack();
 
-  /// Whether a condition holds (DDI 0403, A7.3.1).
-  [[nodiscard]] bool holds(unsigned condition) const {
-    switch (condition >> 1U) {
-      case 0:
-        return (zero == 0) != ((condition & 1U) != 0);
-      case 1:
-        return (carry != 0) != ((condition & 1U) != 0);
-      case 2:
-        return (negative >> 31U != 0) != ((condition & 1U) != 0);
-      case 3:
-        return (overflow >> 31U != 0) != ((condition & 1U) != 0);
-      case 4:
-        return (carry != 0 && zero != 0) != ((condition & 1U) != 0);
-      case 5:
-        return ((negative ^ overflow) >> 31U == 0) != ((condition & 1U) != 0);
-      case 6:
-        return ((negative ^ overflow) >> 31U == 0 && zero != 0) != ((condition & 1U) != 0);
-      default:
-        return true;
-    }
+  /// Whether a condition holds.
+  [[nodiscard]] bool holds(unsigned condition) const { return condition_holds(condition, flags()); }
+  /// The same, for a condition that is not known to the compiler.
+  [[nodiscard]] bool holds_now(unsigned condition) const;
+  [[nodiscard]] ConditionFlags flags() const {
+    return {negative >> 31U != 0, zero == 0, carry != 0, overflow >> 31U != 0};
   }
 
   void set_negative_and_zero(std::uint32_t result) {
@@ -227,14 +246,44 @@ class Core {
     return (address & (size - 1)) == 0 || note_unaligned(address, size);
   }
 
+  /// Begun, with the present one.
+  [[nodiscard]] std::uint64_t instructions() const { return end_of_chain - left; }
+  /// Sets how many instructions may begin before the engine looks again.
+  void set_left(std::uint32_t count) {
+    end_of_chain = instructions() + count;
+    left = count;
+  }
+  /// Executes the next instruction and those behind it while some are left. To be returned by Execute: the compiler
+  /// makes a jump of it, so that each kind of instruction has a jump of its own, of which the processor remembers where
+  /// it led to.
+  [[nodiscard]] const Instruction* go_on(const Instruction* next) {
+    return begin_next(next) ? next->execute(*this, *next) : next;
+  }
+  /// Begins the next instruction if one is left.
+  [[nodiscard]] bool begin_next(const Instruction* next) {
+    if (left == 0) {
+      return false;
+    }
+    --left;
+    present = next;
+    return true;
+  }
+  /// Gives back what set_left(0) has taken, as far as the limit allows.
+  void give_back(std::uint32_t count) {
+    const std::uint64_t done = instructions();
+    set_left(limit > done ? static_cast<std::uint32_t>(std::min<std::uint64_t>(count, limit - done)) : 0);
+  }
   /// Ends the run; returns the instruction from which it continues.
   const Instruction* finish(End why, const Instruction* next) {
     end = why;
-    limit = 0;
+    attend();
     return next;
   }
   /// The client is asked before the next instruction.
-  void attend() { limit = 0; }
+  void attend() {
+    limit = 0;
+    set_left(0);
+  }
 
  private:
   template <typename Value>

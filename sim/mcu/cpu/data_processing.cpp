@@ -86,7 +86,7 @@ Sum sum_for(std::uint32_t a, std::uint32_t b, std::uint32_t carry) {
 }
 
 template <Operation operation, Operand kind, Result result>
-const Instruction* compute(Core& core, const Instruction& instruction) {
+void compute_only(Core& core, const Instruction& instruction) {
   const Shifted b = operand_of<kind>(core, instruction);
   std::uint32_t value = 0;
   if constexpr (is_sum<operation>) {
@@ -108,7 +108,23 @@ const Instruction* compute(Core& core, const Instruction& instruction) {
   if constexpr (result != Result::only_flags) {
     core.set(instruction.d, value);
   }
-  return after(instruction);
+}
+
+template <Operation operation, Operand kind, Result result>
+const Instruction* compute(Core& core, const Instruction& instruction) {
+  compute_only<operation, kind, result>(core, instruction);
+  return core.go_on(after(instruction));
+}
+
+/// And the jump behind it, whose target stands beside it.
+template <Operation operation, Operand kind, Result result, unsigned condition>
+const Instruction* compute_and_jump(Core& core, const Instruction& instruction) {
+  compute_only<operation, kind, result>(core, instruction);
+  const Instruction* const jump = after(instruction);
+  if (!core.begin_next(jump)) {
+    return jump;
+  }
+  return core.go_on(core.holds(condition) ? near_target(*jump) : after(*jump));
 }
 
 /// Each operation with each operand and result, in the order of their numbers.
@@ -128,16 +144,23 @@ Execute execution(Operation operation, Operand kind, Result result) {
   return executions.at(number + static_cast<std::size_t>(result));
 }
 
+/// By condition, without "always" (14).
+template <Operation operation, Operand kind, Result result>
+constexpr auto computations_with_jump = []<std::size_t... condition>(std::index_sequence<condition...>) {
+  return std::array<Execute, sizeof...(condition)>{&compute_and_jump<operation, kind, result, condition>...};
+}
+(std::make_index_sequence<14>());
+
 /// ADD and MOV to PC.
 template <bool adds>
 const Instruction* branch_by_sum(Core& core, const Instruction& instruction) {
   const std::uint32_t base = adds ? instruction.address + 4 : 0U;
-  return core.branch((base + core.r[instruction.m]) & ~1U);
+  return core.go_on(core.branch((base + core.r[instruction.m]) & ~1U));
 }
 
 /// MOV of PC to itself.
 const Instruction* branch_to_constant(Core& core, const Instruction& instruction) {
-  return core.branch(instruction.immediate);
+  return core.go_on(core.branch(instruction.immediate));
 }
 
 Result narrow_result(const Encoding& code) { return code.in_it_block ? Result::written : Result::written_with_flags; }
@@ -338,10 +361,28 @@ Expanded expanded(const Encoding& code) {
 /// MOVT.
 const Instruction* move_top(Core& core, const Instruction& instruction) {
   core.r[instruction.d] = (core.r[instruction.d] & 0xFFFFU) | instruction.immediate << 16U;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 }  // namespace
+
+Execute with_jump(Execute comparison, unsigned condition) {
+  using enum Operand;
+  using enum Result;
+  if (comparison == &compute<Operation::sub, constant, only_flags>) {  // CMP
+    return computations_with_jump<Operation::sub, constant, only_flags>.at(condition);
+  }
+  if (comparison == &compute<Operation::sub, plain, only_flags>) {
+    return computations_with_jump<Operation::sub, plain, only_flags>.at(condition);
+  }
+  if (comparison == &compute<Operation::sub, constant, written_with_flags>) {  // SUBS
+    return computations_with_jump<Operation::sub, constant, written_with_flags>.at(condition);
+  }
+  if (comparison == &compute<Operation::conjunction, constant, only_flags>) {  // TST
+    return computations_with_jump<Operation::conjunction, constant, only_flags>.at(condition);
+  }
+  return nullptr;
+}
 
 Instruction decode_narrow_data_processing(const Encoding& code) {
   const unsigned group = code.first >> 10U;

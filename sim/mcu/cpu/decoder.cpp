@@ -1,5 +1,7 @@
 #include "sim/mcu/cpu/decoder.hpp"
 
+#include <optional>
+
 #include "sim/mcu/cpu/core.hpp"
 #include "sim/mcu/cpu/thumb.hpp"
 
@@ -30,22 +32,30 @@ const Instruction* continue_behind(Core& core, const Instruction& instruction) {
 }
 
 /// An instruction of an IT block (DDI 0403, A7.3.3).
+template <bool is_in_page>
 const Instruction* execute_if(Core& core, const Instruction& instruction) {
   const unsigned state = core.it_state;
   const auto rest = static_cast<std::uint8_t>((state & 7U) == 0 ? 0U : (state & 0xE0U) | (state << 1U & 0x1FU));
   const Instruction* const behind = after(instruction);
   core.it_state = rest;
-  if (core.holds(state >> 4U)) {
+  if (core.holds_now(state >> 4U)) {
+    // It must not go on by itself: if the block ends here, what follows stands elsewhere.
+    const std::uint32_t left = core.left;
+    core.set_left(0);
     const Instruction* const next = instruction.conditional(core, instruction);
     if (core.end >= End::breakpoint_instruction) {  // it was not executed
       core.it_state = static_cast<std::uint8_t>(state);
       return next;
     }
+    core.give_back(left);
     if (next != behind) {
-      return next;
+      return core.go_on(next);
     }
   }
-  return rest != 0 ? behind : core.at(instruction.address + 2U * instruction.halfwords);
+  if (rest != 0) {
+    return core.go_on(behind);
+  }
+  return core.go_on(is_in_page ? behind - CodePage::slots : core.at(instruction.address + 2U * instruction.halfwords));
 }
 
 Instruction decode_narrow(const Encoding& code) {
@@ -108,9 +118,14 @@ Instruction decode(const Encoding& code) {
   constexpr unsigned bkpt = 0b10111110;  // executed whether or not its condition holds
   if (code.in_it_block && code.first >> 8U != bkpt) {
     instruction.conditional = instruction.execute;
-    instruction.execute = &execute_if;
+    instruction.execute = code.is_in_page() ? &execute_if<true> : &execute_if<false>;
   }
   return instruction;
+}
+
+Execute joined(const Instruction& first, const Instruction& second) {
+  const std::optional<unsigned> condition = condition_of_near_jump(second.execute);
+  return condition ? with_jump(first.execute, *condition) : nullptr;
 }
 
 Instruction continuation(std::uint32_t address) { return standing_in(&continue_behind, address); }
@@ -119,8 +134,8 @@ Instruction invalid_state(std::uint32_t address) { return standing_in(&refuse_st
 
 }  // namespace
 
-const InstructionSet thumb_instructions{&decode, &continuation, &fetch_fault, &invalid_state};
+const InstructionSet thumb_instructions{&decode, &joined, &continuation, &fetch_fault, &invalid_state};
 
-const Instruction* do_nothing(Core& /*core*/, const Instruction& instruction) { return after(instruction); }
+const Instruction* do_nothing(Core& core, const Instruction& instruction) { return core.go_on(after(instruction)); }
 
 }  // namespace proleg::sim

@@ -4,6 +4,7 @@
 // The files that decode a group of instructions also say what they do.
 
 #include <cstdint>
+#include <optional>
 
 #include "sim/mcu/cpu/instruction.hpp"
 
@@ -44,5 +45,11 @@ extern const InstructionSet thumb_instructions;
 /// Branches, IT, hints, special registers, SVC, BKPT (A5.2.5, A5.2.6, A5.3.4).
 [[nodiscard]] Instruction decode_narrow_control(const Encoding& code);
 [[nodiscard]] Instruction decode_control(const Encoding& code);
+
+// A jump that follows a comparison is executed with it: it is the most frequent pair by far.
+/// The condition of a jump to an instruction beside it; nothing if it is none.
+[[nodiscard]] std::optional<unsigned> condition_of_near_jump(Execute execute);
+/// Executes a comparison and the jump behind it, which has this condition. Null if the first is none.
+[[nodiscard]] Execute with_jump(Execute comparison, unsigned condition);
 
 }  // namespace proleg::sim

@@ -121,7 +121,7 @@ void Engine::set_breakpoints(std::span<const std::uint32_t> addresses) {
 
 bool Engine::ends_before(const Instruction& next) {
   if (step_limit_) {
-    if (core_.instructions >= *step_limit_) {
+    if (core_.instructions() >= *step_limit_) {
       core_.end = End::stepped;
     }
   } else if (pass_ == next.address) {
@@ -134,12 +134,13 @@ bool Engine::ends_before(const Instruction& next) {
 
 template <bool watches>
 End Engine::execute() {
+  // A chain of calls has a bound, for compilers that make no jumps of them.
+  constexpr std::uint64_t longest_chain = watches ? 1 : 256;
   const Instruction* next = core_.begin(pc_);
-  std::uint64_t count = core_.instructions;
   core_.present = next;
   running_ = true;
   for (;;) {
-    if (count >= core_.limit) [[unlikely]] {
+    if (core_.instructions() >= core_.limit) [[unlikely]] {
       if (core_.end == End::none && !step_limit_ && core_.client.stops()) {
         core_.end = End::stopped;
       }
@@ -152,14 +153,14 @@ End Engine::execute() {
         break;
       }
     }
-    core_.present = next;
-    core_.instructions = ++count;
-    next = next->execute(core_, *next);
+    const std::uint64_t until_limit = core_.limit - core_.instructions();
+    core_.set_left(static_cast<std::uint32_t>(std::min(until_limit, longest_chain)));
+    next = core_.go_on(next);
   }
   running_ = false;
   pc_ = next->address;
   if (core_.end >= End::breakpoint_instruction) {  // it was not executed
-    --core_.instructions;
+    --core_.end_of_chain;
   }
   return core_.end;
 }
@@ -170,7 +171,7 @@ End Engine::run() {
 }
 
 End Engine::step() {
-  step_limit_ = core_.instructions + 1;
+  step_limit_ = core_.instructions() + 1;
   const std::uint64_t limit = core_.limit;
   core_.limit = ~std::uint64_t{0};
   const End end = run();

@@ -3,6 +3,7 @@
 // Executes the instructions of a Cortex-M4: registers, memory and the run. Its client has the exceptions and the
 // memory-mapped registers.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -59,9 +60,14 @@ class Engine {
   [[nodiscard]] const MemoryFault& fault() const { return core_.fault; }
 
   /// Executed since the engine was made, with those that an IT block skips. In a callback: with the present one.
-  [[nodiscard]] std::uint64_t instructions() const { return core_.instructions; }
+  [[nodiscard]] std::uint64_t instructions() const { return core_.instructions(); }
   /// EngineClient::stops() is called from here on.
-  void set_limit(std::uint64_t instructions) { core_.limit = running_ && core_.end != End::none ? 0 : instructions; }
+  void set_limit(std::uint64_t instructions) {
+    core_.limit = running_ && core_.end != End::none ? 0 : instructions;
+    if (core_.end_of_chain > core_.limit) {
+      core_.set_left(static_cast<std::uint32_t>(std::max(core_.limit, core_.instructions()) - core_.instructions()));
+    }
+  }
   /// CCR.UNALIGN_TRP and DIV_0_TRP.
   void set_traps(bool unaligned, bool division) {
     core_.traps_unaligned = unaligned;

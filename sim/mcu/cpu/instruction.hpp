@@ -3,13 +3,15 @@
 // An instruction of the Cortex-M4 as it is executed: decoded once, with the function that does its work.
 
 #include <cstdint>
+#include <span>
 
 namespace proleg::sim {
 
 class Core;
 struct Instruction;
 
-/// Executes an instruction. Returns the one that follows; the same one if it was not executed, and Core::end says why.
+/// Executes an instruction, and those behind it (Core::go_on()). Returns the one that follows; the same one if it was
+/// not executed, and Core::end says why.
 using Execute = const Instruction* (*)(Core& core, const Instruction& instruction);
 
 /// Numbers of registers that have a name.
@@ -43,17 +45,22 @@ struct Instruction {
   return &instruction + instruction.halfwords;
 }
 
+/// Of a jump whose target stands beside it: `immediate` is the distance in halfwords.
+[[nodiscard]] inline const Instruction* near_target(const Instruction& jump) {
+  return &jump + static_cast<std::int32_t>(jump.immediate);
+}
+
 /// The halfwords to be decoded.
 struct Encoding {
   std::uint32_t address = 0;
   std::uint16_t first = 0;
   std::uint16_t second = 0;  ///< counts for instructions of four bytes
   bool in_it_block = false;
-  /// Decoded instructions from here on, this many bytes, stand beside the decoded one, so that a branch can be an
-  /// offset.
-  std::uint32_t near_start = 0;
-  std::uint32_t near_bytes = 0;
+  /// Of an instruction in a CodePage: where the page begins, and what it depends on.
+  std::uint32_t page = 0;
+  std::span<const std::uint8_t> memory;
 
+  [[nodiscard]] bool is_in_page() const { return !memory.empty(); }
   /// Bits of the first halfword; of the second.
   [[nodiscard]] unsigned bits(unsigned lowest, unsigned width = 1) const {
     return first >> lowest & ((1U << width) - 1U);
@@ -73,6 +80,8 @@ struct Encoding {
 struct InstructionSet {
   /// What the halfwords at an address say.
   Instruction (*decode)(const Encoding& code);
+  /// How the first of two instructions is executed together with the one behind it; null: each alone.
+  Execute (*joined)(const Instruction& first, const Instruction& second);
   /// Not an instruction: leads to the one at the address, behind the last that was decoded.
   Instruction (*continuation)(std::uint32_t address);
   /// In place of an instruction at an address without memory.

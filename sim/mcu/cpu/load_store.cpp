@@ -7,6 +7,7 @@
 
 #include "sim/mcu/cpu/core.hpp"
 #include "sim/mcu/cpu/decoder.hpp"
+#include "sim/mcu/cpu/thumb.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -76,7 +77,24 @@ const Instruction* load_one(Core& core, const Instruction& instruction) {
   }
   write_back<mode>(core, instruction);
   core.set(instruction.d, value);
-  return after(instruction);
+  return core.go_on(after(instruction));
+}
+
+const Instruction* load_constant(Core& core, const Instruction& instruction) {
+  core.set(instruction.d, instruction.immediate);
+  return core.go_on(after(instruction));
+}
+
+/// Loads a word at a constant address, `immediate`: the word is taken now if it belongs to the page.
+void set_literal(Instruction& instruction, const Encoding& code) {
+  const std::uint32_t offset = instruction.immediate - code.page;
+  if (code.is_in_page() && offset % 4 == 0 && offset <= code.memory.size() - 4) {
+    instruction.execute = &load_constant;
+    instruction.immediate = halfword_at(code.memory, offset) | std::uint32_t{halfword_at(code.memory, offset + 2)}
+                                                                   << 16U;
+  } else {
+    instruction.execute = &load_one<Type::word, Mode::absolute>;
+  }
 }
 
 template <Mode mode>
@@ -87,7 +105,7 @@ const Instruction* load_pc(Core& core, const Instruction& instruction) {
     return &instruction;
   }
   write_back<mode>(core, instruction);
-  return core.branch_exchange(instruction, value);
+  return core.go_on(core.branch_exchange(instruction, value));
 }
 
 template <Type type, Mode mode>
@@ -96,7 +114,7 @@ const Instruction* store_one(Core& core, const Instruction& instruction) {
     return &instruction;
   }
   write_back<mode>(core, instruction);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// The functions by mode; of one register by type, too.
@@ -166,8 +184,9 @@ const Instruction* load_several(Core& core, const Instruction& instruction) {
   for (std::uint32_t list = instruction.immediate & 0x7FFFU; list != 0; list &= list - 1) {
     core.r[static_cast<unsigned>(std::countr_zero(list))] = values[count++];
   }
-  return (instruction.immediate >> program_counter & 1U) != 0 ? core.branch_exchange(instruction, values[count])
-                                                              : after(instruction);
+  return core.go_on((instruction.immediate >> program_counter & 1U) != 0
+                        ? core.branch_exchange(instruction, values[count])
+                        : after(instruction));
 }
 
 template <bool is_downwards>
@@ -185,7 +204,7 @@ const Instruction* store_several(Core& core, const Instruction& instruction) {
   if ((instruction.option & 1U) != 0) {
     core.set(instruction.n, base_after<is_downwards>(core, instruction));
   }
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 Instruction several(Execute execute, unsigned base, unsigned list, bool writes_back) {
@@ -212,7 +231,7 @@ const Instruction* load_two(Core& core, const Instruction& instruction) {
   write_back<mode>(core, instruction);
   core.r[instruction.d] = first;
   core.r[instruction.a] = second;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 template <Mode mode>
@@ -223,7 +242,7 @@ const Instruction* store_two(Core& core, const Instruction& instruction) {
     return &instruction;
   }
   write_back<mode>(core, instruction);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 constexpr auto loads_of_two = []<std::size_t... i>(std::index_sequence<i...>) {
@@ -245,7 +264,7 @@ const Instruction* load_exclusive(Core& core, const Instruction& instruction) {
   }
   core.is_exclusive = true;
   core.r[instruction.d] = value;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// a is the register that is stored, d that of the result.
@@ -261,7 +280,7 @@ const Instruction* store_exclusive(Core& core, const Instruction& instruction) {
   }
   core.r[instruction.d] = core.is_exclusive ? 0 : 1;
   core.is_exclusive = false;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// TBB, TBH (amount is 1). The base is a register, or the PC.
@@ -272,7 +291,7 @@ const Instruction* branch_by_table(Core& core, const Instruction& instruction) {
   if (!load<type>(core, base + (core.r[instruction.m] << instruction.amount), distance)) {
     return &instruction;
   }
-  return core.branch(instruction.address + 4 + 2 * distance);
+  return core.go_on(core.branch(instruction.address + 4 + 2 * distance));
 }
 
 Instruction exclusive_or_table(const Encoding& code) {
@@ -339,7 +358,8 @@ Instruction narrow_one(const Encoding& code) {
     case 0b0100:  // of a literal
       instruction.d = code.reg(8);
       instruction.immediate = (code.pc() & ~3U) + 4 * code.bits(0, 8);
-      return with(Type::word, Mode::absolute, true);
+      set_literal(instruction, code);
+      return instruction;
     case 0b0101:
       instruction.m = code.reg(6);
       return with(by_register[code.bits(9, 3)].type, Mode::indexed, by_register[code.bits(9, 3)].is_load);
@@ -512,7 +532,11 @@ Instruction decode_single(const Encoding& code) {
   if (instruction.d == stack_pointer && type != Type::word) {
     return {};
   }
-  instruction.execute = is_load ? loading(type, mode) : storing(type, mode);
+  if (is_load && type == Type::word && mode == Mode::absolute) {
+    set_literal(instruction, code);
+  } else {
+    instruction.execute = is_load ? loading(type, mode) : storing(type, mode);
+  }
   return instruction;
 }
 

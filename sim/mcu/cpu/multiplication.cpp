@@ -19,20 +19,20 @@ const Instruction* multiply(Core& core, const Instruction& instruction) {
     core.set_negative_and_zero(product);
   }
   core.r[instruction.d] = product;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// MLA; MUL of four bytes, whose a is the PC.
 const Instruction* multiply_and_add(Core& core, const Instruction& instruction) {
   const std::uint32_t summand = instruction.a == program_counter ? 0U : core.r[instruction.a];
   core.r[instruction.d] = core.r[instruction.n] * core.r[instruction.m] + summand;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// MLS.
 const Instruction* multiply_and_subtract(Core& core, const Instruction& instruction) {
   core.r[instruction.d] = core.r[instruction.a] - core.r[instruction.n] * core.r[instruction.m];
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// Adds a, unless it is the PC. Sets Q if the sum is no word.
@@ -50,14 +50,14 @@ const Instruction* multiply_halves(Core& core, const Instruction& instruction) {
   accumulate(core, instruction,
              half(core.r[instruction.n], (instruction.option & 2U) != 0) *
                  half(core.r[instruction.m], (instruction.option & 1U) != 0));
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SMLAWB, SMULWB and the like.
 const Instruction* multiply_word_by_half(Core& core, const Instruction& instruction) {
   accumulate(core, instruction,
              as_signed(core.r[instruction.n]) * half(core.r[instruction.m], (instruction.option & 1U) != 0) >> 16);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 struct Products {
@@ -78,7 +78,7 @@ template <bool subtracts>
 const Instruction* multiply_both_halves(Core& core, const Instruction& instruction) {
   const Products products = products_of_halves(core, instruction);
   accumulate(core, instruction, subtracts ? products.low - products.high : products.low + products.high);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SMMLA, SMMUL, SMMLS; bit 0 of the option: rounded.
@@ -89,7 +89,7 @@ const Instruction* multiply_for_top(Core& core, const Instruction& instruction) 
   const std::uint64_t rounding = (instruction.option & 1U) != 0 ? 0x8000'0000U : 0U;
   core.r[instruction.d] =
       static_cast<std::uint32_t>(((subtracts ? summand - product : summand + product) + rounding) >> 32U);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// USADA8, USAD8.
@@ -101,7 +101,7 @@ const Instruction* sum_of_differences(Core& core, const Instruction& instruction
     sum += a > b ? a - b : b - a;
   }
   core.r[instruction.d] = sum;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 // Results of two words: d has the low one, a the high one.
@@ -113,7 +113,7 @@ std::uint64_t pair(const Core& core, const Instruction& instruction) {
 const Instruction* set_pair(Core& core, const Instruction& instruction, std::uint64_t value) {
   core.r[instruction.d] = static_cast<std::uint32_t>(value);
   core.r[instruction.a] = static_cast<std::uint32_t>(value >> 32U);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SMULL, SMLAL.
@@ -165,7 +165,7 @@ const Instruction* divide(Core& core, const Instruction& instruction) {
     core.r[instruction.d] =
         is_signed ? static_cast<std::uint32_t>(as_signed(dividend) / as_signed(divisor)) : dividend / divisor;
   }
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ const Instruction* shift(Core& core, const Instruction& instruction) {
     core.carry = result.carry;
   }
   core.r[instruction.d] = result.value;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// Instruction::amount: by how many bits the register is rotated first.
@@ -35,7 +35,7 @@ template <typename Narrow>
 const Instruction* extend(Core& core, const Instruction& instruction) {
   const auto narrow = static_cast<Narrow>(rotated(core, instruction));
   core.r[instruction.d] = added(core, instruction, static_cast<std::uint32_t>(std::int32_t{narrow}));
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// SXTB16, UXTB16, SXTAB16, UXTAB16.
@@ -46,7 +46,7 @@ const Instruction* extend_both(Core& core, const Instruction& instruction) {
   const auto low = static_cast<std::uint32_t>(std::int32_t{static_cast<Narrow>(value)});
   const auto high = static_cast<std::uint32_t>(std::int32_t{static_cast<Narrow>(value >> 16U)});
   core.r[instruction.d] = ((base + low) & 0xFFFFU) | ((base >> 16U) + high) << 16U;
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 /// Sums and differences of halves or bytes. Instruction::option: bits 0 to 2 the operation, 3 and 4 the limit of the
@@ -112,7 +112,7 @@ const Instruction* compute_lanes(Core& core, const Instruction& instruction) {
   if (limit == Limit::wraps) {
     core.greater_equal = flags;
   }
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 std::int64_t saturated(Core& core, std::int64_t value) {
@@ -130,25 +130,25 @@ const Instruction* saturating_sum(Core& core, const Instruction& instruction) {
     b = saturated(core, 2 * b);
   }
   core.r[instruction.d] = static_cast<std::uint32_t>(saturated(core, subtracts ? a - b : a + b));
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 std::uint32_t reversed_bytes(std::uint32_t value) { return __builtin_bswap32(value); }
 
 const Instruction* reverse_bytes(Core& core, const Instruction& instruction) {
   core.r[instruction.d] = reversed_bytes(core.r[instruction.m]);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 const Instruction* reverse_bytes_of_halves(Core& core, const Instruction& instruction) {
   core.r[instruction.d] = std::rotl(reversed_bytes(core.r[instruction.m]), 16);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 const Instruction* reverse_signed_half(Core& core, const Instruction& instruction) {
   const auto half = static_cast<std::int16_t>(reversed_bytes(core.r[instruction.m]) >> 16U);
   core.r[instruction.d] = static_cast<std::uint32_t>(std::int32_t{half});
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 const Instruction* reverse_bits(Core& core, const Instruction& instruction) {
@@ -157,7 +157,7 @@ const Instruction* reverse_bits(Core& core, const Instruction& instruction) {
   value = (value >> 2U & 0x3333'3333U) | (value & 0x3333'3333U) << 2U;
   value = (value >> 4U & 0x0F0F'0F0FU) | (value & 0x0F0F'0F0FU) << 4U;
   core.r[instruction.d] = reversed_bytes(value);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 const Instruction* select_bytes(Core& core, const Instruction& instruction) {
@@ -166,12 +166,12 @@ const Instruction* select_bytes(Core& core, const Instruction& instruction) {
     mask |= (core.greater_equal >> byte & 1U) != 0 ? 0xFFU << 8U * byte : 0U;
   }
   core.r[instruction.d] = (core.r[instruction.n] & mask) | (core.r[instruction.m] & ~mask);
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 const Instruction* count_leading_zeros(Core& core, const Instruction& instruction) {
   core.r[instruction.d] = static_cast<std::uint32_t>(std::countl_zero(core.r[instruction.m]));
-  return after(instruction);
+  return core.go_on(after(instruction));
 }
 
 Instruction registers_of(const Encoding& code) {

@@ -85,10 +85,12 @@ inline Step call(std::uint32_t address) { return {13, address, 0}; }
 inline Step spin(std::uint32_t rounds) { return {14, 0, rounds}; }
 }  // namespace step
 
+/// In the vector table.
+inline constexpr std::uint32_t initial_stack = 0x2002'0000;
+
 /// Tests with the programs of image/.
 class Programs : public testing::Test {
  protected:
-  static constexpr std::uint32_t initial_stack = 0x2002'0000;
   static const ElfImage& image();
 
   Programs();

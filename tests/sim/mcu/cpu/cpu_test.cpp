@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "shared/fixed/random.hpp"
 #include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
@@ -219,6 +224,168 @@ TEST_F(CpuTest, SleepOnExitSleepsWithoutRunningThreadMode) {
     cpu_.set_interrupt(1, true);
     EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
     EXPECT_EQ(rig_.take_marks(), Marks({0x1011, 0x2011}));
+  }
+}
+
+/// A random program: sums, comparisons, jumps forward, IT blocks and words that are loaded from beside the code. It
+/// ends in a loop of one instruction.
+std::vector<std::uint8_t> random_program(Pcg32& random) {
+  std::vector<std::uint8_t> code;
+  const auto add = [&](std::uint32_t halfword) {
+    code.push_back(static_cast<std::uint8_t>(halfword));
+    code.push_back(static_cast<std::uint8_t>(halfword >> 8U));
+  };
+  const auto drawn_register = [&] { return random.below(6); };
+  const auto add_sum = [&] {
+    const std::uint32_t d = drawn_register();
+    switch (random.below(4)) {
+      case 0:
+        return add(0x3000U | d << 8U | random.below(256));  // adds d, #
+      case 1:
+        return add(0x1800U | d << 6U | drawn_register() << 3U | drawn_register());  // adds
+      case 2:
+        return add(0x4040U | d << 3U | drawn_register());  // eors
+      default:
+        return add(0x0840U | d << 3U | drawn_register());  // lsrs #1
+    }
+  };
+  const auto add_comparison = [&] {
+    const std::uint32_t n = drawn_register();
+    switch (random.below(6)) {
+      case 0:
+        return add(0x2800U | n << 8U | random.below(256));  // cmp n, #
+      case 1:
+        return add(0x4280U | n << 3U | drawn_register());  // cmp
+      case 2:
+        return add(0x3800U | n << 8U | random.below(4));  // subs n, #
+      case 3:
+        return add(0x4200U | n << 3U | drawn_register());  // tst
+      case 4:
+        add(0xF1B0U | n);  // cmp.w n, #
+        return add(0x0F00U | random.below(256));
+      default:
+        add(0xF010U | n);  // tst.w n, #
+        return add(0x0F00U | random.below(256));
+    }
+  };
+  for (int i = 0; i < 500; ++i) {
+    switch (random.below(7)) {
+      case 0:
+        add_sum();
+        break;
+      case 1:
+        add_comparison();
+        break;
+      case 2:
+      case 3: {
+        add_comparison();
+        const std::uint32_t skipped = random.below(4);
+        add(0xD000U | random.below(14) << 8U | ((skipped - 1) & 0xFFU));  // b<condition>
+        for (std::uint32_t k = 0; k < skipped; ++k) {
+          add_sum();
+        }
+        break;
+      }
+      case 4: {
+        add(0xBF00U | random.below(14) << 4U | (1U << random.below(4)));  // it, with conditions that are the same
+        const unsigned last = static_cast<unsigned>(std::countr_zero(code[code.size() - 2] & 0xFU));
+        for (unsigned k = last; k < 4; ++k) {
+          add_sum();
+        }
+        break;
+      }
+      case 5:
+        add(0x4800U | drawn_register() << 8U | random.below(256));  // ldr d, [pc, #]
+        break;
+      default:
+        add(0xB108U | drawn_register());  // cbz n, over the next
+        add_sum();
+        add_sum();
+        break;
+    }
+  }
+  add(0xE7FEU);  // b, to itself
+  return code;
+}
+
+/// State after an instruction: r0 to r7, flags and IT block, and the distance from the begin of the program.
+std::vector<std::uint32_t> state_of(const CpuRig& rig, std::uint32_t program) {
+  std::vector<std::uint32_t> state;
+  for (unsigned number = 0; number < 8; ++number) {
+    state.push_back(rig.cpu.core_register(number));
+  }
+  state.push_back(rig.cpu.core_register(16));
+  state.push_back(rig.cpu.core_register(15) - program);
+  return state;
+}
+
+TEST(RandomPrograms, GiveTheSameInRunsOfAnyLengthInStepsAndFromRam) {
+  constexpr std::uint32_t in_flash = ChipMemory::flash_start + 0x1000;
+  constexpr std::uint32_t in_ram = ChipMemory::ram_start + 0x1000;
+  constexpr std::size_t length = 1500;
+  Pcg32 random(50, 3);
+  for (int round = 0; round < 40; ++round) {
+    std::vector<std::uint8_t> code = random_program(random);
+    const auto start = [&](CpuRig& rig, std::uint32_t program) {
+      code.resize(8192, 0x11);  // what a load behind the program finds
+      rig.cpu.write(program, code);
+      rig.set_word(ChipMemory::flash_start, initial_stack);
+      rig.set_word(ChipMemory::flash_start + 4, program | 1U);
+      rig.cpu.reset();
+    };
+    CpuRig alone;
+    start(alone, in_flash);
+    std::vector<std::vector<std::uint32_t>> states{state_of(alone, in_flash)};
+    while (states.size() <= length) {
+      ASSERT_EQ(alone.cpu.run(1), Cpu::State::running);
+      states.push_back(state_of(alone, in_flash));
+    }
+
+    CpuRig in_pieces;
+    start(in_pieces, in_flash);
+    for (std::size_t done = 0; done < length;) {
+      const std::size_t piece = std::min<std::size_t>(1 + random.below(random.below(8) == 0 ? 700 : 12), length - done);
+      in_pieces.cpu.run(piece);
+      done += piece;
+      ASSERT_EQ(in_pieces.cpu.instructions(), done);
+      ASSERT_EQ(state_of(in_pieces, in_flash), states[done]) << "round " << round << ", " << done << " instructions";
+    }
+
+    CpuRig stepped;
+    CpuRig from_ram;
+    start(stepped, in_flash);
+    start(from_ram, in_ram);
+    for (std::size_t done = 1; done <= length; ++done) {
+      stepped.cpu.step();
+      from_ram.cpu.run(1);
+      ASSERT_EQ(state_of(stepped, in_flash), states[done]) << "round " << round << ", " << done << " steps";
+      ASSERT_EQ(state_of(from_ram, in_ram), states[done]) << "round " << round << ", " << done << " from RAM";
+    }
+
+    CpuRig stopped;
+    start(stopped, in_flash);
+    const std::size_t place = 1 + random.below(300);
+    const std::uint32_t distance = states[place].back();
+    const auto first = std::ranges::find(states, distance, [](const auto& state) { return state.back(); });
+    stopped.cpu.set_breakpoints(std::array{in_flash + distance});
+    ASSERT_EQ(stopped.cpu.run(length), Cpu::State::at_breakpoint);
+    ASSERT_EQ(stopped.cpu.instructions(), static_cast<std::uint64_t>(first - states.begin()));
+  }
+}
+
+TEST_F(CpuTest, ALoadFromBesideTheCodeFindsWhatWasProgrammedAnew) {
+  constexpr std::uint32_t program = ChipMemory::flash_start + 0x13FC;  // at the end of a kilobyte
+  constexpr std::uint32_t word = program + 4 + 1020;
+  rig_.set_word(program, 0xE7FD'48FF);  // ldr r0, [pc, #1020]; b, to it
+  rig_.set_word(ChipMemory::flash_start + 4, program | 1U);
+  for (const std::uint32_t value : {0x1234'5678U, 0U, 0xFFFF'FFFFU}) {
+    rig_.set_word(word, value);
+    cpu_.reset();
+    cpu_.run(10);
+    EXPECT_EQ(cpu_.core_register(0), value);
+    rig_.set_word(word, ~value);
+    cpu_.run(10);
+    EXPECT_EQ(cpu_.core_register(0), ~value);
   }
 }
 

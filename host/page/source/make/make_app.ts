@@ -46,6 +46,7 @@ export class MakeApp {
   readonly chosenObjects = signal<readonly number[]>([]); // of a group one
   readonly drag = signal<Drag | null>(null);
   readonly panel = signal<'none' | 'new' | 'open' | 'save' | 'algorithm'>('none'); // what is open below the bar
+  readonly newStep = signal(0); // of the panel New
   readonly part = signal<PartName>('world');
   readonly chosenJoints = signal<readonly number[]>([]); // kernel order
   readonly discards = signal(false); // changes of a draft without files may be lost
@@ -144,6 +145,7 @@ export class MakeApp {
 
   // Opens a panel below the bar, or closes it.
   toggle(panel: 'new' | 'open' | 'save' | 'algorithm'): void {
+    this.newStep.value = 0;
     this.panel.value = this.panel.peek() === panel ? 'none' : panel;
   }
 

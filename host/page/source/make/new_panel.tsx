@@ -1,7 +1,7 @@
 // New: a robot, its gait and its world in four steps. Each choice makes the draft anew, so that the drawings, the 3D view
 // and the next half minute show it at once. Nothing is on disk before the last step.
 import { signal } from '@preact/signals-core';
-import { useEffect, useState } from 'preact/hooks';
+import { useEffect } from 'preact/hooks';
 import type { NewScenario, RobotKind } from '../wire/messages.js';
 import type { MakeApp } from './make_app.js';
 import { algorithmTitle } from '../state/robot_text.js';
@@ -193,7 +193,7 @@ export function LossQuestion({ app }: { app: MakeApp }) {
 
 export function NewPanel({ app }: { app: MakeApp }) {
   const obstacle = app.obstacle();
-  const [step, setStep] = useState(0);
+  const step = app.newStep.value;
   const last = steps.length - 1;
   const wouldLose = app.wouldLose();
   const send = () => {
@@ -215,7 +215,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
       <ol class="steps">
         {steps.map((each, i) => (
           <li key={each}>
-            <button type="button" aria-current={i === step ? 'step' : undefined} onClick={() => setStep(i)}>
+            <button type="button" aria-current={i === step ? 'step' : undefined} onClick={() => (app.newStep.value = i)}>
               {i + 1}. {each}
             </button>
           </li>
@@ -225,7 +225,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
       <form
         onSubmit={(event) => {
           event.preventDefault();
-          if (step < last) setStep(step + 1);
+          if (step < last) app.newStep.value = step + 1;
           else void create();
         }}
       >
@@ -255,7 +255,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
           </p>
         )}
         <div class="fields">
-          <button type="button" disabled={step === 0} onClick={() => setStep(step - 1)}>
+          <button type="button" disabled={step === 0} onClick={() => (app.newStep.value = step - 1)}>
             Back
           </button>
           <button type="submit" class="primary" disabled={obstacle !== null}>

@@ -16,7 +16,7 @@ class PeripheralMap {
   struct Place {
     Peripheral* peripheral;
     std::uint32_t offset;
-    bool answers;  ///< whether note_answer() was called for it
+    bool answers;  ///< whether its registers are known to answer
   };
 
   /// Adds a peripheral at its base(). It must outlive the map.

@@ -443,20 +443,20 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   // Memory and registers of the CPU.
 
-  /// The peripheral at an address. Throws UnmodelledAccess if it has no clock.
-  PeripheralMap::Place find(std::uint32_t address, unsigned size) {
+  /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess if it has no clock.
+  std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) {
     const PeripheralMap::Place place = map_.find(address, size);
     if (!place.answers) {
       rcc_.require_clock(*place.peripheral, place.offset);
       map_.note_answer(address);
     }
-    return place;
+    return {place.peripheral, place.offset};
   }
 
   std::uint32_t load(std::uint32_t address, unsigned size) override {
     std::uint32_t value = 0;
     guard([&] {
-      const auto [peripheral, offset, answers] = find(address, size);
+      const auto [peripheral, offset] = find(address, size);
       if (bus_latency(*peripheral) != 0) {
         falling_lines_.finish([this](unsigned position) { cpu_.set_interrupt(position, false); });
       }
@@ -472,7 +472,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   void store(std::uint32_t address, unsigned size, std::uint32_t value) override {
     guard([&] {
-      const auto [peripheral, offset, answers] = find(address, size);
+      const auto [peripheral, offset] = find(address, size);
       const LocalTime time = now();
       if (peripheral == &can_) {
         watch_can(offset, value);

@@ -18,10 +18,10 @@ namespace proleg::sim {
 /// several threads: 20 copies would displace each other from the processor's cache.
 struct CodePage {
   static constexpr std::uint32_t size = 1024;  ///< bytes
-  /// Bytes on which its instructions depend: a word that they load can be that far behind their page.
-  static constexpr std::uint32_t reach = 2 * size + 4;
-  /// Of the instructions outside of IT blocks. Behind the last halfword are what leads to the next page, for
-  /// instructions of two and of four bytes.
+  /// Bytes from its begin on which its instructions depend: a word that they load can be in the next page.
+  static constexpr std::uint32_t reach = 2 * size;
+  /// Number of instructions in each half of the array. The last two lead to the next page, behind an instruction of two
+  /// bytes and of four.
   static constexpr std::uint32_t slots = size / 2 + 2;
 
   std::array<Instruction, 2 * slots> instructions;  ///< those in IT blocks behind the others
@@ -41,7 +41,7 @@ class CodePages {
     return &page->instructions[offset % CodePage::size / 2 + (in_it_block ? CodePage::slots : 0)];
   }
 
-  /// The contents have changed there. No instruction of the page may be in use.
+  /// The contents have changed there. No instruction of a page that depends on them may be in use.
   void discard(std::uint32_t offset, std::uint32_t size);
 
  private:

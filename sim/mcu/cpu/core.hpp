@@ -39,7 +39,8 @@ class EngineClient {
   virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
   /// A store to flash. False: rejected.
   [[nodiscard]] virtual bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
-  /// Called before an instruction if attention was requested or the limit is reached. True: the run ends.
+  /// Called before an instruction if attention was requested or the limit is reached. True: the run ends. False: it has
+  /// set a limit that is not reached.
   [[nodiscard]] virtual bool stops() = 0;
   /// Called for a coprocessor instruction: whether it may be executed.
   [[nodiscard]] virtual bool coprocessor_allowed() const = 0;

@@ -116,7 +116,7 @@ const Instruction* compute(Core& core, const Instruction& instruction) {
   return core.go_on(after(instruction));
 }
 
-/// And the jump behind it, whose target stands beside it.
+/// Computes, and executes the jump behind, whose target stands beside it.
 template <Operation operation, Operand kind, Result result, unsigned condition>
 const Instruction* compute_and_jump(Core& core, const Instruction& instruction) {
   compute_only<operation, kind, result>(core, instruction);

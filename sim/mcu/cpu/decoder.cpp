@@ -59,9 +59,9 @@ const Instruction* execute_if(Core& core, const Instruction& instruction) {
 }
 
 Instruction decode_narrow(const Encoding& code) {
-  constexpr Instruction (*groups[])(const Encoding&){&decode_narrow_data_processing, &decode_narrow_multiplication,
-                                                     &decode_narrow_register_processing, &decode_narrow_load_or_store,
-                                                     &decode_narrow_control};
+  constexpr Instruction (*groups[])(const Encoding&){
+      &decode_narrow_data_processing, &decode_narrow_multiplication, &decode_narrow_register_processing,
+      &decode_narrow_load_or_store,   &decode_narrow_several,        &decode_narrow_control};
   for (const auto group : groups) {
     if (const Instruction instruction = group(code); instruction.execute != nullptr) {
       return instruction;

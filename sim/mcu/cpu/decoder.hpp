@@ -36,17 +36,19 @@ extern const InstructionSet thumb_instructions;
 [[nodiscard]] Instruction decode_narrow_multiplication(const Encoding& code);
 [[nodiscard]] Instruction decode_multiplication(const Encoding& code);
 [[nodiscard]] Instruction decode_long_multiplication(const Encoding& code);
-/// Loads and stores of two bytes (A5.2.4, PUSH, POP, LDM, STM), of four bytes: of several registers (A5.3.5), of two,
-/// exclusive ones and branches by a table (A5.3.6), and of one (A5.3.7 to A5.3.10).
+/// Loads and stores of one register, of two bytes (A5.2.4) and of four (A5.3.7 to A5.3.10).
 [[nodiscard]] Instruction decode_narrow_load_or_store(const Encoding& code);
+[[nodiscard]] Instruction decode_single(const Encoding& code);
+/// Of several registers: PUSH, POP, LDM, STM of two bytes, and of four (A5.3.5); of two, exclusive ones and branches by
+/// a table (A5.3.6).
+[[nodiscard]] Instruction decode_narrow_several(const Encoding& code);
 [[nodiscard]] Instruction decode_several(const Encoding& code);
 [[nodiscard]] Instruction decode_dual_or_exclusive(const Encoding& code);
-[[nodiscard]] Instruction decode_single(const Encoding& code);
 /// Branches, IT, hints, special registers, SVC, BKPT (A5.2.5, A5.2.6, A5.3.4).
 [[nodiscard]] Instruction decode_narrow_control(const Encoding& code);
 [[nodiscard]] Instruction decode_control(const Encoding& code);
 
-// A jump that follows a comparison is executed with it: it is the most frequent pair by far.
+// A comparison and the conditional jump behind it are executed together: no other pair is as frequent.
 /// The condition of a jump to an instruction beside it; nothing if it is none.
 [[nodiscard]] std::optional<unsigned> condition_of_near_jump(Execute execute);
 /// Executes a comparison and the jump behind it, which has this condition. Null if the first is none.

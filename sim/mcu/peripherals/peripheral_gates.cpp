@@ -1,5 +1,8 @@
 #include "sim/mcu/peripherals/peripheral_gates.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "sim/mcu/peripherals/register_block.hpp"
 
 namespace proleg::sim {
@@ -59,18 +62,8 @@ const PeripheralGates::Gate* PeripheralGates::gate_of(const Peripheral& peripher
       {0x4001'2000, apb2, 8},   // ADC1
       {0x4001'3800, apb2, 14},  // SYSCFG
   };
-  // The table makes the look-up at each register access fast. No two peripherals share a block.
-  constexpr std::uint32_t start = 0x4000'0000;
-  constexpr std::uint32_t block_bytes = 0x400;
-  static constexpr auto gate_of_block = [] {
-    std::array<const Gate*, 0x100> found{};
-    for (const Gate& gate : gates) {
-      found.at((gate.base - start) / block_bytes) = &gate;
-    }
-    return found;
-  }();
-  const std::uint32_t block = (peripheral.base() - start) / block_bytes;
-  return block < gate_of_block.size() ? gate_of_block[block] : nullptr;
+  const auto* const found = std::ranges::find(gates, peripheral.base(), &Gate::base);
+  return found != std::end(gates) ? found : nullptr;
 }
 
 void PeripheralGates::reset() {

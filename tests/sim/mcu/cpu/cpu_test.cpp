@@ -287,7 +287,7 @@ std::vector<std::uint8_t> random_program(Pcg32& random) {
         break;
       }
       case 4: {
-        add(0xBF00U | random.below(14) << 4U | (1U << random.below(4)));  // it, with conditions that are the same
+        add(0xBF00U | random.below(14) << 4U | (1U << random.below(4)));  // it: then or else, by bit 0 of the condition
         const unsigned last = static_cast<unsigned>(std::countr_zero(code[code.size() - 2] & 0xFU));
         for (unsigned k = last; k < 4; ++k) {
           add_sum();
@@ -386,6 +386,18 @@ TEST_F(CpuTest, ALoadFromBesideTheCodeFindsWhatWasProgrammedAnew) {
     rig_.set_word(word, ~value);
     cpu_.run(10);
     EXPECT_EQ(cpu_.core_register(0), ~value);
+  }
+}
+
+TEST_F(CpuTest, ALoadFromBesideTheCodeBehindTheEndOfTheFlashIsAFault) {
+  constexpr std::uint32_t end = ChipMemory::flash_start + ChipMemory::flash_size;
+  constexpr std::uint32_t program = end - 16;
+  rig_.set_word(ChipMemory::flash_start + 4, program | 1U);
+  for (const std::uint32_t offset : {8U, 12U}) {        // the last word, and one behind it
+    rig_.set_word(program, 0xE7FD'4800U | offset / 4);  // ldr r0, [pc, #]; b, to it
+    cpu_.reset();
+    cpu_.run(10);
+    EXPECT_EQ(cpu_.take_faults().empty(), program + 4 + offset < end) << offset;
   }
 }
 

@@ -1,6 +1,7 @@
 #include "sim/mcu/chip/stm32f405.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -68,16 +69,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       rcc_.attach(*peripheral);
       map_.add(*peripheral);
     }
-    using enum TimedPeripherals::Effect;
-    timed_.add(rcc_, on_others);
-    timed_.add(flash_, on_others);
-    timed_.add(iwdg_, on_others);
-    timed_.add(timer_2_, on_itself);
-    timed_.add(timer_3_, on_others);
-    timed_.add(timer_5_, on_itself);
-    timed_.add(usart_, on_others);
-    timed_.add(adc_, on_others);
-    timed_.add(can_, on_itself);
+    for (Peripheral* const peripheral : std::initializer_list<Peripheral*>{&rcc_, &flash_, &iwdg_, &timer_2_, &timer_3_,
+                                                                           &timer_5_, &usart_, &adc_, &can_}) {
+      timed_.add(*peripheral);
+    }
     cpu_.write(system_memory_address, system_memory(settings.unique_id));
   }
 
@@ -488,8 +483,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       peripheral->write(offset, value);
       store_latency_ = 0;
       pins_.look();
-      timed_.forget_after_write(*peripheral);
-      next_event_.reset();
+      invalidate_next_events();
       if (follow_core_clock(time)) {
         cpu_.pause();
       }

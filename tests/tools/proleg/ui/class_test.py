@@ -93,7 +93,7 @@ def test_a_name_and_the_code_give_a_robot():
         bob = program.join("  Bob   the\tsecond ")
         assert bob.name == "Bob the second", bob.name
         with program.teacher() as teacher:
-            assert [(entry["seat"], entry["name"]) for entry in teacher.document["learners"]] == [(1, "Anna"), (2, "Bob the second")]
+            teacher.until(lambda: [(entry["seat"], entry["name"]) for entry in teacher.document["learners"]] == [(1, "Anna"), (2, "Bob the second")])
             assert teacher.document["limit"] == 6 and teacher.document["code"] == program.code and not teacher.document["is_locked"]
             assert teacher.document["address"] == f"http://127.0.0.1:{program.port}/"
             assert teacher.document["folder"] == str(program.folder.resolve()) and teacher.document["teacher"]["seat"] == 0

@@ -22,7 +22,7 @@ build_packages=(g++ cmake ninja-build pkg-config "${library_packages[@]}")
 host_packages=("${build_packages[@]}" ccache git ca-certificates sqlite3)
 
 # The image that is flashed into modules.
-firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3)
+firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3 dwz)
 
 # The programs for arm64: the compiler, and what runs the programs here.
 aarch64_packages=(g++-aarch64-linux-gnu qemu-user)

@@ -17,6 +17,14 @@ def children(process):
     return found
 
 
+def folder_of(process):
+    """The folder that a program runs in; nothing after it has ended."""
+    try:
+        return Path(f"/proc/{process}/cwd").readlink()
+    except (FileNotFoundError, ProcessLookupError):
+        return None
+
+
 def runs(process):
     try:
         return not re.search(r"\nState:\t[ZX]", Path(f"/proc/{process}/status").read_text())

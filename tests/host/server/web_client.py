@@ -252,7 +252,7 @@ class Viewer:
 
 
 def live(viewer):
-    """Says more than twice a second that a page lives, as long as the event that this returns is set."""
+    """Says some times a second that a page lives, as long as the event that this returns is set."""
     lives = threading.Event()
     lives.set()
     send, lock = viewer.send_bytes, threading.Lock()
@@ -267,7 +267,7 @@ def live(viewer):
                 viewer.send({"type": "beat", "age_ms": 0})
             except OSError:
                 return
-            time.sleep(0.3)
+            time.sleep(0.1)
 
     viewer.send_bytes = send_alone
     threading.Thread(target=beat, daemon=True).start()

@@ -185,7 +185,7 @@ class Installation(unittest.TestCase):
         must("gallery.look")
         must("search.stop", name="searches/during")
         wait_until(lambda: (self.work / "searches/during/best.simulation.xml").exists(), "the best gait of the search")
-        wait_until(lambda: search("searches/during")["state"] != "running", "the end of the search")
+        wait_until(lambda: search("searches/during")["state"] == "interrupted", "the end of the search")
         errors = self.end(process)
         self.assertRegex(errors, r"\Aproleg ui: warning: its files were replaced or removed.*\n\Z")
         shutil.rmtree(self.work / "mine")

@@ -53,6 +53,8 @@ IN_THE_TEST = (
     # The searches of a reader take minutes.
     (r"^proleg optimise .*?(?= *(?:#|$))", r"\g<0> --evaluations 60"),
     (r"^proleg experiment .*?(?= *(?:#|$))", r"\g<0> --evaluations 40"),
+    # The reader starts the next command later.
+    (r"^(proleg bus .* --tcp) 20000 &", r"\1 20000 & for _ in {1..600}; do (: </dev/tcp/127.0.0.1/20000) 2>/dev/null && break; sleep 0.1; done"),
     # The reader sees which joint moves.
     (r"^proleg assign .*", r"printf 'J5\\nJ4\\nJ3\\nJ2\\nJ1\\n' | \g<0>"),
     # tools/check has built the image.

@@ -164,24 +164,26 @@ json SearchFolder::list(Clock::time_point now) {
   struct Found {
     const std::string* name;
     Entry* entry;
-    Version version;
+    std::int64_t time_ns;
   };
   std::vector<Found> all;
   for (auto& [name, entry] : entries_) {
-    all.push_back({&name, &entry, version_of(store_of(folder_ / name))});
+    all.push_back({&name, &entry, version_of(store_of(folder_ / name)).time_ns});
   }
-  std::ranges::stable_sort(all, std::greater(), [](const Found& found) { return found.version.time_ns; });
+  std::ranges::stable_sort(all, std::greater(), [](const Found& found) { return found.time_ns; });
   all.resize(std::min(all.size(), max_searches));
   json searches = json::array();
   has_unread_ = false;
   bool has_read_new = false;  // one at least: the list is complete some time, however busy the computer is
   const Clock::time_point end = Clock::now() + time_to_read;
-  for (const auto& [name, entry, version] : all) {
+  for (const auto& [name, entry, time_ns] : all) {
+    const fs::path search = folder_ / *name;
+    // In this order: what a program has written before its end is in the version of a search that does not run.
+    const bool is_running = optimize::is_being_written(store_of(search));
+    const Version version = version_of(store_of(search));
     if (version.inode == 0) {
       continue;  // it has gone since the last walk
     }
-    const fs::path search = folder_ / *name;
-    const bool is_running = optimize::is_being_written(store_of(search));
     const bool is_late = Clock::now() >= end && has_read_new;
     if (!entry->is_read && is_late) {
       has_unread_ = true;

@@ -1,5 +1,5 @@
 // The way into a class: name, code, Go.
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { closeIcon } from '../panels/icons.js';
 import { ThemeButton } from '../panels/page_tools.js';
 import type { EntryState } from './entry_state.js';
@@ -45,10 +45,10 @@ export function EntryPage({ entry }: { entry: EntryState }) {
   const codeField = useRef<HTMLInputElement>(null);
   const problem = entry.problem.value;
   const isBusy = entry.isBusy.value;
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (entry.known.value.length === 0) nameField.current?.focus();
   }, []);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const field = { name: nameField, code: codeField, button: null }[problem?.field ?? 'button'];
     field?.current?.focus();
   }, [problem]);

@@ -1,7 +1,7 @@
 // The chain as a table: a column for each joint from the tail to the head. A joint is dragged to another place; its handle
 // moves it with the arrow keys, too.
 import { useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../view/frame_clock.js';
 import { addFront } from '../view/front.js';
 import type { DraftRobot } from '../wire/messages.js';
@@ -36,7 +36,7 @@ export function ChainTable({ app, robot }: { app: MakeApp; robot: DraftRobot }) 
     grip.current = null;
     place.value = null;
   };
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!isDragging) return undefined;
     const onKey = (event: KeyboardEvent) => {
       if (event.key === 'Escape') giveUp(); // for a robot on a bus it is STOP as well

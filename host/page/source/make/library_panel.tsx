@@ -58,6 +58,10 @@ export function LibraryPanel({ app }: { app: MakeApp }) {
   const library = app.page.state.library.value;
   const item = library.find(({ name }) => name === chosen.value);
   const isMesh = app.mesh.isOpen.value && app.mesh.purpose.value === 'world';
+  // The answer may come after another object was chosen.
+  const close = (name: string) => {
+    if (chosen.peek() === name) chosen.value = null;
+  };
   return (
     <section class="panel make-panel" aria-label="Library">
       <div class="panel-head">
@@ -86,7 +90,7 @@ export function LibraryPanel({ app }: { app: MakeApp }) {
         </button>
       </div>
       {isMesh && <WorldMeshForm app={app} />}
-      {!isMesh && item !== undefined && <ItemForm key={item.name} app={app} item={item} done={() => (chosen.value = null)} />}
+      {!isMesh && item !== undefined && <ItemForm key={item.name} app={app} item={item} done={() => close(item.name)} />}
     </section>
   );
 }

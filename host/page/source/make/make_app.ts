@@ -511,6 +511,7 @@ export class MakeApp {
   // Writes a new scenario into a new folder, and starts it on the page Live. Returns the reason of a refusal, or null.
   async createNew(words: NewScenario, folder: string): Promise<string | null> {
     const { operations } = this.page;
+    await this.changes.settled(); // a draft on its way, without this name, would come after it
     try {
       await operations.ask('draft.new', { ...words, ...this.discard() });
       await operations.ask('draft.save_as', { folder });

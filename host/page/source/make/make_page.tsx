@@ -1,6 +1,6 @@
 // The page Make: the scenario from above, from the side and in 3D, where the robot will go in it, and its parts: robot,
 // behaviour, world, run, search.
-import { useEffect } from 'preact/hooks';
+import { useLayoutEffect } from 'preact/hooks';
 import { LaterView, loadLater, loadWhenIdle } from '../panels/later_view.js';
 import { ScenePanel } from '../panels/scene_panel.js';
 import { openDialog } from '../view/dialogs.js';
@@ -227,7 +227,7 @@ function listenToPaste(app: MakeApp): () => void {
 export function MakePage({ app: page }: { app: MakeStores }) {
   make ??= new MakeApp(page);
   const app = make;
-  useEffect(() => listenToPaste(app), []);
+  useLayoutEffect(() => listenToPaste(app), []);
   const draft = app.draft.value;
   if (draft === null) {
     return (
@@ -242,7 +242,15 @@ export function MakePage({ app: page }: { app: MakeStores }) {
           </button>
         </div>
         <AlgorithmOfferBand app={app} />
-        {app.panel.value === 'new' ? <NewPanel app={app} /> : app.panel.value === 'algorithm' ? <AlgorithmPart app={app} /> : <OpenPanel app={app} />}
+        {app.panel.value === 'new' ? (
+          <div key="new">
+            <NewPanel app={app} />
+          </div>
+        ) : app.panel.value === 'algorithm' ? (
+          <AlgorithmPart app={app} />
+        ) : (
+          <OpenPanel app={app} />
+        )}
       </div>
     );
   }
@@ -272,7 +280,8 @@ export function MakePage({ app: page }: { app: MakeStores }) {
         <ScenePanel app={app.view} />
       </div>
       {app.panel.value === 'new' ? (
-        <div class="make-side make-new">
+        // With its key it is the same one, and keeps the focus, when the first draft comes.
+        <div key="new" class="make-side make-new">
           <NewPanel app={app} />
         </div>
       ) : (

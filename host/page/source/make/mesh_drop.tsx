@@ -1,6 +1,6 @@
 // Files that are dragged over the page Make: a hint while they are there, and what is done with them.
 import { useSignal } from '@preact/signals';
-import { useEffect } from 'preact/hooks';
+import { useLayoutEffect } from 'preact/hooks';
 import type { MakeApp } from './make_app.js';
 
 function hasFiles(event: DragEvent): boolean {
@@ -9,7 +9,7 @@ function hasFiles(event: DragEvent): boolean {
 
 export function MeshDrop({ app }: { app: MakeApp }) {
   const isOver = useSignal(false);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const over = (event: DragEvent) => {
       if (!hasFiles(event)) return;
       event.preventDefault();

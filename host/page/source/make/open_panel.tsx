@@ -1,6 +1,6 @@
 // What can be opened: the scenarios of the project, those that were opened before, and those that ship with Proleg.
 import { useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { GalleryEntry } from '../wire/messages.js';
 import { Picture } from './gallery_picture.js';
 import type { MakeApp } from './make_app.js';
@@ -84,7 +84,7 @@ export function OpenPanel({ app }: { app: MakeApp }) {
   const wanted = useSignal('');
   const find = useRef<HTMLInputElement>(null);
   const isConnected = app.page.state.isConnected.value;
-  useEffect(() => find.current?.focus(), []);
+  useLayoutEffect(() => find.current?.focus(), []);
   useEffect(() => {
     if (isConnected) void app.page.operations.tell('gallery.look', {});
   }, [isConnected]);

@@ -1,7 +1,7 @@
 // The frame of a dialog. Dialogs are not modal: STOP must stay within reach, by mouse too. They close with their key, their
 // button, or a click beside them. For a robot on a bus Esc is STOP in them as everywhere; in a simulation it closes them.
 import type { ComponentChildren } from 'preact';
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { openDialog } from '../view/dialogs.js';
 import { closeIcon } from './icons.js';
 
@@ -11,7 +11,8 @@ export function close(): void {
 
 export function Dialog({ title, isWide, children }: { title: string; isWide?: boolean; children: ComponentChildren }) {
   const dialog = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  // Before the next key, which else would be one of the page.
+  useLayoutEffect(() => {
     const before = document.activeElement;
     const find = (tag: string) => dialog.current?.querySelector<HTMLElement>(tag);
     (find('input:not([tabindex="-1"])') ?? find('button'))?.focus();

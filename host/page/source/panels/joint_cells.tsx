@@ -139,6 +139,7 @@ export function JointCells({ app, parameter }: { app: Stores<'newGesture' | 'sel
           aria-label={`${parameter.name} of ${nameOf(current.value)}`}
           value={typed.value}
           ref={(element) => element?.focus()}
+          onInput={(event) => (typed.value = event.currentTarget.value)}
           onKeyDown={(event) => {
             if (event.key === 'Enter') accept(event.currentTarget.value);
             if (event.key === 'Tab') typed.value = null;

@@ -88,6 +88,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
   const isRunning = runState === 'running';
   const recording = state.session.value?.recording ?? null;
   const ticks = useSignal(1);
+  const typedTicks = useSignal<string | null>(null);
   return (
     <section class="run-controls" aria-label="Run">
       <button
@@ -114,11 +115,12 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
           max="1000"
           aria-label="Ticks of a step"
           title="Ticks of a step: 1 to 1000"
-          value={ticks}
+          value={typedTicks.value ?? ticks.value}
           disabled={!isHolder}
+          onInput={(event) => (typedTicks.value = event.currentTarget.value)}
           onChange={(event) => {
             ticks.value = Math.max(1, Math.min(1000, Math.round(Number(event.currentTarget.value)) || 1));
-            event.currentTarget.value = String(ticks.value);
+            typedTicks.value = null;
           }}
         />
       </span>

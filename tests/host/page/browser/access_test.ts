@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
 import { assertNothingIsCut } from './support/layout.js';
-import { countPixels, isBlue, pixelsOf } from './support/pixels.js';
+import { countPixelsWhen, isBlue } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { sixty, UiProgram } from './support/ui_program.js';
 import type { Look } from './support/viewer.js';
@@ -83,7 +83,7 @@ describe('the page', () => {
     await viewer.waitForTick(tick + 1);
     await keyboard.press('Control+k');
     await viewer.page.getByRole('combobox', { name: 'Name of the action' }).waitFor();
-    await keyboard.type('restart');
+    await keyboard.type('restart'); // at once: the dialog has the focus
     await keyboard.press('Enter');
     await viewer.page.waitForFunction((before) => Number(document.querySelector('[data-testid=tick]')?.textContent) < before, tick);
     // Tab reaches a slider, whose focus can be seen; the arrows change it.
@@ -118,7 +118,7 @@ describe('a robot with 60 joints', () => {
     await viewer.waitForTick((await viewer.tick()) + 30);
     await viewer.waitForOtherAngles(angles);
     assert.equal(await viewer.page.locator('.parameter').first().locator('[data-cell]').count(), 60);
-    assert.ok(countPixels(await pixelsOf(viewer.page, viewer.page.locator('.scene')), isBlue) > 200);
+    assert.ok((await countPixelsWhen(viewer.page, viewer.page.locator('.scene'), isBlue, (count) => count > 200)) > 200);
     await viewer.screenshot('sixty_joints');
   });
 });

@@ -209,6 +209,7 @@ describe('what is arranged in Make', () => {
       await tab('World').click();
       await add('stairs');
       await isRows(2);
+      await isChosen(1);
       await focusMap();
       await page().keyboard.press('Control+c');
       assert.ok(await waitUntil(async () => (await readClipboard(page())).startsWith('<KinBody')));
@@ -221,8 +222,10 @@ describe('what is arranged in Make', () => {
       await focusMap();
       await page().keyboard.press('Control+d');
       await isRows(3);
-      for (let i = 0; i < 3; i += 1) await page().keyboard.press('Control+z');
-      await isRows(2);
+      for (const left of [2, 3, 2]) {
+        await page().keyboard.press('Control+z');
+        await isRows(left);
+      }
     });
 
     it('are copied several at once', async () => {
@@ -235,12 +238,14 @@ describe('what is arranged in Make', () => {
       assert.ok(await waitUntil(async () => (await readClipboard(page())).split('<KinBody').length === 3));
       await objects().getByRole('button', { name: 'Paste', exact: true }).click();
       await isRows(5);
+      await isChosen(4);
       await focusMap();
       await page().keyboard.press('Delete');
       await isRows(3);
-      await page().keyboard.press('Control+z');
-      await page().keyboard.press('Control+z');
-      await isRows(3);
+      for (const left of [5, 3]) {
+        await page().keyboard.press('Control+z');
+        await isRows(left);
+      }
     });
 
     it('go into another tab, and into another scenario that is opened later', async () => {

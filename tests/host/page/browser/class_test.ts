@@ -215,6 +215,7 @@ describe('a class', () => {
     await looking.button('Ask for control').click();
     await anna.page.getByText('Teacher asks for control').waitFor();
     await anna.viewer.button('Keep control').click();
+    await anna.page.getByText('Teacher asks for control').waitFor({ state: 'detached' });
     await anna.page.reload();
     await anna.waitForRobot('Anna');
     await anna.viewer.button('Release').waitFor();
@@ -343,8 +344,9 @@ describe('a class', () => {
   });
 
   it('starts a robot again, and its page goes on', async () => {
+    const lost = ben.page.waitForFunction(() => document.querySelector('[data-testid=connection-band]') !== null); // in each frame
     await teacher.act('Ben', 'Start again');
-    await ben.page.getByTestId('connection-band').waitFor();
+    await lost;
     await ben.page.getByTestId('connection-band').waitFor({ state: 'detached' });
     await ben.viewer.button('Release').waitFor();
     await teacher.waitForState('Ben', /^(runs|paused)$/);

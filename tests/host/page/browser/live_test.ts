@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
 import { assertNothingIsCut } from './support/layout.js';
-import { countDifferences, countPixels, isBlue, pixelsOf } from './support/pixels.js';
+import { countDifferences, countPixels, countPixelsWhen, isBlue, pixelsOf } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
 import type { Viewer } from './support/viewer.js';
@@ -37,11 +37,10 @@ describe('a live simulation', () => {
     const scene = ui.viewer.page.locator('.scene');
     const angles = await ui.viewer.angles();
     const start = await ui.viewer.head();
+    assert.ok((await countPixelsWhen(ui.viewer.page, scene, isBlue, (count) => count > 500)) > 500, 'the robot is in the picture');
     const picture = await pixelsOf(ui.viewer.page, scene);
     await ui.viewer.waitForTick((await ui.viewer.tick()) + 140);
-    const later = await pixelsOf(ui.viewer.page, scene);
-    assert.ok(countPixels(picture, isBlue) > 500, 'the robot is in the picture');
-    assert.ok(countDifferences(picture, later) > 500, 'the picture changes');
+    assert.ok(await waitUntil(async () => countDifferences(picture, await pixelsOf(ui.viewer.page, scene)) > 500), 'the picture changes');
     assert.equal(angles.length, 5);
     await ui.viewer.waitForOtherAngles(angles);
     assert.notDeepEqual(await ui.viewer.head(), start);
@@ -66,6 +65,20 @@ describe('a live simulation', () => {
     assert.equal(await settledTick(ui.viewer), tick + 25);
     await ui.viewer.button('Restart').click();
     await ui.viewer.page.waitForFunction(() => Number(document.querySelector('[data-testid=tick]')?.textContent) < 5);
+  });
+
+  it('keeps the number of ticks that is being typed while it runs', async () => {
+    const ticks = ui.viewer.page.getByLabel('Ticks of a step');
+    await ui.viewer.run();
+    await ticks.fill('7');
+    await ui.viewer.waitForTick((await ui.viewer.tick()) + 150); // the state of the session has come more than once
+    assert.equal(await ticks.inputValue(), '7');
+    await ticks.press('Enter');
+    await ui.viewer.pause();
+    const tick = await settledTick(ui.viewer);
+    await ui.viewer.button('Step').click();
+    await ui.viewer.waitForTick(tick + 7);
+    assert.equal(await settledTick(ui.viewer), tick + 7);
   });
 
   it('confirms the value of a slider', async () => {

@@ -10,6 +10,7 @@ import { assertNothingIsCut } from './support/layout.js';
 import { useUi } from './support/ui_fixture.js';
 import { program, UiProgram } from './support/ui_program.js';
 import { waitUntil } from './support/waiting.js';
+import { lostConnection } from './support/viewer.js';
 
 describe('the page Make', () => {
   const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
@@ -29,7 +30,7 @@ describe('the page Make', () => {
   const add = async (item: string) => {
     await page().getByRole('region', { name: 'Library' }).getByRole('button', { name: item, exact: true }).click();
     await page().getByRole('button', { name: `Add ${item}` }).click();
-    await objects().getByRole('button', { name: item, exact: true }).waitFor();
+    await objects().getByRole('button', { name: item, exact: true, pressed: true }).waitFor();
   };
   const rowCount = () => objects().getByRole('listitem').count();
 
@@ -46,6 +47,8 @@ describe('the page Make', () => {
     await add('box');
     await field('size z in m').fill('0,3');
     await field('size z in m').press('Enter');
+    assert.ok(await waitUntil(async () => (await field('size z in m').inputValue()) === '0.3'));
+    await page().locator('.foresight-text:not(.old)').waitFor();
     assert.ok(await waitUntil(async () => (await foresight()) !== before && !/computing/.test(await foresight())));
     const blocked = Number(/: (\d\.\d\d) m/.exec(await foresight())?.[1]);
     assert.ok(blocked < 1, `${blocked} m behind a wall of 30 cm`);
@@ -197,6 +200,7 @@ describe('unsaved changes', () => {
 
   it('are kept when the program is killed in the middle of a drag', async () => {
     const { page } = ui.viewer;
+    ui.viewer.expected.push(lostConnection);
     await page.keyboard.press('3');
     await page.getByRole('region', { name: 'Library' }).getByRole('button', { name: 'sphere', exact: true }).click();
     await page.getByRole('button', { name: 'Add sphere' }).click();

@@ -13,7 +13,7 @@ import { assertNothingIsCut } from './support/layout.js';
 import { useUi } from './support/ui_fixture.js';
 import { program, slowTime, UiProgram } from './support/ui_program.js';
 import { Viewer } from './support/viewer.js';
-import { waitUntil } from './support/waiting.js';
+import { waitForFrames, waitUntil } from './support/waiting.js';
 
 const slot = 0x08020200; // where the program of a module begins
 const tasks = ['Module', 'Places', 'Flash', 'Recover', 'Settings', 'What is wrong?'];
@@ -235,8 +235,8 @@ describe('a box of modules', () => {
     for (let down = 0.3; down < 0.9; down += 0.06) {
       for (let right = 0.25; right < 0.8; right += 0.04) {
         await page().mouse.move(box.x + right * box.width, box.y + down * box.height);
-        await page().waitForTimeout(30); // until the worker has looked
-        if ((await lit.count()) === 1 && (await lit.textContent()) === name) {
+        await waitForFrames(page(), 20); // until the worker has looked
+        if ((await lit.allTextContents()).join() === name) {
           await page().mouse.down();
           await page().mouse.up();
           return;
@@ -408,10 +408,10 @@ describe('a module that answers nothing', () => {
     await modules.button('Look what is wrong').click();
     await wait.getByText('switch the robot’s supply off and on now').waitFor();
     assert.match((await wait.textContent()) ?? '', /\d+ s left/);
-    await modules.screenshot('recover_wait');
     bus.switchSupply('off');
     await wait.getByText('seen').waitFor();
     bus.switchSupply('on');
+    await modules.screenshot('recover_wait');
     await modules.waitForJob(/^Recover: done, nothing was changed/);
     await table.getByText('has answered nothing until the supply was switched off and on').waitFor();
     assert.equal(await wait.count(), 0);

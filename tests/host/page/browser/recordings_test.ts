@@ -6,11 +6,12 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import type { Browser } from 'playwright-core';
-import { countPixels, isBlue, pixelsOf } from './support/pixels.js';
+import { countPixelsWhen, isBlue } from './support/pixels.js';
 import { launchBrowser } from './support/browser.js';
 import { Random } from '../support/random.js';
 import { program, UiProgram, uniform } from './support/ui_program.js';
 import { Viewer } from './support/viewer.js';
+import { waitForFrames } from './support/waiting.js';
 
 const seconds = 120;
 
@@ -84,8 +85,7 @@ describe('recordings', () => {
       await expectRow(0);
       for (let seek = 0; seek < 12; seek += 1) {
         await recordings.press(random.next());
-        // Until the next frame it shows the tick before.
-        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        await waitForFrames(page, 6); // until then it may show the tick before
         await expectRow(await recordings.tick());
       }
       // The keys: Home, End, a tick, a second.
@@ -96,8 +96,7 @@ describe('recordings', () => {
       await page.keyboard.press('Shift+ArrowRight');
       await page.waitForFunction(() => document.querySelector('[data-testid=tick]')?.textContent === '101');
       await expectRow(101);
-      const scene = await pixelsOf(page, page.getByTestId('scene'));
-      assert.ok(countPixels(scene, isBlue) > 500);
+      assert.ok((await countPixelsWhen(page, page.getByTestId('scene'), isBlue, (count) => count > 500)) > 500);
       await recordings.viewer.screenshot('recording');
       await recordings.viewer.close();
     } finally {

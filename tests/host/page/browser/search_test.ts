@@ -11,6 +11,7 @@ import { countPixelsWhen } from './support/pixels.js';
 import { useUi } from './support/ui_fixture.js';
 import { program, UiProgram } from './support/ui_program.js';
 import { waitUntil } from './support/waiting.js';
+import { lostConnection } from './support/viewer.js';
 
 // The green of the ghost, light and dark.
 const isGhost = (red: number, green: number, blue: number) => green > red + 12 && green > blue + 4;
@@ -249,7 +250,7 @@ describe('a search that goes on by itself', () => {
 
   it('is started from a file as it is, and the program is killed', async () => {
     const { page } = ui.viewer;
-    ui.viewer.expected.push(/WebSocket connection .* failed/);
+    ui.viewer.expected.push(lostConnection);
     await page.keyboard.press('3');
     await page.getByRole('tab', { name: 'Search', exact: true }).click();
     await page.getByRole('button', { name: 'From a file …' }).click();

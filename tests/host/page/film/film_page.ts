@@ -5,6 +5,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
 import type { FilmWishes } from '../../../../host/page/source/film/film.js';
+import { longest } from '../browser/support/waiting.js';
 
 export class FilmPage {
   private constructor(readonly page: Page) {}
@@ -18,6 +19,7 @@ export class FilmPage {
     const script = `<script>${readFileSync(program, 'utf8')}</script>`;
     writeFileSync(file, `<!doctype html><meta charset="utf-8"><body>${elements.join('\n')}${script}`);
     const page = await browser.newPage();
+    page.setDefaultTimeout(longest);
     await page.goto(pathToFileURL(file).href);
     rmSync(folder, { recursive: true });
     await page.evaluate((wanted) => window.beginFilm(wanted), wishes);

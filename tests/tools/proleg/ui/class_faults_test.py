@@ -48,13 +48,11 @@ def expect_drives(page, times=20):
 
 
 def expect_stops(teacher, pages, confirmed=None):
-    stopped = teacher.stop()
+    stopped = teacher.must_stop(*confirmed) if confirmed else teacher.stop()
     for page in pages:
         page.until_state("stopped")
         page.must("run")
         page.until_state("running")
-    if confirmed is not None:
-        assert (stopped["confirmed"], stopped["of"]) == confirmed, stopped
     return stopped
 
 
@@ -172,12 +170,14 @@ def test_one_computer_takes_only_a_part_of_the_connections(options=()):
                 sock.close()
             # Connections to one seat, without a token.
             taken = []
+            begin = time.monotonic()
             for _ in range(12):
                 try:
                     taken.append(Viewer(program.port, path=f"{bob.path}socket", source=ATTACKER))
                 except AssertionError as refused:
                     assert b" 503 " in refused.args[0], refused
-            assert len(taken) <= 8, len(taken)
+            # Each is closed after two seconds without a token.
+            assert len(taken) <= 8 or time.monotonic() - begin > 2, len(taken)
             with SeatPage(bob, source=OTHER) as other:
                 assert other.drives
             for viewer in taken:
@@ -387,6 +387,7 @@ def test_random_arguments_are_refused_in_one_line():
                 if number % 100 == 0:
                     expect_drives(other, 3)
             assert [entry["seat"] for entry in teacher.must("hand_out", file=str(copy_of_scenario(program.folder / "Teacher/mine")))["handed"]] == [1, 2]
+            program.teachers_robot().page().close()  # it may have been started anew
             expect_stops(teacher, [other], (3, 3))
 
 

@@ -19,7 +19,7 @@ sys.dont_write_bytecode = True  # the folder of the tests may be read-only
 SOURCE, PROGRAMS = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.path[:0] = [str(SOURCE / part) for part in ("tests/host/server", "tests/support")]
 import web_client  # noqa: E402
-from processes import children, runs  # noqa: E402
+from processes import children, folder_of, runs  # noqa: E402
 from served_page import make_certificate  # noqa: E402
 from waiting import LONGEST, wait_until  # noqa: E402
 from web_client import Closed, Viewer, live, request  # noqa: E402
@@ -159,6 +159,11 @@ class Teacher:
         self.viewer.until(lambda: len(self.viewer.stops) > count)
         return self.viewer.stops[-1]
 
+    def must_stop(self, confirmed, of):
+        """STOP, until so many have confirmed it in the half second that the answer waits for them."""
+        return wait_until(lambda: (stopped := self.stop()) and (stopped["confirmed"], stopped["of"]) == (confirmed, of) and stopped,
+                          lambda: self.viewer.stops[-1])
+
 
 class ClassProgram:
     """`proleg ui --class` in a folder, until the end of a test."""
@@ -208,7 +213,8 @@ class ClassProgram:
 
     def seat_process(self, folder):
         """The process that runs in the folder of a learner."""
-        return next((process for process in self.seats() if Path(f"/proc/{process}/cwd").resolve() == (self.folder / folder).resolve()), None)
+        wanted = (self.folder / folder).resolve()
+        return next((process for process in self.seats() if folder_of(process) == wanted), None)
 
     def __enter__(self):
         return self

@@ -217,9 +217,11 @@ def test_a_reload_and_a_sleep_drive_again():
             assert first.drives
         with anna.page() as second:
             assert second.drives, "after a reload"
-            # A laptop that sleeps: its connection is open, and it says nothing.
+            lives = live(second.viewer)
             with anna.page() as guest:
                 assert not guest.drives, "the holder was here a moment ago"
+                # A laptop that sleeps: its connection is open, and it says nothing.
+                lives.clear()
                 guest.viewer.until(lambda: guest.viewer.control()["away"])
             with anna.page() as third:
                 assert third.drives, "after a sleep"
@@ -277,8 +279,7 @@ def test_stop_of_the_teacher_reaches_all_robots():
                 page.must("run")
                 page.until_state("running")
             if way == "message":
-                stopped = teacher.stop()
-                assert (stopped["confirmed"], stopped["of"]) == (4, 4), stopped
+                teacher.must_stop(4, 4)
             else:
                 assert program.post("/stop", fields=[f"Authorization: Bearer {program.token}"])[0] == 200
             for page in pages:

@@ -32,7 +32,7 @@ def a_bus_is_opened_and_shows_what_is_on_it(table, bus):
     assert [node["node"] for node in found["nodes"]] == [1, 4, 5] and found["fresh_modules"], found
     wait_until(lambda: [module["node"] for module in table.fresh("bus")["modules"]] == [1, 4, 5],
                lambda: table.document("bus"))
-    module = wait_until(lambda: (modules := table.fresh("bus")["modules"]) and modules[0]["drive"] and modules[0],
+    module = wait_until(lambda: (modules := table.fresh("bus")["modules"]) and None not in (modules[0]["drive"], modules[0]["temperature"]) and modules[0],
                         lambda: table.document("bus"))
     assert module["drive"] == "no power" and module["joint"] is None and module["temperature"] == 25, module
     wait_until(lambda: table.fresh("bus")["modules"][0]["contacts"] is not None, lambda: table.document("bus"))
@@ -135,8 +135,9 @@ def a_joint_stops_when_nobody_looks(table, bus):
 
 
 def no_servo_has_power(bus):
-    states = json.loads(proleg("get", "all", "statusword", "--bus", bus.address, "--json"))["values"]
-    assert len(states) == 5 and all(state["raw"] & 0x6F not in (0x27, 0x07) for state in states), states
+    def states():
+        return json.loads(proleg("get", "all", "statusword", "--bus", bus.address, "--json"))["values"]
+    wait_until(lambda: len(now := states()) == 5 and all(state["raw"] & 0x6F not in (0x27, 0x07) for state in now), states)
 
 
 def a_potentiometer_is_calibrated(table, bus):

@@ -18,7 +18,8 @@ class SearchProgram(UiProgram):
 
     def searches(self):
         """The searches by their names, as they are now."""
-        self.must("search.refresh")
+        for _ in range(2):  # an answer may come before its document, but not before that of the operation before it
+            self.must("search.refresh")
         self.viewer.until(lambda: "searches" in self.viewer.documents)
         return {search["name"]: search for search in self.document()["searches"]}
 

@@ -74,6 +74,8 @@ export class AlgorithmApp {
     if (known !== undefined && known.text !== known.typed) return;
     try {
       const source = (await this.make.page.operations.ask('algorithm.read', { folder })) as AlgorithmSource;
+      const now = this.sources.peek().get(folder);
+      if (now !== undefined && now.text !== now.typed) return; // typed meanwhile
       this.keep({ ...source, folder, typed: source.text });
     } catch (error) {
       this.problem.value = (error as Error).message;

@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import type { Browser, BrowserContextOptions } from 'playwright-core';
 import { slowTime, UiProgram } from './ui_program.js';
 import { lostConnection, Viewer } from './viewer.js';
+import { waitUntil } from './waiting.js';
 
 const refusedRequest = /Failed to load resource: the server responded with a status of (4\d\d|503)/;
 
@@ -75,11 +76,12 @@ export class Learner {
     await this.page.getByTestId('joints').locator('tbody tr').first().waitFor();
   }
 
-  // The line at a field of the entry.
+  // The line at a field of the entry, which has the focus then.
   async problem(field: 'name' | 'code' | 'button', expected: RegExp): Promise<void> {
     const line = this.page.locator(`#problem-${field}`);
     await line.filter({ hasText: expected }).waitFor();
     assert.equal(((await line.textContent()) ?? '').includes('\n'), false);
+    if (field !== 'button') await this.page.locator(`#entry-${field}:focus`).waitFor();
   }
 
   seat(): string {
@@ -90,7 +92,11 @@ export class Learner {
     const field = this.viewer.parameter('1.amplitude').getByRole('textbox').first();
     await field.fill(value);
     await field.press('Enter');
-    await this.viewer.waitForConfirmation('1.amplitude');
+    const isConfirmed = async () => {
+      const values = await this.viewer.valuesOf('1.amplitude');
+      return values.length > 0 && values.every(({ wanted, confirmed }) => wanted === value && confirmed === value);
+    };
+    assert.ok(await waitUntil(isConfirmed));
   }
 
   async amplitude(): Promise<string> {

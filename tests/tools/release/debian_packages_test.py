@@ -129,7 +129,7 @@ class DebianPackages(unittest.TestCase):
             with urlopen(address, timeout=LONGEST) as answer:
                 self.assertEqual(answer.read(), (self.root / "usr/share/proleg/page/index.html").read_bytes())
             answered = time.monotonic()
-            program.send_signal(signal.SIGINT)
+            program.send_signal(signal.SIGTERM)
             self.assertEqual(program.wait(LONGEST), 0)
         print(f"from the deb on disk to a page that answers: {answered - begin:.1f} s, {installed - begin:.1f} s of them apt", flush=True)
 

@@ -146,7 +146,9 @@ describe('a box of modules', () => {
     await page().getByLabel('all objects').check();
     await page().getByTestId('objects').locator('tr[data-object="0x1000"]').waitFor();
     await page().getByLabel('find', { exact: true }).fill('over-current');
-    assert.ok(await waitUntil(async () => (await page().getByTestId('objects').locator('tr[data-object]').count()) === 2));
+    const found = () => page().getByTestId('objects').locator('tr[data-object]').allTextContents();
+    assert.ok(await waitUntil(async () => (await found()).every((row) => /over-current/i.test(row))), (await found()).join('; '));
+    assert.ok((await found()).length > 1);
     await page().getByLabel('find', { exact: true }).fill('');
   });
 

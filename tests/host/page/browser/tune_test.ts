@@ -33,7 +33,7 @@ describe('parameters of a robot with files', () => {
     await ui.viewer.parameter('1.amplitude').locator('[data-cell="3"]').focus();
     // The pointer may come to another joint while a number is typed.
     await press('2');
-    await ui.viewer.parameter('1.amplitude').locator('[data-cell="1"]').hover();
+    await ui.viewer.parameter('1.frequency').locator('[data-cell="1"]').hover();
     await ui.viewer.parameter('1.amplitude').locator('[data-cell="1"].hovered').waitFor();
     await press('0', 'Enter', 'w');
     const diff = ui.viewer.page.getByTestId('diff');

@@ -60,6 +60,7 @@ export class ModulesApp {
   private readonly isWatched = signal(true); // false during a job, and until the modules can have been asked again
   readonly revealed = signal(0); // counts when the task must come into view
   private scannedBus: string | null = null;
+  private readonly firstScan = signal(0); // the job that scans a bus that was just opened; Infinity: it is requested
 
   constructor(readonly page: ModulesStores) {
     this.actions = new ActionList(page.actions, ({ group }) => group === 'Page' || group === 'Robot');
@@ -95,6 +96,7 @@ export class ModulesApp {
     if (this.bus.value?.connected !== true) return 'No connection to the bus.';
     const session = state.busSession.value;
     if (session !== null && session.state !== 'off' && session.state !== 'failed') return 'The servos have power: Power off first, on the page Live.';
+    if (this.firstScan.value > (job?.number ?? 0)) return 'Wait until “Scan” has ended.';
     return job !== null && isRunning(job) ? `Wait until “${jobTitle(job.kind)}” has ended, or cancel it.` : null;
   }
 
@@ -166,13 +168,24 @@ export class ModulesApp {
     const isShown = this.page.shownPage.value === 'modules';
     if (modules === null || modules.bus === null) {
       this.scannedBus = null;
+      this.firstScan.value = 0;
       this.earlierJobs.value = new Map();
       return;
     }
     if (!isShown || modules.found !== null || this.scannedBus === modules.bus || this.readObstacle.value !== null) return;
     if (this.page.state.otherHolder.value !== null) return;
     this.scannedBus = modules.bus;
-    untracked(() => void this.page.operations.ask('modules.scan', {}).catch(() => {}));
+    untracked(() => void this.beginFirstScan());
+  }
+
+  // No other job can begin before it: who has just opened the bus sees why.
+  private async beginFirstScan(): Promise<void> {
+    this.firstScan.value = Infinity;
+    try {
+      this.firstScan.value = ((await this.page.operations.ask('modules.scan', {})) as { job: number }).job;
+    } catch {
+      this.firstScan.value = 0;
+    }
   }
 
   private watchAfterJobs(): void {

@@ -194,8 +194,8 @@ describe('a mesh of one’s own', () => {
     assert.deepEqual(readFileSync(join(folder, 'mine/meshes/my wall.stl')), box);
     await page().getByRole('button', { name: 'Simulate' }).click();
     await page().getByRole('navigation').locator('[aria-current=page]', { hasText: 'Live' }).waitFor();
-    await ui.viewer.waitForTick(1);
     for (let i = 0; i < 3; i += 1) await page().keyboard.press('.'); // a step, then it pauses
+    await ui.viewer.waitForTick(1);
     await page().keyboard.press('x');
     await page().getByTestId('setpoint-hash').waitFor();
     const command = (await page().getByTestId('command').textContent()) ?? '';

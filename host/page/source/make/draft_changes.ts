@@ -59,7 +59,7 @@ export class DraftChanges {
 
   // Requests a step of a gesture, a slider or a pointer: of several that wait the newest is sent.
   follow<Name extends PartOperationName>(name: Name, words: Arguments<Name>, gesture: number): void {
-    this.send(async () => this.note(await this.request(name, words, this.layout, gesture)));
+    this.send(async () => this.note(await this.noted(this.request(name, words, this.layout, gesture))));
   }
 
   // One step is on its way; of those that come meanwhile the newest goes next.
@@ -88,6 +88,17 @@ export class DraftChanges {
   afterLastStep(done: () => void): void {
     if (this.isBehind) this.afterLast.push(done);
     else done();
+  }
+
+  // Waits for the answer to a request that changes the draft, and for this draft. Returns the reason if it was refused, else null.
+  async outcomeOf(request: Promise<unknown>): Promise<string | null> {
+    const refusal = await this.noted(request);
+    if (refusal === null) await this.whenDraftHasCome();
+    return refusal;
+  }
+
+  private noted(request: Promise<unknown>): Promise<string | null> {
+    return refusalOf(request.then((answer) => this.noteAnswer(answer)));
   }
 
   private noteAnswer(answer: unknown): void {
@@ -120,15 +131,13 @@ export class DraftChanges {
     return change;
   }
 
-  private request<Name extends PartOperationName>(name: Name, words: Arguments<Name>, layout: number, gesture?: number): Promise<string | null> {
+  private request<Name extends PartOperationName>(name: Name, words: Arguments<Name>, layout: number, gesture?: number): Promise<unknown> {
     const all = { ...words, layout, ...(gesture === undefined ? {} : { gesture }) } as unknown as Operations[Name];
-    return refusalOf(this.page.operations.ask(name, all).then((answer) => this.noteAnswer(answer)));
+    return this.page.operations.ask(name, all);
   }
 
-  private async requestAndWait<Name extends PartOperationName>(name: Name, words: Arguments<Name>, layout: number): Promise<string | null> {
-    const refusal = await this.request(name, words, layout);
-    if (refusal === null) await this.whenDraftHasCome();
-    return refusal;
+  private requestAndWait<Name extends PartOperationName>(name: Name, words: Arguments<Name>, layout: number): Promise<string | null> {
+    return this.outcomeOf(this.request(name, words, layout));
   }
 
   private note(refusal: string | null): boolean {

@@ -159,7 +159,7 @@ export class MakeApp {
   // Opens a scenario of the gallery. Returns whether it is open. Algorithms that it lacks are offered to be built.
   async open(file: string): Promise<boolean> {
     this.offer.dismissed.value = null;
-    const refusal = await refusalOf(this.page.operations.ask('draft.open', { file, ...this.discard() }));
+    const refusal = await this.changes.outcomeOf(this.page.operations.ask('draft.open', { file, ...this.discard() }));
     if (refusal !== null) {
       this.tellRefusal(refusal);
       return false;
@@ -172,7 +172,7 @@ export class MakeApp {
   // Makes the changes again that an earlier program did not save.
   async restore(): Promise<void> {
     this.offer.dismissed.value = null;
-    const refusal = await refusalOf(this.page.operations.ask('draft.restore', {}));
+    const refusal = await this.changes.outcomeOf(this.page.operations.ask('draft.restore', {}));
     if (refusal !== null) this.tellRefusal(refusal);
   }
 
@@ -206,10 +206,13 @@ export class MakeApp {
 
   // Takes parts of another scenario of the gallery.
   async take(file: string, parts: readonly ('robot' | 'actuation' | 'environment')[]): Promise<void> {
-    if ((await this.page.operations.tell('draft.take', { file, parts })) !== null) {
-      this.forgetChoice();
-      this.panel.value = 'none';
+    const refusal = await this.changes.outcomeOf(this.page.operations.ask('draft.take', { file, parts }));
+    if (refusal !== null) {
+      this.page.state.addNotice('warning', refusal);
+      return;
     }
+    this.forgetChoice();
+    this.panel.value = 'none';
   }
 
   // Whether a new draft would lose the changes of this one: those of a scenario with files are kept beside them.
@@ -502,7 +505,7 @@ export class MakeApp {
   // or null.
   makeNew(words: NewScenario, answered: (refusal: string | null) => void): void {
     this.changes.send(async () => {
-      const refusal = await refusalOf(this.page.operations.ask('draft.new', { ...words, ...this.discard() }));
+      const refusal = await this.changes.outcomeOf(this.page.operations.ask('draft.new', { ...words, ...this.discard() }));
       if (refusal === null) this.forgetChoice();
       answered(refusal);
     });

@@ -166,26 +166,34 @@ export class ModulesApp {
   private scanNewBus(): void {
     const modules = this.modules.value;
     const isShown = this.page.shownPage.value === 'modules';
+    // Another program counts its jobs anew.
+    if (!this.page.state.isConnected.value) this.forgetFirstScan();
     if (modules === null || modules.bus === null) {
-      this.scannedBus = null;
-      this.firstScan.value = 0;
+      this.forgetFirstScan();
       this.earlierJobs.value = new Map();
       return;
     }
     if (!isShown || modules.found !== null || this.scannedBus === modules.bus || this.readObstacle.value !== null) return;
     if (this.page.state.otherHolder.value !== null) return;
     this.scannedBus = modules.bus;
-    untracked(() => void this.beginFirstScan());
+    untracked(() => void this.beginFirstScan(modules.bus));
+  }
+
+  private forgetFirstScan(): void {
+    this.scannedBus = null;
+    this.firstScan.value = 0;
   }
 
   // No other job can begin before it: who has just opened the bus sees why.
-  private async beginFirstScan(): Promise<void> {
+  private async beginFirstScan(bus: string | null): Promise<void> {
     this.firstScan.value = Infinity;
+    let job = 0;
     try {
-      this.firstScan.value = ((await this.page.operations.ask('modules.scan', {})) as { job: number }).job;
+      ({ job } = (await this.page.operations.ask('modules.scan', {})) as { job: number });
     } catch {
-      this.firstScan.value = 0;
+      // Another viewer's job goes on.
     }
+    if (this.scannedBus === bus) this.firstScan.value = job; // the bus has not been closed meanwhile
   }
 
   private watchAfterJobs(): void {

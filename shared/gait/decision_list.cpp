@@ -90,14 +90,16 @@ std::optional<Contradiction> DecisionList::contradiction(unsigned first_paramete
     if (each.first.feature != 0 && each.first.feature == -each.second.feature) {
       const auto [below, above] = std::minmax(
           each.first, each.second, [](const Condition& a, const Condition& b) { return a.feature < b.feature; });
-      if (above.threshold >= below.threshold) {
+      // A value has to be between them.
+      if (std::int64_t{above.threshold} + 1 >= below.threshold) {
         return Contradiction{parameter_of(set, threshold), parameter_of(set, second_threshold),
                              "two conditions that a value can meet together"};
       }
     }
     for (std::int32_t greater = set + 1; greater <= set_count_; ++greater) {
       if (each.implies(rule(greater))) {
-        return Contradiction{parameter_of(set, feature), parameter_of(greater, feature),
+        return Contradiction{parameter_of(set, each.first.implies(rule(greater).first) ? threshold : second_threshold),
+                             parameter_of(greater, threshold),
                              "a rule that can hold while the rule of the greater set does not, which comes first"};
       }
     }

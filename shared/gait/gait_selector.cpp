@@ -132,7 +132,8 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"announced_set", Unit::count, 0, "the set that is played, or to which all joints change next"},
     InternalValue{"countdown", Unit::count, 0, "ticks until all joints change to announced_set"},
     InternalValue{"set", Unit::count, 0, "the set that is played, 1 to 4"},
-    InternalValue{"since_decision", Unit::count, 0, "ticks since the joint decided or started"},
+    InternalValue{"since_decision", Unit::count, 0,
+                  "ticks since the joint decided; after a start below 0 until its features follow what it senses"},
     generator_values::current_amplitude(),
     generator_values::amplitude_rate,
     InternalValue{"current_shift", Unit::phase_degree, 0, "filtered phase of the joint"},
@@ -188,14 +189,12 @@ class GaitSelector final : public SensingModule {
       derived[increments + i] = phase_increment_of(values[i * parameters_of_set + frequency], context.tick_period_us);
     }
     make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
-    const auto ticks_of = [&context](std::int32_t ms) {
-      return static_cast<std::int32_t>(divide_nearest(std::int64_t{ms} * 1'000, std::int64_t{context.tick_period_us}));
-    };
-    derived[dwell_ticks] = ticks_of(values[dwell]);
     const bool decides = !context.group.empty() && context.group.front() == context.joint;
     derived[notice] =
         decides ? static_cast<std::int32_t>(std::min(context.group.size() + spare_ticks, unsigned{longest_countdown}))
                 : 0;
+    // All joints have changed before the next decision.
+    derived[dwell_ticks] = std::max(ticks_of(values[dwell], context), derived[notice]);
     const unsigned used = decides ? DecisionList(values + first_rule, set_count).features() : 0U;
     GaitFeatures::make(context, values[window], used).store(derived + feature_constants);
   }
@@ -203,6 +202,7 @@ class GaitSelector final : public SensingModule {
   void reset(const JointContext& context, const Tuning& tuning, Pcg32& /*noise*/, std::int32_t* state) const override {
     state[announced_set] = 1;
     state[set] = 1;
+    state[since_decision] = before_first_decision(context, tuning);
     state[current_shift] = shift_in(1, context, tuning);
   }
 
@@ -217,6 +217,7 @@ class GaitSelector final : public SensingModule {
       state[current_phase] =
           static_cast<std::int32_t>(surroundings.tick * static_cast<std::uint32_t>(tuning.derived[increments]));
     }
+    state[since_decision] = before_first_decision(surroundings.context, tuning);
     const std::int32_t* const chosen = set_of(state[set], tuning);
     state[current_amplitude] = chosen[amplitude];
     state[current_shift] = shift_in(state[set], surroundings.context, tuning);
@@ -258,6 +259,15 @@ class GaitSelector final : public SensingModule {
     return static_cast<std::int32_t>(std::uint32_t{context.joint} *
                                      static_cast<std::uint32_t>(set_of(set_number, tuning)[phase_step]));
   }
+  static std::int32_t ticks_of(std::int32_t ms, const JointContext& context) {
+    return static_cast<std::int32_t>(divide_nearest(std::int64_t{ms} * 1'000, std::int64_t{context.tick_period_us}));
+  }
+  /// since_decision of a joint that starts. Its features start at 0, so it does not decide by them within three
+  /// windows: then 5 % of that 0 are left.
+  static std::int32_t before_first_decision(const JointContext& context, const Tuning& tuning) {
+    constexpr std::int32_t windows_to_follow = 3;
+    return std::min(tuning.derived[dwell_ticks] - ticks_of(windows_to_follow * tuning.parameters[window], context), 0);
+  }
   static void take(const Neighbour& neighbour, std::int32_t* state) {
     state[current_phase] = neighbour.value(phase_field);
     state[announced_set] = static_cast<std::int32_t>(position_of(neighbour.value(announced_field))) + 1;
@@ -277,13 +287,13 @@ class GaitSelector final : public SensingModule {
     }
     next[countdown] = std::max<std::int32_t>(next[countdown] - 1, 0);
     GaitFeatures::load(tuning.derived + feature_constants).advance(surroundings, state + features, next + features);
-    const std::int32_t before = std::clamp<std::int32_t>(state[since_decision], 0, most_ticks);
+    const std::int32_t before = std::clamp<std::int32_t>(state[since_decision], -most_ticks, most_ticks);
     next[since_decision] = std::min(before + 1, most_ticks);
+    const unsigned present =
+        next[countdown] == 0 ? static_cast<unsigned>(next[announced_set] - 1) : position_of(state[set]);
     if (tuning.derived[notice] != 0 && next[countdown] == 0 && before >= tuning.derived[dwell_ticks]) {
       decide(tuning, next);
     }
-    const unsigned present =
-        next[countdown] == 0 ? static_cast<unsigned>(next[announced_set] - 1) : position_of(state[set]);
     next[set] = static_cast<std::int32_t>(present) + 1;
     next[current_phase] = add_wrapping(next[current_phase], tuning.derived[increments + present]);
 
@@ -297,7 +307,7 @@ class GaitSelector final : public SensingModule {
         add_wrapping(shift, proleg::advance(filter, subtract_wrapping(state[current_shift], shift), next[shift_rate]));
   }
 
-  static constexpr std::int32_t most_ticks = 1 << 20;  ///< more than any dwell time has
+  static constexpr std::int32_t most_ticks = 1 << 21;  ///< more than any dwell time or three windows have
 
   [[gnu::noinline]] static void decide(const Tuning& tuning, std::int32_t* next) {
     const std::int32_t wanted = DecisionList(tuning.parameters + first_rule, set_count)

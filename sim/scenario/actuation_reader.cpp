@@ -160,7 +160,9 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
   if (modules.empty()) {
     root.refuse("no <actuationModule> in " + root.label(), "1 to " + std::to_string(max_slots));
   }
-  refuse_contradictions(scenario);
+  if (const auto contradiction = find_contradiction(scenario)) {
+    modules[contradiction->slot].refuse(contradiction->found, contradiction->expected);
+  }
 }
 
 std::vector<XmlElement> actuation_modules(const XmlDocument& document) {

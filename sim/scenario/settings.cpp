@@ -32,7 +32,8 @@ std::string range_text(const Parameter& parameter) {
     return unit_range_text(parameter.unit);
   }
   const std::string symbol = shown_unit(parameter.unit);
-  return "a number from " + std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
+  return (parameter.unit == Unit::count ? "a whole number from " : "a number from ") +
+         std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
          std::string(format_decimal(parameter.maximum, parameter.unit).view()) + (symbol.empty() ? "" : " " + symbol);
 }
 
@@ -50,7 +51,12 @@ std::string unit_range_text(Unit unit) {
 
 std::int32_t parse_parameter(const Parameter& parameter, const std::string& text, const std::string& file, int line) {
   const DecimalResult result = parse_decimal(text, parameter.unit);
-  if (result.error != DecimalError::none || result.raw < parameter.minimum || result.raw > parameter.maximum) {
+  const auto is_whole = [&text] {
+    const std::optional<double> number = parse_number(text);
+    return number && std::trunc(*number) == *number;
+  };
+  if (result.error != DecimalError::none || result.raw < parameter.minimum || result.raw > parameter.maximum ||
+      (parameter.unit == Unit::count && !is_whole())) {
     throw InputError(file, line, in_quotes(text) + " for parameter " + in_quotes(parameter.name),
                      range_text(parameter));
   }
@@ -109,7 +115,8 @@ void visit_parameter_values(
   }
 }
 
-void refuse_contradictions(const Scenario& scenario) {
+std::optional<FoundContradiction> find_contradiction(const Scenario& scenario) {
+  std::optional<FoundContradiction> first;
   for (const unsigned slot : used_slots(scenario)) {
     const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
     if (declaration.rules == nullptr) {
@@ -117,19 +124,20 @@ void refuse_contradictions(const Scenario& scenario) {
     }
     visit_parameter_values(scenario, slot, [&](unsigned joint, const auto& values) {
       const auto found = declaration.rules->contradiction(values.data());
-      if (!found) {
+      if (!found || first) {
         return;
       }
       const auto shown = [&](unsigned number) {
         const Parameter& parameter = declaration.parameters[number];
         return std::string(parameter.name) + " " + std::string(format_decimal(values[number], parameter.unit).view());
       };
-      throw InputError(scenario.actuation_file, 0,
-                       slot_name(scenario, slot) + " with " + shown(found->parameter) + " and " + shown(found->other) +
-                           " on joint " + in_quotes(scenario.robot.joints[joint].name),
-                       std::string(std::string_view(found->expected)));
+      first = FoundContradiction{slot,
+                                 slot_name(scenario, slot) + " with " + shown(found->parameter) + " and " +
+                                     shown(found->other) + " on joint " + in_quotes(scenario.robot.joints[joint].name),
+                                 std::string(std::string_view(found->expected))};
     });
   }
+  return first;
 }
 
 std::uint32_t read_tick(const std::string& word, const std::string& tick, std::uint32_t tick_period_us) {

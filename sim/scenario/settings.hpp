@@ -44,8 +44,14 @@ void visit_parameter_values(
     const Scenario& scenario, unsigned slot,
     const std::function<void(unsigned joint, const std::array<std::int32_t, max_parameters>& values)>& visit);
 
-/// Throws InputError if values of parameters contradict each other, at the start or after a change.
-void refuse_contradictions(const Scenario& scenario);
+/// Values of parameters that contradict each other, for a message.
+struct FoundContradiction {
+  unsigned slot = 0;
+  std::string found;     ///< algorithm, values and joint
+  std::string expected;  ///< what would be right
+};
+/// The first contradiction among the values of the start, or after a change.
+[[nodiscard]] std::optional<FoundContradiction> find_contradiction(const Scenario& scenario);
 
 /// The tick that a word of the command line names behind its '@': a whole number, or seconds with an `s`, which mean
 /// the tick that begins then, or next. Throws InputError with the word as its file.

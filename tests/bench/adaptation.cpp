@@ -284,7 +284,8 @@ Options read_options(int argc, char** argv) {
 
 void print_table(const Options& options) {
   Atlas atlas = read_atlas(options.atlas);
-  rate_for_length(atlas, options.seconds, [](double) {});
+  rate_for_length(
+      atlas, options.seconds, [](double) {}, [] { return false; });
   const std::vector<AdaptationCell> cells = atlas.cells();
   const auto most_expected =
       static_cast<std::size_t>(std::ranges::max_element(cells, {}, &AdaptationCell::prior) - cells.begin());

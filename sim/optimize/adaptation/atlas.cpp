@@ -9,6 +9,7 @@
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/experiment/gait_map.hpp"
 #include "sim/optimize/report/scores.hpp"
@@ -114,7 +115,7 @@ Atlas read_atlas(const std::filesystem::path& path) {
   if (atlas.experiment.axes.empty()) {
     refuse(file, "a search without a map");
   }
-  Store store(file, atlas.experiment, {}, Store::Opening::look);
+  Store store(file, atlas.experiment, {}, Store::Opening::trust);
   const std::vector<Evaluation> evaluations = store.evaluations(0);
   const GaitMap map = gait_map(atlas.experiment, evaluations);
   for (const GaitMap::Elite& elite : map.elites()) {
@@ -127,7 +128,8 @@ Atlas read_atlas(const std::filesystem::path& path) {
   return atlas;
 }
 
-void rate_for_length(Atlas& atlas, double seconds, const std::function<void(double share)>& progress) {
+void rate_for_length(Atlas& atlas, double seconds, const std::function<void(double share)>& progress,
+                     const std::function<bool()>& stop) {
   Experiment& experiment = atlas.experiment;
   if (experiment.scenario.duration_s == seconds) {
     return;
@@ -140,21 +142,35 @@ void rate_for_length(Atlas& atlas, double seconds, const std::function<void(doub
   experiment.scenario.duration_s = seconds;
   const Objective& objective = experiment.objectives.front();
   constexpr std::size_t most_at_once = 64;
+  std::vector<bool> has_score(atlas.gaits.size());
   for (std::size_t first = 0; first < atlas.gaits.size(); first += most_at_once) {
     const std::span<AtlasGait> gaits =
         std::span(atlas.gaits).subspan(first, std::min(most_at_once, atlas.gaits.size() - first));
     std::vector<sim::Scenario> scenarios(gaits.size(), experiment.scenario);
     for (std::size_t i = 0; i < gaits.size(); ++i) {
       experiment.space.apply(gaits[i].candidate, scenarios[i]);
-      gaits[i].score = objective.failed;
     }
-    const RunWatch watch{{}, [&](std::size_t i, const sim::Simulation& simulation, TrialResult&) {
-                           gaits[i].score = objective.score(simulation.measures(experiment.heading_deg));
-                         }};
-    static_cast<void>(run_scenarios(scenarios, watch));
+    const auto after_tick = [&stop](std::size_t, const sim::Simulation&, TrialResult& result) {
+      result.given_up = stop();
+    };
+    const auto at_end = [&](std::size_t i, const sim::Simulation& simulation, TrialResult&) {
+      const sim::MeasureValues measures = simulation.measures(experiment.heading_deg);
+      gaits[i].score = objective.score(measures);
+      has_score[first + i] = objective.is_defined(measures);
+    };
+    static_cast<void>(run_scenarios(scenarios, {after_tick, at_end}));
+    if (stop()) {
+      throw SearchEnded();
+    }
     progress(static_cast<double>(first + gaits.size()) / static_cast<double>(atlas.gaits.size()));
   }
-  std::erase_if(atlas.gaits, [&](const AtlasGait& gait) { return gait.score == objective.failed; });
+  std::vector<AtlasGait> rated;
+  for (std::size_t i = 0; i < atlas.gaits.size(); ++i) {
+    if (has_score[i]) {
+      rated.push_back(atlas.gaits[i]);
+    }
+  }
+  atlas.gaits = std::move(rated);
   if (atlas.gaits.empty()) {
     refuse(experiment.path, "no gait with a score in " + number_text(seconds) + " s");
   }

@@ -34,13 +34,15 @@ struct Atlas {
 };
 
 /// Reads the store of a search with MAP-Elites. path: the store, or the folder that has one (store.sqlite). Throws
-/// StoreError, also if the search has no map or no gait; InputError as read_experiment_of().
+/// StoreError, also if the search has no map or no gait, or has another fingerprint than its files; InputError as
+/// read_experiment_of().
 [[nodiscard]] Atlas read_atlas(const std::filesystem::path& path);
 
 /// Rates the gaits for runs of another length, in the engine of the search, and drops those without a score; nothing is
-/// done if the runs have that length already. progress: called with the share that is done; it may throw. Throws
-/// StoreError if no gait is left, or if a robot has filled the map.
-void rate_for_length(Atlas& atlas, double seconds, const std::function<void(double share)>& progress);
+/// done if the runs have that length already. progress: called with the share that is done. stop: called in each tick.
+/// Throws SearchEnded if it returned true; StoreError if no gait is left, or if a robot has filled the map.
+void rate_for_length(Atlas& atlas, double seconds, const std::function<void(double share)>& progress,
+                     const std::function<bool()>& stop);
 
 /// Throws InputError, with the scenario's file, if the gaits do not mean the same on the scenario's robot: its joints
 /// have other names or axes, or its actuation has other modules, or other values of what the search does not choose.

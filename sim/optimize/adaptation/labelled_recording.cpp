@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
 #include <sstream>
+#include <system_error>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -29,20 +32,6 @@ constexpr std::uint32_t most_parts = 10;
 
 std::string_view selector_name() { return sensing_module_gait_selector().declaration().name; }
 
-const sim::RecordedSlot& selector_slot(const sim::Recording& recording) {
-  for (const sim::RecordedSlot& slot : recording.slots()) {
-    if (slot.algorithm == selector_name()) {
-      return slot;
-    }
-  }
-  std::string names;
-  for (const sim::RecordedSlot& slot : recording.slots()) {
-    names += (names.empty() ? "" : ", ") + slot.algorithm;
-  }
-  throw InputError(recording.path().string(), 0, names.empty() ? "no algorithm" : "a recording of " + names,
-                   "a recording of " + std::string(selector_name()) + ": others have no readings of all sensors");
-}
-
 /// The joint that decides.
 unsigned first_joint(const sim::RecordedSlot& slot) {
   return static_cast<unsigned>(std::ranges::find(slot.joint_group, true) - slot.joint_group.begin());
@@ -59,17 +48,26 @@ std::int32_t start_value(const sim::Recording& recording, const sim::RecordedSlo
   throw InputError(recording.path().string(), 0, "no parameter `" + name + "`", "a recording of this version");
 }
 
-/// Of each set the least one with the same gait.
-std::array<std::int32_t, gait_sets> gaits(const sim::Recording& recording, const sim::RecordedSlot& slot) {
-  std::array<std::vector<std::int32_t>, gait_sets> parameters;
-  std::array<std::int32_t, gait_sets> least{};
-  for (std::size_t set = 0; set < parameters.size(); ++set) {
+/// What a set plays: the parameters of all joints, in the recording's order.
+void read_gaits(const sim::Recording& recording, const sim::RecordedSlot& slot, LabelledRun& run) {
+  for (std::size_t set = 0; set < run.parameters_of_set.size(); ++set) {
     for (const char* name : {"amplitude_", "frequency_", "phase_difference_", "offset_"}) {
-      parameters[set].push_back(start_value(recording, slot, name + std::to_string(set + 1)));
+      const std::string full_name = name + std::to_string(set + 1);
+      for (const sim::RecordedSetting& setting : recording.parameters()) {
+        if (setting.slot != slot.slot || setting.name != full_name) {
+          continue;
+        }
+        if (setting.commit) {
+          throw InputError(recording.path().string(), 0,
+                           "another " + full_name + " from " + number_text(recording.time_s(setting.tick)) + " s on",
+                           "a recording in which the parameters of the sets do not change");
+        }
+        run.parameters_of_set[set].push_back(setting.raw);
+      }
     }
-    least[set] = static_cast<std::int32_t>(std::ranges::find(parameters, parameters[set]) - parameters.begin()) + 1;
+    const auto least = std::ranges::find(run.parameters_of_set, run.parameters_of_set[set]);
+    run.gait_of_set[set] = static_cast<std::int32_t>(least - run.parameters_of_set.begin()) + 1;
   }
-  return least;
 }
 
 /// The deciding joint's internal value `set`, in RecordedTick::internal_values.
@@ -128,13 +126,20 @@ class FeatureReplay {
   std::uint32_t readings_in_all_ = JointReadings::all_sensors;
 };
 
+/// A recording may be named in several ways.
+std::string same_file(const LabelledRun& run) {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::weakly_canonical(run.label.file, error);
+  return error ? run.label.file : path.string();
+}
+
 /// The part of each run's file in try_on_unseen().
 std::vector<std::uint32_t> parts_of(const std::vector<LabelledRun>& runs) {
   std::map<std::string, std::uint32_t> part_of_file;
   std::map<std::uint32_t, std::uint32_t> files_of_label;
   std::vector<std::uint32_t> parts;
   for (const LabelledRun& run : runs) {
-    const auto [place, is_new] = part_of_file.try_emplace(run.label.file, 0);
+    const auto [place, is_new] = part_of_file.try_emplace(same_file(run), 0);
     if (is_new) {
       place->second = files_of_label[run.right_sets()]++ % most_parts;
     }
@@ -192,6 +197,20 @@ RecordingLabel parse_recording_label(const std::string& word) {
   return label;
 }
 
+const sim::RecordedSlot& selector_slot(const sim::Recording& recording) {
+  for (const sim::RecordedSlot& slot : recording.slots()) {
+    if (slot.algorithm == selector_name()) {
+      return slot;
+    }
+  }
+  std::string names;
+  for (const sim::RecordedSlot& slot : recording.slots()) {
+    names += (names.empty() ? "" : ", ") + slot.algorithm;
+  }
+  throw InputError(recording.path().string(), 0, names.empty() ? "no algorithm" : "a recording of " + names,
+                   "a recording of " + std::string(selector_name()) + ": others have no readings of all sensors");
+}
+
 SelectorTimes selector_times(const sim::Recording& recording) {
   const sim::RecordedSlot& slot = selector_slot(recording);
   return {start_value(recording, slot, "window"), start_value(recording, slot, "dwell")};
@@ -205,7 +224,8 @@ LabelledRun read_labelled_run(const RecordingLabel& label, std::int32_t window_m
   run.tick_period_us = recording.tick_period_us();
   run.joints = static_cast<std::uint32_t>(recording.joints().size());
   run.first_ticks = windows_to_follow * ticks_of(window_ms, run.tick_period_us);
-  run.gait_of_set = gaits(recording, slot);
+  run.joint_group = slot.joint_group;
+  read_gaits(recording, slot, run);
   FeatureReplay replay(recording, slot, window_ms);
   const std::size_t played = position_of_set(recording, slot);
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const sim::RecordedTick& tick) {
@@ -227,13 +247,73 @@ LabelledRun read_labelled_run(const RecordingLabel& label, std::int32_t window_m
   return run;
 }
 
+void check_together(const std::vector<LabelledRun>& runs) {
+  const LabelledRun& first = runs.front();
+  const auto refuse = [&first](const LabelledRun& run, const std::string& found, const std::string& expected) {
+    throw InputError(run.label.file, 0, found, expected + ", as in " + first.label.file);
+  };
+  const auto robot_of = [](const LabelledRun& run) {
+    return "a robot of " + std::to_string(run.joints) + " joints and a tick of " +
+           number_text(run.tick_period_us / 1e3) + " ms";
+  };
+  const auto group_of = [](const LabelledRun& run) {
+    std::string digits;
+    for (const bool is_driven : run.joint_group) {
+      digits += is_driven ? '1' : '0';
+    }
+    return "a selector on the joints " + digits;
+  };
+  for (const LabelledRun& run : runs) {
+    if (run.joints != first.joints || run.tick_period_us != first.tick_period_us) {
+      refuse(run, robot_of(run), robot_of(first));
+    }
+    if (run.joint_group != first.joint_group) {
+      refuse(run, group_of(run), group_of(first));
+    }
+    for (std::size_t set = 0; set < run.parameters_of_set.size(); ++set) {
+      if (run.parameters_of_set[set] != first.parameters_of_set[set]) {
+        const std::string name = "set " + std::to_string(set + 1);
+        refuse(run, name + " with other parameters", "the same gait in " + name);
+      }
+    }
+    const auto overlaps = [&run](const LabelledRun& other) {
+      const double end = std::numeric_limits<double>::infinity();
+      return &other != &run && same_file(other) == same_file(run) &&
+             other.label.from_s.value_or(0.0) < run.label.to_s.value_or(end) &&
+             run.label.from_s.value_or(0.0) < other.label.to_s.value_or(end);
+    };
+    if (const auto other = std::ranges::find_if(runs, overlaps); other != runs.end()) {
+      throw InputError(run.label.word, 0, "seconds that are also in " + other->label.word,
+                       "each second of a recording once; two sets are right as 1,2=FILE");
+    }
+  }
+}
+
+std::vector<bool> forget_untried_entries(std::vector<LabelledRun>& runs) {
+  std::set<std::uint32_t> tried;  // labels of which another set was played
+  for (const LabelledRun& run : runs) {
+    const auto is_other = [&run](std::int32_t set) { return (run.right_sets() & bit_of_set(set)) == 0; };
+    if (std::ranges::any_of(run.played, is_other)) {
+      tried.insert(run.right_sets());
+    }
+  }
+  std::vector<bool> forgotten;
+  for (LabelledRun& run : runs) {
+    forgotten.push_back(!tried.contains(run.right_sets()));
+    if (forgotten.back()) {
+      std::ranges::fill(run.played, 0);
+    }
+  }
+  return forgotten;
+}
+
 RunDecisions decide(const LabelledRun& run, const LearnedRules& rules, std::int32_t dwell_ms) {
   const DecisionList list(rules.rules.data(), gait_sets);
   // The decision before has to be known to all joints (SensingModule_gait_selector).
   constexpr std::uint32_t spare_ticks = 8;
   const std::uint32_t wait = std::max(ticks_of(dwell_ms, run.tick_period_us), run.joints + spare_ticks);
   RunDecisions result;
-  std::int32_t set = run.played.front();
+  std::int32_t set = std::max(run.played.front(), std::int32_t{1});
   std::uint32_t since = wait;
   for (std::size_t tick = 0; tick < run.features.size(); ++tick) {
     const std::int32_t before = set;

@@ -37,11 +37,15 @@ struct LabelledRun {
   RecordingLabel label;
   std::uint32_t tick_period_us = 0;
   std::uint32_t joints = 0;
-  /// Of each set the least one with the same gait, from 1: as the parameters were at the start.
+  std::vector<bool> joint_group;  ///< joints that the selector drives
+  /// The parameters of each set at the start, of all these joints.
+  std::array<std::vector<std::int32_t>, gait_sets> parameters_of_set;
+  /// Of each set the least one with the same parameters, from 1.
   std::array<std::int32_t, gait_sets> gait_of_set{1, 2, 3, 4};
   std::uint32_t readings = 0;           ///< sensors that the deciding joint had in every tick: JointReadings::Sensor
   std::vector<FeatureValues> features;  ///< of each tick of the part
-  std::vector<std::int32_t> played;     ///< the set that was played then
+  /// The set that was played then. 0 from forget_untried_entries(): any other than the right ones.
+  std::vector<std::int32_t> played;
 
   [[nodiscard]] std::int32_t gait(std::int32_t set) const { return gait_of_set[static_cast<std::size_t>(set - 1)]; }
   /// The sets of the label, and others with the same gaits: bit n - 1 for set n.
@@ -50,12 +54,24 @@ struct LabelledRun {
   std::size_t first_ticks = 0;
 };
 
+/// The first selector of a recording. Throws InputError if there is none.
+[[nodiscard]] const sim::RecordedSlot& selector_slot(const sim::Recording& recording);
+
 /// The times of the selector in a recording, at its start. Throws InputError if there is no selector in it.
 [[nodiscard]] SelectorTimes selector_times(const sim::Recording& recording);
 
 /// Computes all features as the module that decides would with this window. Throws InputError if the recording has no
-/// selector, or the part is not longer than three windows.
+/// selector, a parameter of its sets changes during the recording, or the part is not longer than three windows.
 [[nodiscard]] LabelledRun read_labelled_run(const RecordingLabel& label, std::int32_t window_ms);
+
+/// Throws InputError if a run does not belong to the first one: its robot has other joints or another tick, the
+/// selector drives other joints, its sets have other parameters, or a second of its recording is also in another run.
+void check_together(const std::vector<LabelledRun>& runs);
+
+/// Hysteresis only says when a set ends. If the sets of a label were played in all runs of it, nothing tells whether
+/// the robot would choose them while it plays another one. This takes such runs as if none of the right sets were
+/// played. Returns for each run whether it did.
+std::vector<bool> forget_untried_entries(std::vector<LabelledRun>& runs);
 
 /// What a selector would have chosen in each tick, while the robot played what it played.
 struct RunDecisions {

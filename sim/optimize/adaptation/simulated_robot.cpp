@@ -14,8 +14,8 @@ SimulatedRobot::SimulatedRobot(const Experiment& experiment, sim::Scenario reali
     : experiment_(experiment), reality_(std::move(reality)), losses_(std::move(losses)), stop_(std::move(stop)) {}
 
 TrialOutcome outcome_of(const Objective& objective, const sim::MeasureValues& measures) {
-  const double score = objective.score(measures);
-  return {score, score != objective.failed ? std::string() : "the run does not define " + objective.name};
+  return {objective.score(measures),
+          objective.is_defined(measures) ? std::string() : "the run does not define " + objective.name};
 }
 
 TrialOutcome SimulatedRobot::try_gait(const Candidate& candidate) {

@@ -6,6 +6,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/loop/simulation_batch.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -64,7 +65,8 @@ void run_batch(std::span<const sim::Scenario> scenarios, const RunWatch& watch, 
 
 /// Whether the worlds of the scenarios can make their steps together.
 bool fit_together(const sim::Scenario& one, const sim::Scenario& other) {
-  return one.kernel.tick_period_us == other.kernel.tick_period_us && one.step_s == other.step_s;
+  return !sim::find_contradiction(other) && one.kernel.tick_period_us == other.kernel.tick_period_us &&
+         one.step_s == other.step_s;
 }
 
 }  // namespace
@@ -72,6 +74,11 @@ bool fit_together(const sim::Scenario& one, const sim::Scenario& other) {
 std::vector<TrialResult> run_scenarios(std::span<const sim::Scenario> scenarios, const RunWatch& watch) {
   std::vector<TrialResult> results(scenarios.size());
   for (std::size_t first = 0; first < scenarios.size();) {
+    if (const auto contradiction = sim::find_contradiction(scenarios[first])) {
+      results[first].failure = "found " + contradiction->found + ", expected " + contradiction->expected;
+      ++first;
+      continue;
+    }
     const auto start = std::chrono::steady_clock::now();
     const std::size_t most = std::min(sim::batch_size(scenarios[first]), scenarios.size() - first);
     std::size_t count = 1;

@@ -23,7 +23,7 @@ struct TrialResult {
   double wall_s = 0.0;               ///< what the worker needed, its share of a batch; processor time would not
                                      ///< include waiting
   bool given_up = false;             ///< racing stopped it; distance and speed are extrapolated
-  std::string failure;               ///< why the simulation failed (PhysicsError); empty if it did not
+  std::string failure;               ///< why the simulation failed; empty if it did not
   std::uint32_t limited_joints = 0;  ///< whose servos cannot follow the gait; only sweeps count them
 };
 
@@ -36,7 +36,8 @@ struct RunWatch {
 };
 
 /// Simulates scenarios, in batches where it is worth it (sim::batch_size). Each result, except its wall_s, is the one
-/// that its scenario has alone. Failed simulations (PhysicsError) have a `failure`.
+/// that its scenario has alone. Failed simulations (PhysicsError) have a `failure`, and so has a scenario with
+/// parameters that contradict each other, which is not simulated.
 [[nodiscard]] std::vector<TrialResult> run_scenarios(std::span<const sim::Scenario> scenarios, const RunWatch& watch);
 
 }  // namespace proleg::optimize

@@ -20,8 +20,11 @@ class Store::Implementation {
                  Opening opening)
       : path_(path), experiment_(experiment), result_key_(result_key), columns_(experiment) {
     guard([&] {
-      if (opening == Opening::look) {
+      if (opening == Opening::look || opening == Opening::trust) {
         look();
+        if (opening == Opening::trust) {
+          require_same_fingerprint(path, *database_, experiment);
+        }
         return;
       }
       lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, result_key)

@@ -29,6 +29,7 @@ class Store {
     resume,  ///< the file must exist, with the same experiment and result key
     look,    ///< the file must exist, and the experiment be that of read_experiment_of(); it is read only, and
              ///< another program may write it
+    trust,   ///< as look, and the file must have the fingerprint of the experiment: its scores are used
   };
   /// Throws StoreError: the file does (not) exist, is no store, or is of another experiment or result
   /// key (tools/proleg/common/build_id.hpp).

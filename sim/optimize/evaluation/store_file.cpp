@@ -285,9 +285,7 @@ StoredExperiment read_description(const std::filesystem::path& path, Database& d
   return stored;
 }
 
-void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
-                             const std::string& result_key) {
-  require_store(path, database);
+void require_same_fingerprint(const std::filesystem::path& path, Database& database, const Experiment& experiment) {
   const std::string fingerprint = described_value(database, "fingerprint");
   if (fingerprint != experiment.fingerprint()) {
     const std::vector<std::string> names = differences(database, experiment);
@@ -295,6 +293,12 @@ void require_same_experiment(const std::filesystem::path& path, Database& databa
                      fingerprint.substr(0, 12) + ", expected " + experiment.fingerprint().substr(0, 12) +
                      (names.empty() ? "" : "; differences: " + listed(names)));
   }
+}
+
+void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
+                             const std::string& result_key) {
+  require_store(path, database);
+  require_same_fingerprint(path, database, experiment);
   const std::string build_id = described_value(database, "build_id");
   if (described_value(database, "result_key") != result_key) {
     throw StoreError(path.string() + ": was made by a program with other sources, compiler or libraries" +

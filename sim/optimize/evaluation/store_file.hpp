@@ -101,6 +101,9 @@ void require_store(const std::filesystem::path& path, Database& database);
 /// What went wrong, as a message for a person. system: errno after the error.
 [[nodiscard]] std::string reason_of(const SqliteError& error, int system);
 
+/// Throws StoreError if the store of this format has another experiment.
+void require_same_fingerprint(const std::filesystem::path& path, Database& database, const Experiment& experiment);
+
 /// Throws StoreError unless it is a store of this format, experiment and result key.
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
                              const std::string& result_key);

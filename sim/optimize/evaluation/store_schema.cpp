@@ -106,7 +106,7 @@ std::string text_of(const Candidate& candidate) {
 Candidate candidate_of(const std::string& text) {
   Candidate candidate;
   for (const std::string_view word : words(text)) {
-    candidate.push_back(parse_whole<std::uint32_t>(word).value_or(0));
+    candidate.push_back(parse_whole<std::uint32_t>(word).value_or(std::numeric_limits<std::uint32_t>::max()));
   }
   return candidate;
 }

@@ -221,14 +221,20 @@ void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
   }
 }
 
-}  // namespace
-
-double Objective::score(const sim::MeasureValues& measures) const {
+double sum_of(const std::vector<Term>& terms, const sim::MeasureValues& measures) {
   double sum = 0.0;
   for (const Term& term : terms) {
     sum += term.weight * measures[term.measure];
   }
-  return std::isfinite(sum) ? sum : failed;
+  return sum;
+}
+
+}  // namespace
+
+bool Objective::is_defined(const sim::MeasureValues& measures) const { return std::isfinite(sum_of(terms, measures)); }
+
+double Objective::score(const sim::MeasureValues& measures) const {
+  return is_defined(measures) ? sum_of(terms, measures) : failed;
 }
 
 bool Objective::may_be_negative() const {

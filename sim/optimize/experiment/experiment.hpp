@@ -37,7 +37,9 @@ struct Objective {
   /// Score of a candidate whose run failed or lacks a measure.
   double failed = 0.0;
 
-  /// The score of a run; `failed` if it is not a finite number.
+  /// Whether the sum of these measures is a finite number.
+  [[nodiscard]] bool is_defined(const sim::MeasureValues& measures) const;
+  /// The score of a run; `failed` if it is not defined.
   [[nodiscard]] double score(const sim::MeasureValues& measures) const;
   /// Whether a score can be below 0, because of a failed run, a weight below 0, or a measure with both signs.
   [[nodiscard]] bool may_be_negative() const;

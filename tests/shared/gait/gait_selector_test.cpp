@@ -199,6 +199,23 @@ TEST_F(GaitSelector, FeaturesOfTouchCountAllLinks) {
   EXPECT_GT(expected[2], 0.5) << "touches changed often enough to be a test";
 }
 
+TEST(GaitSelectorOfALongRobot, CountsChangesOfTouchOfTheFirst31Links) {
+  constexpr unsigned joints = 60;
+  KernelOf<joints> kernel;
+  ASSERT_EQ(kernel.configure(configuration(joints), 0), Status::ok);
+  test::set_all(kernel, 0, "window", 4000);
+  set_rule(kernel, 2, touch_changes, 7);
+  kernel.reset();
+  for (int tick = 0; tick < 3000; ++tick) {
+    for (unsigned joint = 0; joint < joints; ++joint) {  // each link touches for 0.5 s, then for 0.5 s not
+      kernel.set_contacts(joint, tick / 50 % 2 == 0 ? 0 : 0b0101);
+    }
+    kernel.advance();
+  }
+  // The joint in front knows the first two links, all others one: each link changes twice a second.
+  EXPECT_NEAR(test::value(kernel, 0, 0, "touch_changes") / std::ldexp(1.0, 28), 2.0, 0.25);
+}
+
 TEST_F(GaitSelector, AFeatureThatNoRuleNamesIsNotComputed) {
   set_rule(kernel_, 2, roll, 0.5);
   JointReadings readings = inclined(0.5);
@@ -271,6 +288,26 @@ TEST_F(GaitSelector, DecisionsAreTheDwellTimeApart) {
   std::cout << "seed 164: " << changes << " decisions in 30 s of random inputs\n";
 }
 
+// Its features begin at 0, which is not what the robot senses.
+TEST_F(GaitSelector, DoesNotDecideInTheFirstThreeWindows) {
+  set_ladder(kernel_, 500);
+  set_rule(kernel_, 2, -pitch, 0.35);  // holds for the features at the start, not for those of the robot
+  set_rule(kernel_, 3, 0, 0);
+  kernel_.reset();
+  for (int tick = 0; tick < 1000; ++tick) {
+    this->tick(inclined(0.4));
+    EXPECT_EQ(set_of(kernel_, 0), 1) << "tick " << tick;
+  }
+  set_rule(kernel_, 2, pitch, 0.3);
+  kernel_.reset();
+  int first = 0;
+  while (first < 1000 && test::value(kernel_, 0, 0, "announced_set") == 1) {
+    tick(inclined(0.4));
+    ++first;
+  }
+  EXPECT_NEAR(first, 150, 2) << "three windows of 500 ms";
+}
+
 TEST_F(GaitSelector, AChangeOfTheSetIsNoJump) {
   set_ladder(kernel_);
   std::mt19937 random(165);
@@ -314,20 +351,23 @@ ModuleChain ladder_chain(unsigned joints = robot_joints) {
 
 TEST(GaitSelectorModules, ChangeTheirSetInTheSameTick) {
   for (const unsigned joints : {1U, 2U, 5U, 24U, 64U}) {
-    ModuleChain chain = ladder_chain(joints);
-    std::mt19937 random(166 + joints);
-    int changes = 0;
-    std::int32_t last = 1;
-    for (int tick = 0; tick < 1500; ++tick) {
-      play(chain, 0.2 * (tick / 150 % 5), loses_nothing);
-      const std::int32_t set = set_of(chain[0], 0);
-      changes += set != last ? 1 : 0;
-      last = set;
-      for (unsigned joint = 1; joint < joints; ++joint) {
-        ASSERT_EQ(set_of(chain[joint], joint), set) << joints << " joints, joint " << joint << ", tick " << tick;
+    // Without a dwell time, and with a cause for another decision while one goes round.
+    for (const int period : {150, 40, 1}) {
+      ModuleChain chain = ladder_chain(joints);
+      int changes = 0;
+      std::int32_t last = 1;
+      for (int tick = 0; tick < 1500; ++tick) {
+        play(chain, 0.2 * (tick / period % 5), loses_nothing);
+        const std::int32_t set = set_of(chain[0], 0);
+        changes += set != last ? 1 : 0;
+        last = set;
+        for (unsigned joint = 1; joint < joints; ++joint) {
+          ASSERT_EQ(set_of(chain[joint], joint), set)
+              << joints << " joints, joint " << joint << ", tick " << tick << ", period " << period;
+        }
       }
+      EXPECT_GE(changes, 7) << joints << " joints, period " << period;
     }
-    EXPECT_GE(changes, 7) << joints << " joints";
   }
 }
 
@@ -444,12 +484,18 @@ TEST(GaitSelectorRules, ThatContradictAreNamed) {
   EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.3, -pitch, 0.5)), "");
   EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.5, -pitch, 0.3)), "threshold_2, second_threshold_2");
   EXPECT_EQ(contradiction_in(Values().rule(4, -roll, 0.5, roll, 0.5)), "threshold_4, second_threshold_4");
+  // A value has to lie between the thresholds.
+  constexpr double step = 1.0 / (1 << 28);
+  EXPECT_EQ(contradiction_in(Values().rule(4, -roll, 0.5, roll, 0.5 - step)), "threshold_4, second_threshold_4");
+  EXPECT_EQ(contradiction_in(Values().rule(4, -roll, 0.5, roll, 0.5 - 2 * step)), "");
   EXPECT_EQ(contradiction_in(Values().rule(3, 0, 0, touch, 0.5)), "feature_3, second_feature_3");
   // Set 3 comes before set 2, whose rule holds only where that of set 3 does.
-  EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.5).rule(3, pitch, 0.3)), "feature_2, feature_3");
-  EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.5, touch, 0.1).rule(4, pitch, 0.3)), "feature_2, feature_4");
+  EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.5).rule(3, pitch, 0.3)), "threshold_2, threshold_3");
+  EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.5, touch, 0.1).rule(4, pitch, 0.3)), "threshold_2, threshold_4");
+  EXPECT_EQ(contradiction_in(Values().rule(2, touch, 0.1, pitch, 0.5).rule(4, pitch, 0.3)),
+            "second_threshold_2, threshold_4");
   EXPECT_EQ(contradiction_in(Values().rule(2, pitch, 0.5).rule(4, pitch, 0.3, touch, 0.1)), "");
-  EXPECT_EQ(contradiction_in(Values().rule(3, -touch, 0.2).rule(4, -touch, 0.2)), "feature_3, feature_4");
+  EXPECT_EQ(contradiction_in(Values().rule(3, -touch, 0.2).rule(4, -touch, 0.2)), "threshold_3, threshold_4");
 }
 
 TEST(GaitSelectorRules, NeedTheSensorsOfTheirFeaturesOnly) {

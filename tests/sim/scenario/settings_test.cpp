@@ -299,24 +299,34 @@ TEST(SetOption, AWordWithOneValueTooManyForAJointChangesNothing) {
 TEST(Contradictions, AreRefusedByParameterValueAndJointAtTheStartAndAfterAChange) {
   Scenario small = scenario();
   small.kernel.slots[3] = {find_algorithm("SensingModule_gait_selector"), JointMask::first(2)};
-  EXPECT_NO_THROW(refuse_contradictions(small));
+  EXPECT_FALSE(find_contradiction(small));
   apply_setting(small, "4.feature_3=1");
   apply_setting(small, "4.threshold_3=0.25");
-  EXPECT_NO_THROW(refuse_contradictions(small));
+  EXPECT_FALSE(find_contradiction(small));
   apply_setting(small, "4.second_feature_3=-1");
   apply_setting(small, "4.second_threshold_3=0.5");
-  EXPECT_NO_THROW(refuse_contradictions(small));
+  EXPECT_FALSE(find_contradiction(small));
   apply_setting(small, "4.second_threshold_3:J1=0.125@20");
-  try {
-    refuse_contradictions(small);
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    EXPECT_NE(
-        message.find("found SensingModule_gait_selector (4) with threshold_3 0.25 and second_threshold_3 0.125 on "
-                     "joint 'J1', expected two conditions that a value can meet together"),
-        std::string::npos)
-        << message;
+  const std::optional<FoundContradiction> found = find_contradiction(small);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->slot, 3U);
+  EXPECT_EQ(found->found,
+            "SensingModule_gait_selector (4) with threshold_3 0.25 and second_threshold_3 0.125 on joint 'J1'");
+  EXPECT_EQ(found->expected, "two conditions that a value can meet together");
+}
+
+TEST(CountParameters, TakeWholeNumbersOnly) {
+  Scenario small = scenario();
+  small.kernel.slots[3] = {find_algorithm("SensingModule_gait_selector"), JointMask::first(2)};
+  EXPECT_NO_THROW(apply_setting(small, "4.feature_2=-3"));
+  EXPECT_NO_THROW(apply_setting(small, "4.feature_2=2.0"));
+  for (const char* word : {"4.feature_2=1.5", "4.feature_2=-0.25", "4.window=0.9", "4.feature_2=9"}) {
+    try {
+      apply_setting(small, word);
+      ADD_FAILURE() << word;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("expected a whole number from "), std::string::npos) << error.what();
+    }
   }
 }
 

@@ -122,6 +122,49 @@ class LearnSelector(unittest.TestCase):
         text = run("learn-selector", self.labelled()[0], self.labelled()[4]).stdout
         self.assertIn("unseen     not known", text)
 
+    def test_a_set_that_was_played_wherever_it_is_right_is_learned_without_hysteresis(self):
+        # The robot lies upright in all recordings: nothing that it senses tells set 2 from set 1 but the gait itself.
+        words = [f"{number}={self.folder}/upright_{name}_{seed}.proleg"
+                 for number, name in ((1, "first"), (2, "second")) for seed in (1, 2)]
+        result = self.learn("--feature", "roll", recordings=words)
+        self.assertEqual(result["rules"]["2"], "never")
+        self.assertLess(result["right"], 0.51)
+        self.assertEqual([each["entry_tried"] for each in result["recordings"]], [False] * 4)
+        text = run("learn-selector", *words, "--feature", "roll").stdout
+        self.assertIn("\nset        1, 2: played in all recordings in which it is right", text)
+
+    def test_the_written_scenario_has_the_values_with_which_the_recording_began(self):
+        self.record("upright", "changed", "--seed", 3, *PLAY_SET_2, "--set", "amplitude_3=33", "--set", "dwell=40")
+        others = [self.folder / f"upright_first_{seed}.proleg" for seed in (1, 2)]
+        refusal = self.refused(f"2={self.folder}/changed.proleg", f"1={others[0]}")
+        self.assertIn("found set 3 with other parameters", refusal)
+        self.record("overturned", "changed_too", "--seed", 3, "--set", "amplitude_3=33", "--set", "dwell=40")
+        result = self.learn("--out", self.folder / "changed", recordings=[f"2={self.folder}/changed.proleg",
+                                                                          f"1={self.folder}/changed_too.proleg"])
+        self.assertEqual(result["parameters"]["dwell"], 40)
+        written = (self.folder / "changed" / "learned.actuation.xml").read_text()
+        self.assertIn('name="amplitude_3" value="33"', written)
+        self.assertIn('name="dwell" value="40"', written)
+
+    def test_only_the_selector_that_was_learned_from_has_the_rules(self):
+        (self.folder / "two.actuation.xml").write_text(ACTUATION.replace("11111", "11100").replace(
+            "</actuation>", """  <actuationModule name="SensingModule_gait_selector">
+    <jointConfiguration joints="00011"/>
+    <parameter name="feature_2" value="-4"/>
+    <parameter name="window" value="777"/>
+  </actuationModule>
+</actuation>"""))
+        for world in ("upright", "overturned"):
+            (self.folder / f"two_{world}.simulation.xml").write_text(
+                SIMULATION.format(wave=WAVE, world=world).replace("selector.actuation", "two.actuation"))
+            self.record(f"two_{world}", f"two_{world}")
+        self.learn("--out", self.folder / "two", "--feature", "roll",
+                   recordings=[f"1={self.folder}/two_upright.proleg", f"2={self.folder}/two_overturned.proleg"])
+        first, second = (self.folder / "two" / "learned.actuation.xml").read_text().split("</actuationModule>")[:2]
+        self.assertIn('name="feature_2" value="3"', first)
+        self.assertIn('name="feature_2" value="-4"', second)
+        self.assertIn('name="window" value="777"', second)
+
     def test_a_table_has_a_line_for_each_recording(self):
         text = run("learn-selector", *self.labelled()).stdout
         for word in self.labelled():
@@ -144,6 +187,10 @@ class LearnSelector(unittest.TestCase):
         self.assertIn("expected pitch, pitch_swing, roll", self.refused(*good, "--feature", "smell"))
         self.assertIn("expected 1 to 600000 ms", self.refused(*good, "--window", "0"))
         self.assertIn("expected 0 to 1", self.refused(*good, "--hysteresis", "2"))
+        self.assertIn("found seconds that are also in", self.refused(*good, "2" + good[0][1:]))
+        self.record("upright", "other_group", "--set", "amplitude_1=60@2s")
+        self.assertIn("found another amplitude_1 from 2 s on", self.refused(*good, f"1={self.folder}/other_group.proleg"))
+        self.assertIn("--out: found an empty name", self.refused(*good, "--out", ""))
         full = self.folder / "full"
         full.mkdir()
         (full / "learned.simulation.xml").write_text("mine")

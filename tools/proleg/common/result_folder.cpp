@@ -43,6 +43,9 @@ fs::path chosen_folder(const std::optional<std::string>& out, const std::optiona
 }
 
 void check_result_folder(const fs::path& folder, std::span<const std::string_view> files) {
+  if (folder.empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
   const fs::path existing = existing_part(folder);
   std::error_code error;
   if (!fs::is_directory(existing, error)) {

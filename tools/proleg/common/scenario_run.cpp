@@ -132,7 +132,9 @@ ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files) 
   for (const std::string& setting : options.settings) {
     sim::apply_setting(run.scenario, setting);
   }
-  sim::refuse_contradictions(run.scenario);
+  if (const auto contradiction = sim::find_contradiction(run.scenario)) {
+    throw InputError("--set", 0, contradiction->found, contradiction->expected);
+  }
   if (options.seconds) {
     set_duration(run.scenario, "--seconds", *options.seconds);
   }

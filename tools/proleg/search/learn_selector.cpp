@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -130,17 +131,9 @@ std::vector<LabelledRun> read_runs(const std::vector<optimize::RecordingLabel>& 
   std::vector<LabelledRun> runs;
   for (const optimize::RecordingLabel& label : labels) {
     runs.push_back(optimize::read_labelled_run(label, window_ms));
-    const LabelledRun& first = runs.front();
-    const LabelledRun& last = runs.back();
-    if (last.joints != first.joints || last.tick_period_us != first.tick_period_us) {
-      const auto text = [](const LabelledRun& run) {
-        return std::to_string(run.joints) + " joints and a tick of " + number_text(run.tick_period_us / 1e3) + " ms";
-      };
-      throw InputError(label.file, 0, "a robot of " + text(last),
-                       "a robot of " + text(first) + ", as in " + first.label.file);
-    }
     progress.show(static_cast<double>(runs.size()));
   }
+  optimize::check_together(runs);
   return runs;
 }
 
@@ -190,7 +183,7 @@ std::string rule_text(const RuleParameters& rules, std::int32_t set) {
   return text.empty() ? "never" : text;
 }
 
-/// The scenario of a recording, with these rules and this window.
+/// The scenario of a recording with the values with which it began, but these rules and this window.
 sim::Scenario learned_scenario(const std::string& file, const LearnedRules& learned, std::int32_t window_ms) {
   const sim::Recording recording(file);
   std::optional<sim::Scenario> scenario = sim::recorded_scenario(recording);
@@ -198,32 +191,56 @@ sim::Scenario learned_scenario(const std::string& file, const LearnedRules& lear
     throw InputError(file, 0, "a recording whose scenario cannot be read",
                      "a recording with the files of its scenario");
   }
+  for (const sim::RecordedSetting& setting : recording.parameters()) {
+    const Slot* const slot = setting.slot < max_slots ? &scenario->kernel.slots[setting.slot] : nullptr;
+    const int number = slot == nullptr || slot->algorithm == nullptr
+                           ? -1
+                           : find_parameter(slot->algorithm->declaration(), setting.name);
+    if (!setting.commit && number >= 0 && slot->group.contains(setting.joint)) {
+      sim::set_start_value(*scenario,
+                           {static_cast<std::uint8_t>(setting.slot), static_cast<std::uint8_t>(setting.joint),
+                            static_cast<std::uint8_t>(number), false, setting.raw});
+    }
+  }
   std::vector<std::pair<std::uint8_t, std::int32_t>> values{{parameter_number("window"), window_ms},
                                                             {parameter_number("hysteresis"), learned.hysteresis}};
   for (std::size_t i = 0; i < learned.rules.size(); ++i) {
     values.emplace_back(rule_parameter(i), learned.rules[i]);
   }
-  for (std::uint8_t slot = 0; slot < max_slots; ++slot) {
-    const Slot& each = scenario->kernel.slots[slot];
-    if (each.algorithm_id() != selector().id) {
-      continue;
-    }
-    for (const unsigned joint : each.driven_joints()) {
-      for (const auto& [number, value] : values) {
-        sim::set_start_value(*scenario, {slot, static_cast<std::uint8_t>(joint), number, false, value});
-      }
+  const auto slot = static_cast<std::uint8_t>(optimize::selector_slot(recording).slot);
+  for (const unsigned joint : scenario->kernel.slots[slot].driven_joints()) {
+    for (const auto& [number, value] : values) {
+      sim::set_start_value(*scenario, {slot, static_cast<std::uint8_t>(joint), number, false, value});
     }
   }
   return *scenario;
 }
 
-void print(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
-           const std::vector<RunDecisions>& decisions, const std::vector<RunDecisions>& unseen) {
+/// The sets of which no recording tells whether the robot comes to them from another one; empty: none.
+std::string untried_sets(const std::vector<LabelledRun>& runs, const std::vector<bool>& is_untried) {
+  std::set<std::int32_t> sets;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (is_untried[i]) {
+      sets.insert(runs[i].label.sets.begin(), runs[i].label.sets.end());
+    }
+  }
+  std::string text;
+  for (const std::int32_t set : sets) {
+    text += (text.empty() ? "" : ", ") + std::to_string(set);
+  }
+  return text;
+}
+
+void print(const std::vector<LabelledRun>& runs, const std::vector<bool>& is_untried, const LearnedRules& learned,
+           const std::vector<RunDecisions>& decisions, const std::vector<RunDecisions>& unseen,
+           const optimize::SelectorTimes& times) {
   std::printf("%-10s played unless a rule holds\n", "set 1");
   for (std::int32_t set = 2; set <= optimize::gait_sets; ++set) {
     std::printf("%-10s %s\n", ("set " + std::to_string(set)).c_str(), rule_text(learned.rules, set).c_str());
   }
   std::printf("%-10s %.2f\n", "hysteresis", as_number(learned.hysteresis));
+  std::printf("%-10s window %s ms, dwell %s ms\n", "times", std::to_string(times.window_ms).c_str(),
+              std::to_string(times.dwell_ms).c_str());
   std::printf("\n%-5s %-8s %-8s %-12s recording\n", "set", "right", "unseen", "changes/min");
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::array<char, 32> changes{};
@@ -241,13 +258,21 @@ void print(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
   if (tried.ticks == 0) {
     std::printf("%-10s not known: that takes two recordings for a gait\n", "unseen");
   } else {
-    std::printf("%-10s %s of %.0f s right, with rules from other recordings\n", "unseen",
-                percent_text(share_right(tried)).c_str(), tried.seconds);
+    const auto count = std::ranges::count_if(unseen, [](const RunDecisions& run) { return run.ticks > 0; });
+    std::printf("%-10s %s of %.0f s right, with rules from other recordings; %lld of %zu recordings could be tried\n",
+                "unseen", percent_text(share_right(tried)).c_str(), tried.seconds, static_cast<long long>(count),
+                runs.size());
   }
   std::printf("%-10s %.2f a minute\n", "changes", changes_a_minute(all).value_or(0.0));
+  if (const std::string sets = untried_sets(runs, is_untried); !sets.empty()) {
+    std::printf(
+        "%-10s %s: played in all recordings in which it is right. Whether the robot changes to it there is not "
+        "known: hysteresis was left out; also record this ground with another set\n",
+        "set", sets.c_str());
+  }
 }
 
-Json json_of(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
+Json json_of(const std::vector<LabelledRun>& runs, const std::vector<bool>& is_untried, const LearnedRules& learned,
              const std::vector<RunDecisions>& decisions, const std::vector<RunDecisions>& unseen,
              const optimize::SelectorTimes& times) {
   Json parameters = Json::empty_object();
@@ -259,6 +284,7 @@ Json json_of(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
   }
   parameters.add("hysteresis", as_number(learned.hysteresis));
   parameters.add("window", static_cast<double>(times.window_ms));
+  parameters.add("dwell", static_cast<double>(times.dwell_ms));
   Json list = Json::empty_array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     Json sets = Json::empty_array();
@@ -270,7 +296,8 @@ Json json_of(const std::vector<LabelledRun>& runs, const LearnedRules& learned,
                      {"seconds", decisions[i].seconds},
                      {"right", share_right(decisions[i])},
                      {"unseen_right", share_right(unseen[i])},
-                     {"changes_per_minute", changes_a_minute(decisions[i])}});
+                     {"changes_per_minute", changes_a_minute(decisions[i])},
+                     {"entry_tried", !is_untried[i]}});
   }
   const RunDecisions all = sum_of(decisions);
   return Json{{"algorithm", std::string(selector().name)},
@@ -297,13 +324,14 @@ int learn(const LearnOptions& options) {
   }
   optimize::SelectorTimes times = optimize::selector_times(sim::Recording(labels.front().file));
   times.window_ms = window_of(options, times);
-  const std::vector<LabelledRun> runs = read_runs(labels, times.window_ms);
+  std::vector<LabelledRun> runs = read_runs(labels, times.window_ms);
   if (std::ranges::all_of(runs,
                           [&](const LabelledRun& run) { return run.right_sets() == runs.front().right_sets(); })) {
     throw InputError(options.recordings.front(), 0, "recordings with one right gait",
                      "recordings in which different gaits are right, such as 1=flat.proleg 2=stairs.proleg");
   }
   const std::uint32_t usable = usable_features(named, runs);
+  const std::vector<bool> is_untried = optimize::forget_untried_entries(runs);
 
   std::vector<const LabelledRun*> all;
   all.reserve(runs.size());
@@ -326,11 +354,11 @@ int learn(const LearnOptions& options) {
                   .string();
   }
   if (options.json) {
-    Json object = json_of(runs, rules, decisions, unseen, times);
+    Json object = json_of(runs, is_untried, rules, decisions, unseen, times);
     object.add("written", options.out ? std::optional(written) : std::nullopt);
     std::cout << object.text() << '\n';
   } else {
-    print(runs, rules, decisions, unseen);
+    print(runs, is_untried, rules, decisions, unseen, times);
     if (options.out) {
       std::printf("%-10s %s\n", "written", written.c_str());
     }

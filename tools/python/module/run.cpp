@@ -18,6 +18,7 @@
 #include "sim/measure/measure.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/losses.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/run_measures.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
@@ -185,6 +186,9 @@ py::dict simulate(sim::Scenario scenario, const std::vector<std::string>& keep,
     tools::ScenarioOptions options;
     options.record = record;
     check_outputs(tools::planned_recording(options));
+  }
+  if (const auto contradiction = sim::find_contradiction(scenario)) {
+    throw InputError(scenario.path, 0, contradiction->found, contradiction->expected);
   }
   Log log(scenario, keep, ticks);
   std::unique_ptr<sim::Simulation> simulation;

@@ -89,10 +89,12 @@ TEST(Atlas, IsRefusedWithoutAMapOrAGait) {
 TEST(Atlas, RatesItsGaitsForTheLengthOfATrialInItsOwnEngine) {
   Atlas atlas = small_atlas();
   atlas.experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
-  rate_for_length(atlas, 30.0, [](double) { FAIL() << "the atlas has this length"; });
+  rate_for_length(
+      atlas, 30.0, [](double) { FAIL() << "the atlas has this length"; }, [] { return false; });
   EXPECT_EQ(atlas.gaits[0].score, 1.25);
   double done = 0.0;
-  rate_for_length(atlas, 1.0, [&](double share) { done = share; });
+  rate_for_length(
+      atlas, 1.0, [&](double share) { done = share; }, [] { return false; });
   EXPECT_EQ(done, 1.0);
   ASSERT_EQ(atlas.gaits.size(), 2U);
   sim::Scenario scenario = shipped_map().scenario;

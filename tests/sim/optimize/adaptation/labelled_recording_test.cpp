@@ -205,6 +205,61 @@ LabelledRun constant_touch(std::int32_t set, double value, const std::string& fi
   return run;
 }
 
+TEST(Entries, AreUntriedIfTheSetsOfALabelWerePlayedInAllItsRuns) {
+  // On both grounds the robot senses the same; hysteresis would keep set 2 where it was played.
+  std::vector<LabelledRun> runs{constant_touch(1, 0.2, "a"), constant_touch(2, 0.2, "b")};
+  runs[1].played.assign(runs[1].played.size(), 2);
+  const LearnedRules kept{.rules = {4, static_cast<std::int32_t>(0.21 * (1 << 28)), 0, 0}, .hysteresis = 1 << 26};
+  EXPECT_EQ(decide(runs[1], kept, 0).right, 2000U);
+  EXPECT_EQ(forget_untried_entries(runs), (std::vector<bool>{true, true}));
+  EXPECT_EQ(decide(runs[1], kept, 0).right, 0U) << "from another set the robot would not come there";
+  EXPECT_EQ(decide(runs[0], kept, 0).right, 2000U);
+  for (const RuleExample& example : examples_of({&runs[1]})) {
+    EXPECT_EQ(example.played, 0);
+  }
+}
+
+TEST(Entries, AreTriedInARunThatPlayedAnotherSet) {
+  std::vector<LabelledRun> runs{constant_touch(1, 0.2, "a"), constant_touch(2, 0.8, "b"), constant_touch(2, 0.7, "c")};
+  runs[1].played.assign(runs[1].played.size(), 2);
+  EXPECT_EQ(forget_untried_entries(runs), (std::vector<bool>{true, false, false}));
+  EXPECT_EQ(runs[1].played.front(), 2);
+}
+
+std::string message_of(const std::vector<LabelledRun>& runs) {
+  try {
+    check_together(runs);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(LabelledRuns, BelongTogether) {
+  const std::vector<LabelledRun> good{constant_touch(1, 0.2, "a"), constant_touch(2, 0.8, "b")};
+  EXPECT_EQ(message_of(good), "no error");
+  std::vector<LabelledRun> runs = good;
+  runs[1].joints = 6;
+  EXPECT_EQ(message_of(runs),
+            "b: found a robot of 6 joints and a tick of 10 ms, expected a robot of 5 joints and a "
+            "tick of 10 ms, as in a");
+  runs = good;
+  runs[1].joint_group = {false, true};
+  EXPECT_NE(message_of(runs).find("b: found a selector on the joints 01"), std::string::npos) << message_of(runs);
+  runs = good;
+  runs[1].parameters_of_set[1] = {5};
+  EXPECT_EQ(message_of(runs), "b: found set 2 with other parameters, expected the same gait in set 2, as in a");
+}
+
+TEST(LabelledRuns, HaveEachSecondOfARecordingOnce) {
+  std::vector<LabelledRun> runs{constant_touch(1, 0.2, "a"), constant_touch(2, 0.8, "./a")};
+  runs[0].label.word = "1=a";
+  EXPECT_NE(message_of(runs).find("found seconds that are also in 1=a"), std::string::npos) << message_of(runs);
+  runs[0].label.to_s = 10;
+  runs[1].label.from_s = 10;
+  EXPECT_EQ(message_of(runs), "no error");
+}
+
 TEST(UnseenRuns, AreDecidedByRulesFromTheOtherFiles) {
   constexpr std::uint32_t touch_only = 1U << GaitFeatures::touch;
   std::vector<LabelledRun> runs{constant_touch(1, 0.1, "a"), constant_touch(1, 0.2, "b"), constant_touch(2, 0.8, "c"),
@@ -217,8 +272,8 @@ TEST(UnseenRuns, AreDecidedByRulesFromTheOtherFiles) {
   runs[3] = constant_touch(2, 0.15, "d");
   const std::vector<RunDecisions> odd = try_on_unseen(runs, touch_only, 0, 0);
   EXPECT_EQ(odd[3].right, 0U);
-  // The only file of a set cannot be tried.
-  runs[3].label.file = "c";
+  // The only file of a set cannot be tried, whatever it is called.
+  runs[3].label.file = "./c";
   const std::vector<RunDecisions> single = try_on_unseen(runs, touch_only, 0, 0);
   EXPECT_EQ(single[2].ticks, 0U);
   EXPECT_EQ(single[3].ticks, 0U);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int32_t one = raw(Unit::ratio, 1);
 /// Links whose changes of touch are counted: the first ones.
-constexpr unsigned most_counted_links = 31;
+constexpr std::int32_t most_counted_links = 31;
 constexpr std::uint32_t of_counted_links = (std::uint32_t{1} << most_counted_links) - 1;
 /// The value of a state that has the links that touch.
 constexpr unsigned touched_links = GaitFeatures::count;
@@ -56,18 +56,15 @@ std::int32_t in_amperes(std::int32_t milliamperes) {
 GaitFeatures GaitFeatures::make(const JointContext& context, std::int32_t window_ms, std::uint32_t used) {
   const std::int64_t share_of_tick =
       divide_nearest(std::int64_t{context.tick_period_us} << 30U, std::int64_t{window_ms} * 1'000);
-  const auto share_of = [](unsigned links) { return static_cast<std::int32_t>(divide_nearest(one, links)); };
-  const unsigned links = context.joint_count + 1U;
   return {saturate(std::min(share_of_tick, std::int64_t{1} << 30U)),
-          (used & bit(pitch_swing)) != 0 ? used | bit(pitch) : used, share_of(links),
-          share_of(std::min(links, most_counted_links))};
+          (used & bit(pitch_swing)) != 0 ? used | bit(pitch) : used,
+          static_cast<std::int32_t>(divide_nearest(one, context.joint_count + 1))};
 }
 
 void GaitFeatures::store(std::int32_t* derived) const {
   derived[0] = part;
   derived[1] = static_cast<std::int32_t>(used);
   derived[2] = link_share;
-  derived[3] = counted_link_share;
 }
 
 std::uint8_t GaitFeatures::required_readings(std::uint32_t used) {
@@ -114,7 +111,9 @@ void GaitFeatures::advance(const Surroundings& surroundings, const std::int32_t*
   if (uses(touch_changes)) {
     const int changed = std::popcount(touched ^ static_cast<std::uint32_t>(state[touched_links]));
     const auto ticks_per_second = static_cast<std::int32_t>(1'000'000U / surroundings.context.tick_period_us);
-    next[touch_changes] = averaged(part, state[touch_changes], changed * counted_link_share, ticks_per_second);
+    const std::int32_t share =
+        contacts.link_count() > unsigned{most_counted_links} ? one / most_counted_links : link_share;
+    next[touch_changes] = averaged(part, state[touch_changes], changed * share, ticks_per_second);
   }
 }
 

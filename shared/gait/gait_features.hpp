@@ -25,12 +25,11 @@ struct GaitFeatures {
   /// Number of values of a state: the features, then the first 31 links that touch, a bit each.
   static constexpr unsigned state_size = count + 1;
   /// Number of derived constants.
-  static constexpr unsigned derived_size = 4;
+  static constexpr unsigned derived_size = 3;
 
-  std::int32_t part;                ///< part of a difference that a feature moves in a tick, Q30
-  std::uint32_t used;               ///< bit n for feature n; the others are 0
-  std::int32_t link_share;          ///< part of all links that a link is, as a ratio
-  std::int32_t counted_link_share;  ///< the same of the links whose changes of touch are counted, the first 31
+  std::int32_t part;        ///< part of a difference that a feature moves in a tick, Q30
+  std::uint32_t used;       ///< bit n for feature n; the others are 0
+  std::int32_t link_share;  ///< part of all links that a link is, as a ratio
 
   /// window_ms: time constant, from 1. used: bit n for feature n; those from which they are computed are added.
   [[nodiscard]] static GaitFeatures make(const JointContext& context, std::int32_t window_ms, std::uint32_t used);
@@ -38,7 +37,7 @@ struct GaitFeatures {
   /// Writes the constants into derived constants, from which load() reads them in the tick.
   void store(std::int32_t* derived) const;
   [[nodiscard]] static GaitFeatures load(const std::int32_t* derived) {
-    return {derived[0], static_cast<std::uint32_t>(derived[1]), derived[2], derived[3]};
+    return {derived[0], static_cast<std::uint32_t>(derived[1]), derived[2]};
   }
 
   /// The readings without which these features have no input: bits of JointReadings::Sensor.

@@ -129,7 +129,8 @@ class FeatureReplay {
 /// A recording may be named in several ways.
 std::string same_file(const LabelledRun& run) {
   std::error_code error;
-  const std::filesystem::path path = std::filesystem::weakly_canonical(run.label.file, error);
+  const std::filesystem::path path =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(run.label.file), error);
   return error ? run.label.file : path.string();
 }
 

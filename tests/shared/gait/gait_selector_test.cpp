@@ -61,6 +61,7 @@ void set_ladder(Kernel& kernel, std::int32_t window_ms = 1, std::int32_t dwell_m
   set_gait(kernel, 2, 60, 1.5, 90, 5);
   set_gait(kernel, 3, 20, 0.5, -40, -10);
   set_gait(kernel, 4, 35, 2, 120, 0);
+  kernel.reset();  // how long it waits for its first decision depends on the window
 }
 
 JointReadings inclined(double pitch_of_quarter_turn) {
@@ -251,6 +252,7 @@ TEST_F(GaitSelector, ARuleWithTwoConditionsNeedsBothAndANegativeFeatureMeansBelo
   test::set_all(kernel_, 0, "window", 1);
   test::set_all(kernel_, 0, "dwell", 0);
   set_rule(kernel_, 2, -pitch, 0.1, pitch, -0.4);
+  kernel_.reset();
   for (const auto& [inclination, expected] :
        {std::pair{0.3, 1}, std::pair{0.0, 2}, std::pair{-0.6, 1}, std::pair{-0.2, 2}}) {
     settle(inclined(inclination));

@@ -202,16 +202,15 @@ std::optional<double> TrialScore::ask(const DrivenTrial& trial) {
          ": the next trial begins at once. Or: again (make this trial once more), stop (end the trials)");
   while (true) {
     const std::string whole_line = next_line();
-    const std::string line(trimmed(whole_line));
+    const bool is_too_long = whole_line.size() > InputLines::longest_line;
+    const std::string line(is_too_long ? std::string_view() : trimmed(whole_line));
     if (line == "again") {
       return std::nullopt;
     }
     if (line == "stop") {
       throw optimize::SearchEnded();
     }
-    const bool is_too_long = whole_line.size() > InputLines::longest_line;
-    if (const std::optional<double> number = parse_number(line);
-        number && !is_too_long && is_possible(*number, measured_)) {
+    if (const std::optional<double> number = parse_number(line); number && is_possible(*number, measured_)) {
       return number;
     }
     print_("found " +

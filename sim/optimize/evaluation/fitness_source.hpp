@@ -2,6 +2,8 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/optimize/experiment/search_space.hpp"
@@ -28,5 +30,16 @@ class FitnessSource {
 
 /// Thrown through an optimiser to end it: the budget is used up, or the search was stopped.
 class SearchEnded {};
+
+/// The same for a search that cannot go on.
+class SearchFailed : public SearchEnded {
+ public:
+  explicit SearchFailed(std::string reason) : reason_(std::move(reason)) {}
+  /// One line: "trial_1 has no score: ...".
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
 
 }  // namespace proleg::optimize

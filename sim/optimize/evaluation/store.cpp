@@ -252,7 +252,7 @@ Experiment read_experiment_of(const std::filesystem::path& store) {
   experiment.seed = stored.seed;
   experiment.evaluations = stored.evaluations;
   if (stored.engine == robot_name) {
-    put_on_robot(experiment);
+    put_on_robot(experiment, stored.simulated_robot);
   } else if (sim::name_of(experiment.scenario.environment.engine) != stored.engine) {
     sim::OverrideWords words;
     words.engine = stored.engine;

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -90,11 +91,18 @@ std::filesystem::path stop_path(const std::filesystem::path& store) { return sto
 /// Names of what differs between the experiment of a store and this one.
 std::vector<std::string> differences(Database& database, const Experiment& experiment) {
   std::vector<std::string> names;
+  const std::vector<ExperimentPart> parts = parts_of(experiment);
   Statement part(database, "SELECT text FROM part WHERE name = ?1");
-  for (const ExperimentPart& its : parts_of(experiment)) {
+  for (const ExperimentPart& its : parts) {
     part.bind_all(std::string_view(its.name));
     if (!part.step() || part.text(0) != its.text) {
       names.push_back(its.name);
+    }
+  }
+  Statement stored(database, "SELECT name FROM part");
+  while (stored.step()) {
+    if (std::ranges::count(parts, stored.text(0), &ExperimentPart::name) == 0) {
+      names.push_back(stored.text(0));
     }
   }
   // The parts above cover the experiment's own file.
@@ -255,7 +263,11 @@ std::string reason_of(const SqliteError& error, int system) {
   if (error.code() == SQLITE_NOTADB) {
     return "is not the store of an experiment";
   }
-  return error.what();
+  const std::string what = error.what();
+  if (error.code() == SQLITE_CORRUPT && !what.starts_with("another program")) {  // Database says who damaged it
+    return "found a damaged database (" + what + "), expected the store of a search";
+  }
+  return what;
 }
 
 void require_store(const std::filesystem::path& path, Database& database) {
@@ -276,8 +288,12 @@ StoredExperiment read_description(const std::filesystem::path& path, Database& d
   stored.seed = parse_whole<std::uint64_t>(described_value(database, "seed")).value_or(0);
   stored.evaluations = parse_whole<std::uint64_t>(described_value(database, "evaluations")).value_or(0);
   stored.trials = parse_whole<std::uint32_t>(described_value(database, "trials"));
-  Statement engine(database, "SELECT text FROM part WHERE name = 'engine'");
-  stored.engine = engine.step() ? engine.text(0) : std::string();
+  Statement part(database, "SELECT text FROM part WHERE name = ?1");
+  for (const auto& [name, text] : {std::pair{std::string_view("engine"), &stored.engine},
+                                   std::pair{std::string_view(simulated_robot_part), &stored.simulated_robot}}) {
+    part.bind_all(name);
+    *text = part.step() ? part.text(0) : std::string();
+  }
   Statement source(database, "SELECT path, text FROM source ORDER BY position");
   while (source.step()) {
     stored.sources.push_back({source.text(0), source.text(1)});

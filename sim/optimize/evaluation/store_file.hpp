@@ -36,6 +36,7 @@ struct StoredExperiment {
   std::uint64_t seed = 0;
   std::uint64_t evaluations = 0;         ///< of the latest search; 0: until the method ends
   std::string engine;                    ///< trial_maker(), which may be another one than that of the files
+  std::string simulated_robot;           ///< Experiment::simulated_robot
   std::optional<std::uint32_t> trials;   ///< of each candidate, if not the files said so
   std::vector<sim::SourceFile> sources;  ///< every file that was read
 };

@@ -282,6 +282,9 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
   if (!experiment.axes.empty()) {  // stores of other methods, which earlier versions made, have no such part
     parts.push_back({"map", axes_text(experiment.axes)});
   }
+  if (!experiment.simulated_robot.empty()) {
+    parts.push_back({simulated_robot_part, experiment.simulated_robot});
+  }
   return parts;
 }
 
@@ -293,8 +296,9 @@ void set_trials(Experiment& experiment, std::uint32_t count) {
   }
 }
 
-void put_on_robot(Experiment& experiment) {
+void put_on_robot(Experiment& experiment, const std::string& simulated) {
   experiment.on_robot = true;
+  experiment.simulated_robot = simulated;
   experiment.trials.spread = {};
   experiment.racing = {};
 }

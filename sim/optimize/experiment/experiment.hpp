@@ -163,9 +163,10 @@ inline constexpr std::size_t max_objectives = 8;
 /// A search for the parameters of a gait, as a *.optimise.xml file describes it.
 struct Experiment {
   std::string path;
-  int method_line = 0;     ///< of path, where the method's settings begin; 0: none
-  bool on_robot = false;   ///< a robot makes the trials, and no engine (put_on_robot())
-  sim::Scenario scenario;  ///< read from its file; its remarks include those on this file
+  int method_line = 0;          ///< of path, where the method's settings begin; 0: none
+  bool on_robot = false;        ///< a robot makes the trials, and no engine (put_on_robot())
+  std::string simulated_robot;  ///< what makes the trials on_robot, if it is no real robot; otherwise empty
+  sim::Scenario scenario;       ///< read from its file; its remarks include those on this file
   SearchSpace space;
   std::vector<Objective> objectives;  ///< at least one
   /// Of MAP-Elites, otherwise none. Objective 1 + i is the measure of axis i; its `failed` marks a run without it.
@@ -202,8 +203,12 @@ struct Experiment {
 void set_trials(Experiment& experiment, std::uint32_t count);
 
 /// Lets a robot make the trials. They have no variations of the world and no racing; a candidate has as many trials as
-/// before. The fingerprint becomes another one: results of a robot and of a simulation share no store.
-void put_on_robot(Experiment& experiment);
+/// before. The fingerprint becomes another one: results of a robot, of a simulated robot and of a simulation share no
+/// store. simulated: Experiment::simulated_robot.
+void put_on_robot(Experiment& experiment, const std::string& simulated);
+
+/// The name of the part of an experiment that says which simulated robot makes the trials.
+inline constexpr const char* simulated_robot_part = "simulated robot";
 
 /// The name of a robot among the names of engines.
 inline constexpr const char* robot_name = "robot";

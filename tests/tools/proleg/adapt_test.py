@@ -144,7 +144,13 @@ class Adapt(unittest.TestCase):
         self.assertIn("--trials", self.refused(SCENARIO, *atlas, *out, "--trials", 0))
         self.assertIn("--alpha", self.refused(SCENARIO, *atlas, *out, "--alpha", "nan"))
         self.assertIn("--seconds", self.refused(SCENARIO, *atlas, *out, "--seconds", 0))
-        self.assertIn("store.sqlite", self.refused(SCENARIO, "--atlas", self.folder, *out))
+        self.assertIn(f"--atlas: found no {self.folder}/store.sqlite, expected the folder of a search that has made a map",
+                      self.refused(SCENARIO, "--atlas", self.folder, *out))
+        (self.folder / "cut").mkdir()
+        store = (self.atlas / "store.sqlite").read_bytes()
+        (self.folder / "cut" / "store.sqlite").write_bytes(store[:len(store) // 2])
+        self.assertIn("store.sqlite: found a damaged database (",
+                      self.refused(SCENARIO, "--atlas", self.folder / "cut", *out))
         self.assertIn("found 20 joints, expected 5 joints as in the atlas", self.refused(OTHER_ROBOT, *atlas, *out))
         self.assertIn("found another frequency", self.refused(SCENARIO, *atlas, *out, "--set", "frequency=0.7"))
         self.assertFalse((self.folder / "none").exists())

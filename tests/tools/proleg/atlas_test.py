@@ -108,12 +108,13 @@ class Search(Atlas):
     def test_is_continued_after_control_c_and_by_its_folder_alone(self):
         out = self.folder / "parts"
         # Its evaluations do not end before the test interrupts it.
-        search = subprocess.Popen([PROGRAMS / "proleg", "atlas", self.file, "--evaluations", "1000000", "--out", out], stdout=subprocess.PIPE,
+        search = subprocess.Popen([PROGRAMS / "proleg", "atlas", self.file, "--evaluations", "1000000", "--out", out, "--json"], stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True)
         wait_until(lambda: self.stored(out) > 40)
         search.send_signal(signal.SIGINT)
-        _, said = search.communicate(timeout=600)
+        printed, said = search.communicate(timeout=600)
         self.assertEqual(search.returncode, 1)
+        self.assertEqual(json.loads(printed)["ended"], "interrupted")
         self.assertRegex(said, r"proleg atlas: interrupted after \d+ evaluations; continue with: proleg atlas .* --resume ")
         self.assertTrue((out / "map.tsv").is_file())
         self.assertTrue((out / "best.simulation.xml").is_file())
@@ -266,6 +267,19 @@ class Cell(Atlas):
         self.assertTrue(Path(cell["scenario"]).is_file())
         self.assertEqual(Path(cell["scenario"]).parent, self.folder / "elsewhere/deep")
 
+    def test_that_a_person_has_edited_is_not_replaced(self):
+        place = min(self.map_rows())
+        words = "--cell", f"{place[0]},{place[1]}", "--out", self.folder / "edited"
+        scenario = Path(self.cell(*words)["scenario"])
+        for file in (scenario, scenario.with_name(scenario.name.replace(".simulation.", ".actuation."))):
+            text = file.read_text()
+            file.write_text(text + "<!-- mine -->\n")
+            self.assertIn(f"{file}: found an existing file with other content, expected none; --out FOLDER names another folder",
+                          self.refused("--of", self.out, *words))
+            self.assertEqual(file.read_text(), text + "<!-- mine -->\n")
+            file.write_text(text)
+        self.cell(*words)
+
     def test_that_makes_no_sense_is_refused_in_one_line(self):
         for words, expected in (
                 (("--of", self.out), "expected --cell or --near"),
@@ -283,7 +297,14 @@ class Cell(Atlas):
                 (("--of", self.out, "--near", "height=1", "--cell", "1,1"), "--cell"),
                 (("--of", self.out, "--cell", "1,1", "--resume", self.out), "found --of beside a search"),
                 ((self.file, "--of", self.out, "--cell", "1,1"), "found --of beside a search"),
-                (("--of", self.folder / "nowhere", "--cell", "1,1"), "nowhere")):
+                (("--of", self.out, "--cell", "1,1", "--seed", "abc"), "found --of beside a search (--seed)"),
+                (("--of", self.out, "--cell", "1,1", "--engine", "nope"), "found --of beside a search (--engine)"),
+                (("--of", self.out, "--cell", "1,1", "--judge", 1), "found --of beside a search (--judge)"),
+                (("--of", self.out, "--near", "height=1", "--out", ""), "--out: found an empty name"),
+                (("--of", self.out, "--near", "height=1", "--out", "/dev/null"), "found something that is not a folder"),
+                (("--of", "", "--cell", "1,1"), "--of: found an empty name"),
+                (("--of", self.folder / "nowhere", "--cell", "1,1"),
+                 f"--of: found no {self.folder}/nowhere/store.sqlite, expected the folder of a search that has made a map")):
             self.assertIn(expected, self.refused(*words), words)
 
     def test_of_a_search_without_a_map_is_refused(self):

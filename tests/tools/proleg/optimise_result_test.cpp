@@ -240,7 +240,9 @@ TEST_F(OptimiseResult, WithoutOneScoreTheSearchFailsAndNamesTheFirstFailure) {
   write_experiment("steep.optimise.xml", {{"<simulation>uniform", "<simulation>steep"}});
   const Finished finished = proleg(search("steep.optimise.xml", "out", {"--evaluations", "5"}));
   EXPECT_EQ(finished.status, 1);
-  EXPECT_TRUE(finished.out.empty()) << finished.out;
+  const Json object(finished.out);
+  EXPECT_EQ(object["failed"], 5);
+  EXPECT_TRUE(object["best_score"].is_null());
   EXPECT_NE(finished.err.find("none of 5 evaluations has a score"), std::string::npos) << finished.err;
   EXPECT_NE(finished.err.find("the first failure: "), std::string::npos) << finished.err;
   EXPECT_FALSE(fs::exists(file("out/best.simulation.xml")));

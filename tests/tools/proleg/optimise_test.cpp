@@ -121,6 +121,7 @@ TEST_F(Optimise, InterruptedAndResumedGivesTheSame) {
     kill(search, SIGINT);
     const Finished interrupted = finish(search);
     EXPECT_EQ(interrupted.status, 1) << interrupted.err;
+    EXPECT_EQ(Json(interrupted.out)["ended"], "interrupted");
     EXPECT_TRUE(fs::exists(file("parts/learning_curve.svg"))) << "the results so far are written";
     const Json object =
         json_of(proleg(words(experiment, "", {"--evaluations", "150", "--resume", file("parts").string()})));

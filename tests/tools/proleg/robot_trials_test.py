@@ -167,21 +167,39 @@ class RobotTrials(unittest.TestCase):
         prints = {"a_word": ("echo far", "found 'far'"), "two": ("echo 1 2", "found '1 2'"), "nan": ("echo nan", "found 'nan'"),
                   "inf": ("echo inf", "found 'inf'"), "nothing": ("true", "found no output"),
                   "fails": ("echo 1; echo no camera >&2; exit 3", "found exit status 3: no camera"),
-                  "hangs": ("sleep 60", "found no end in 2 s")}
+                  "negative": ("echo -1", "found '-1'"), "huge": ("echo 1e12", "found '1e12'"),
+                  "lines": ("echo far; echo away", "found 'far away'"), "hangs": ("sleep 60", "found no end in 2 s")}
         for name, (text, found) in prints.items():
             with self.subTest(name):
                 script = self.script(name, f"#!/bin/sh\n{text}\n")
                 command = self.adapting("no_number_" + name, self.simulated_bus())
-                failed = self.proleg(*command, "--score-command", script, "--score-timeout", 2)
+                failed = self.proleg(*command, "--score-command", script, "--score-timeout", 2, "--json")
                 self.assertEqual(failed.returncode, 1, failed.stderr)
                 recording = self.folder / ("no_number_" + name) / "trials" / "trial_1.proleg"
-                self.assertIn(f"proleg adapt: trial_1 has no score: {script} of {recording}: {found}, expected", failed.stderr)
-                self.assertIn("interrupted after 0 trials; the same command with --resume", failed.stderr)
+                reason = f"trial_1 has no score: {script} of {recording}: {found}, expected"
+                last = failed.stderr.splitlines()[-1]
+                self.assertIn(f"proleg adapt: ended after 0 trials, because {reason}", last)
+                self.assertIn("; the same command with --resume", last)
+                result = json.loads(failed.stdout)
+                self.assertEqual((result["ended"], result["trials"], result["best"]), ("failed", [], None))
+                self.assertIn(reason, result["reason"])
                 self.assertEqual(self.made("no_number_" + name), [])
         command = self.adapting("no_number_two", self.simulated_bus(), "--resume", self.folder / "no_number_two")
         rest = self.proleg(*command, "--score-command", self.simulates)
         self.assertEqual(rest.returncode, 0, rest.stderr)
         self.assertEqual(len(self.made("no_number_two")), 2)
+
+    def test_a_program_that_vanishes_ends_the_trials_and_what_was_learned_is_kept(self):
+        script = self.script("vanishes", "#!/bin/sh\nrm \"$0\"\necho 0.01\n")
+        failed = self.proleg(*self.adapting("vanishes", self.simulated_bus(), "--score-command", script, "--json"))
+        self.assertEqual(failed.returncode, 1, failed.stderr)
+        reason = f"trial_2 has no score: found no program {script}, expected an executable file"
+        self.assertIn(f"ended after 1 trials, because {reason}; the same command with --resume", failed.stderr)
+        result = json.loads(failed.stdout)
+        self.assertEqual((result["ended"], result["reason"], result["best"]), ("failed", reason, 0.01))
+        for name in ("trials.svg", "adapted.simulation.xml"):
+            self.assertTrue((self.folder / "vanishes" / name).exists(), name)
+        self.assertEqual(len(self.made("vanishes")), 1)
 
     # A person measures.
 
@@ -191,9 +209,10 @@ class RobotTrials(unittest.TestCase):
             program.until("trial_1: the servos have no power.*distance in m")
             self.assertEqual(bus.powered(), set())
             self.assertEqual(children(program.process.pid), {})  # nothing runs that could move the robot
-            for wrong in ("far", "1,5", "nan", ""):
+            for wrong in ("far", "1,5", "nan", "", "-1", "1e12", 1_000_000 * "1"):
                 program.say(wrong)
-            program.until(r"^found .*, expected a number \(distance in m\), again or stop", 4)
+            program.until(r"^found .*, expected a number from 0 to 1e9 \(distance in m\), again or stop", 7)
+            program.until("^found a line of more than 1000 characters, expected")
             program.say("again")
             program.until("trial_1: the servos have no power", 2)
             program.say("0.01")
@@ -306,6 +325,32 @@ class RobotTrials(unittest.TestCase):
         self.assertIn("--bus: found distance, height to be measured in a trial", self.refused(*two_measures))
         self.assertFalse((self.folder / "none").exists())
 
+    def test_a_wrong_bus_is_refused_before_anything_is_written(self):
+        nowhere = self.folder / "nowhere.simulation.xml"
+        search = ["optimise", self.folder / "wave" / "cma_es.optimise.xml", "--out", self.folder / "none"]
+        for bus, found in (("", "bus: found ''"), ("sim:", "bus: found 'sim:'"), ("/dev/null", "bus: found '/dev/null'"),
+                           ("tcp:nowhere", "bus: found 'tcp:nowhere'"), (f"sim:{nowhere}", str(nowhere))):
+            with self.subTest(bus):
+                self.assertIn(found, self.refused(*self.adapting("none", bus)))
+                self.assertIn(found, self.refused(*search, "--bus", bus))
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_trials_of_another_simulated_robot_are_not_continued(self):
+        other = self.folder / "wave" / "other.simulation.xml"
+        other.write_text(self.scenario.read_text())
+        command = self.adapting("one_robot", self.simulated_bus(), "--score-command", self.simulates, trials=1)
+        made = self.proleg(*command)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        searched = self.proleg(*self.searching("one_searched", "--score-command", self.simulates, evaluations=2))
+        self.assertEqual(searched.returncode, 0, searched.stderr)
+        for bus in (f"sim:{other}", "can0"):
+            with self.subTest(bus):
+                adapt = self.adapting("one_robot", bus, "--resume", self.folder / "one_robot")
+                self.assertIn("found trials of another atlas, scenario or program, or with other options", self.refused(*adapt))
+                search = self.searching("one_searched", "--resume", self.folder / "one_searched")
+                search[search.index("--bus") + 1] = bus
+                self.assertIn("differences: simulated robot", self.refused(*search))
+
     # proleg optimise.
 
     def searching(self, out, *options, method="cma_es", evaluations=3):
@@ -360,9 +405,12 @@ class RobotTrials(unittest.TestCase):
         self.assertEqual(json.loads(made.stdout)["best_score"], min(scores))
 
     def test_a_search_ends_with_its_trial(self):
-        failed = self.proleg(*self.searching("without_camera", "--score-command", "/bin/false"))
+        failed = self.proleg(*self.searching("without_camera", "--score-command", "/bin/false", "--json"))
         self.assertEqual(failed.returncode, 1, failed.stderr)
-        self.assertIn("evaluation_0 has no score: /bin/false of", failed.stderr)
+        self.assertIn("ended before the first evaluation, because evaluation_0 has no score: /bin/false of", failed.stderr)
+        result = json.loads(failed.stdout)
+        self.assertEqual((result["ended"], result["evaluations"], result["best_score"]), ("failed", 0, None))
+        self.assertIn("evaluation_0 has no score: /bin/false of", result["reason"])
         self.assertIn("continue with: proleg optimise", failed.stderr)
         self.assertIn("--score-command /bin/false", failed.stderr)
         typed = self.proleg(*self.searching("asked", evaluations=4), input="1\n2\n")

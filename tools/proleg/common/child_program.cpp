@@ -95,14 +95,15 @@ ChildProgram::~ChildProgram() {
 std::string ChildProgram::read_from(int pipe) {
   std::string text;
   std::array<char, 4096> bytes{};
-  while (true) {
+  while (text.size() < most_at_once) {
     const ssize_t length = ::read(pipe, bytes.data(), bytes.size());
     if (length > 0) {
       text.append(bytes.data(), static_cast<std::size_t>(length));
     } else if (length == 0 || errno != EINTR) {
-      return text;
+      break;
     }
   }
+  return text;
 }
 
 std::optional<int> ChildProgram::status() {

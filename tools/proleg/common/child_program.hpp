@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,7 +35,8 @@ class ChildProgram {
   ChildProgram(const ChildProgram&) = delete;
   ChildProgram& operator=(const ChildProgram&) = delete;
 
-  /// What it has written since the last call. Does not wait.
+  /// What it has written since the last call, at most most_at_once and a little more: a program that writes without an
+  /// end must not keep its reader. All that a program wrote before its end is less. Does not wait.
   [[nodiscard]] std::string read() { return read_from(output_.end); }
   /// The same of standard error alone; nothing without Errors::apart.
   [[nodiscard]] std::string read_errors() { return errors_ ? read_from(errors_->end) : std::string(); }
@@ -47,6 +49,7 @@ class ChildProgram {
   void end();
 
   static constexpr std::chrono::seconds usual_time_to_end{3};
+  static constexpr std::size_t most_at_once = 1'048'576;  ///< as much as a pipe of Linux can hold
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/algorithm_library/kept_signals.hpp"
@@ -163,6 +164,16 @@ void CommandLine::add_algorithms_option() {
 }
 
 std::string CommandLine::name() const { return app_->get_name(); }
+
+std::vector<std::string> CommandLine::given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : std::as_const(*app_).get_options()) {
+    if (option->count() > 0) {
+      names.push_back(option->get_name());
+    }
+  }
+  return names;
+}
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
   const int status = run_body(argc, argv, body);

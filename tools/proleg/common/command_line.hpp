@@ -74,6 +74,8 @@ class CommandLine {
   /// run() calls this before the body, after the variables have their values. An exception is as one of the body.
   void prepare_with(std::function<void()> prepare) { prepare_ = std::move(prepare); }
   [[nodiscard]] std::string name() const;
+  /// The options and positional arguments that the user has given ("--out", "FILE"), for the body of run().
+  [[nodiscard]] std::vector<std::string> given() const;
 
   /// Parses the arguments and runs the body; returns the exit status. An error is one line on standard error: bad
   /// arguments, an InputError or a BadInput give status 2, any other exception status 1. --help gives 0 if it can be

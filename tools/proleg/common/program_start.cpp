@@ -98,9 +98,10 @@ pid_t start_program(const std::vector<std::string>& command, const ProgramStart&
   const int error = posix_spawnp(&process, arguments.front(), setup.actions(), setup.attributes(), arguments.data(),
                                  variables.data());
   if (error != 0) {
-    throw std::runtime_error(error == ENOENT
-                                 ? "found no program " + command.front() + ", expected it in a folder of PATH"
-                                 : "cannot start " + command.front() + ": " + std::strerror(error));
+    const bool is_path = command.front().find('/') != std::string::npos;
+    throw std::runtime_error(error == ENOENT ? "found no program " + command.front() + ", expected " +
+                                                   (is_path ? "an executable file" : "it in a folder of PATH")
+                                             : "cannot start " + command.front() + ": " + std::strerror(error));
   }
   if (start.gives_way) {
     setpriority(PRIO_PROCESS, static_cast<id_t>(process), lower_priority);

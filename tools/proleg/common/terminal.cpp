@@ -111,8 +111,8 @@ std::string duration_text(double seconds) {
 }
 
 std::optional<std::string> InputLines::next() {
-  if (lines_.empty() && !has_ended_) {
-    read_available();
+  constexpr int most_blocks = 256;  // a megabyte: input without an end must not keep the program
+  for (int i = 0; i < most_blocks && lines_.empty() && !has_ended_ && read_available(); ++i) {
   }
   if (lines_.empty()) {
     return std::nullopt;
@@ -122,11 +122,22 @@ std::optional<std::string> InputLines::next() {
   return line;
 }
 
-void InputLines::read_available() {
+void InputLines::add(std::string_view text, bool is_end_of_line) {
+  if (!skips_line_) {
+    rest_ += text.substr(0, longest_line + 1 - rest_.size());
+    if (is_end_of_line || rest_.size() > longest_line) {
+      lines_.push_back(std::exchange(rest_, {}));
+      skips_line_ = true;
+    }
+  }
+  skips_line_ = skips_line_ && !is_end_of_line;
+}
+
+bool InputLines::read_available() {
   const bool is_in_background = isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) != getpgrp();
   pollfd request{STDIN_FILENO, POLLIN, 0};
   if (is_in_background || poll(&request, 1, 0) <= 0) {
-    return;
+    return false;
   }
   std::array<char, 4096> buffer;
   const ssize_t count = read(STDIN_FILENO, buffer.data(), buffer.size());
@@ -135,13 +146,15 @@ void InputLines::read_available() {
     if (has_ended_ && !rest_.empty()) {
       lines_.push_back(std::exchange(rest_, {}));  // the last line has no line end
     }
-    return;
+    return false;
   }
-  rest_.append(buffer.data(), static_cast<std::size_t>(count));
-  for (std::size_t end = rest_.find('\n'); end != std::string::npos; end = rest_.find('\n')) {
-    lines_.push_back(rest_.substr(0, end));
-    rest_.erase(0, end + 1);
+  std::string_view text(buffer.data(), static_cast<std::size_t>(count));
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    add(text.substr(0, end), true);
+    text.remove_prefix(end + 1);
   }
+  add(text, false);
+  return true;
 }
 
 }  // namespace proleg::tools

@@ -103,6 +103,9 @@ class CountProgress {
 /// Reads lines of standard input without waiting.
 class InputLines {
  public:
+  /// A longer line comes with one character more than this, before its end was read; the others are skipped.
+  static constexpr std::size_t longest_line = 1'000;
+
   /// Takes the next whole line, without its end; nothing if none has come yet, or input has ended. A program in the
   /// background does not read from its terminal.
   [[nodiscard]] std::optional<std::string> next();
@@ -110,9 +113,12 @@ class InputLines {
   [[nodiscard]] bool has_ended() const { return has_ended_ && lines_.empty(); }
 
  private:
-  void read_available();
+  /// Whether something has come.
+  bool read_available();
+  void add(std::string_view text, bool is_end_of_line);
 
   bool has_ended_ = false;
+  bool skips_line_ = false;  ///< the rest of a line that was too long
   std::string rest_;
   std::deque<std::string> lines_;
 };

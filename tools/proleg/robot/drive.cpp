@@ -16,6 +16,7 @@
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/module_sensors.hpp"
+#include "tools/proleg/common/json_output.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
@@ -203,15 +204,31 @@ class Drive {
   bool wants_stop_ = false;
 };
 
+sim::Scenario scenario_of(const host::BusAddress& simulation) {
+  ScenarioOptions robot;
+  robot.file = simulation.name;
+  return prepare_run(robot).scenario;
+}
+
 /// The scenario of --bus sim:FILE, for --fast. Throws InputError for another bus.
 sim::Scenario simulated_robot(const BusOptions& bus) {
   const host::BusAddress address = host::parse_bus_address(bus.address());
   if (address.kind != host::BusAddress::Kind::simulation) {
     throw InputError("--fast", 0, "the bus " + in_quotes(bus.address()), "--bus sim:FILE: no other robot is faster");
   }
-  ScenarioOptions robot;
-  robot.file = address.name;
-  return prepare_run(robot).scenario;
+  return scenario_of(address);
+}
+
+/// Throws InputError for what is known to be wrong before the bus is opened.
+int check_bus(const DriveOptions& options) {
+  const host::BusAddress address = host::parse_bus_address(options.bus.address());
+  if (address.kind == host::BusAddress::Kind::simulation) {
+    static_cast<void>(scenario_of(address));
+  }
+  if (options.json) {
+    std::cout << Json{{"bus", host::bus_address_text(address)}}.text() << '\n';
+  }
+  return exit_success;
 }
 
 int drive(const DriveOptions& options) {
@@ -224,6 +241,9 @@ int drive(const DriveOptions& options) {
     print_setup(run.scenario);
   }
   refuse_world_options(options, {{"--losses", options.losses.has_value()}});
+  if (options.only_checks) {
+    return check_bus(options);
+  }
   if (run.scenario.robot_control && !options.bus.bus) {
     if (options.fast || options.mirror || options.ends_with_input) {
       throw InputError(options.fast     ? "--fast"
@@ -320,6 +340,8 @@ int main(int argc, char** argv) {
                         "stop the robot when standard input ends, for a program that starts this one: the robot stops "
                         "when that program ends, in any way");
   command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
+  command_line.add_flag("--check", options.only_checks,
+                        "read FILE, and the scenario of --bus sim:FILE, and end: no bus is opened, and nothing moves");
   command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return drive(options); });
 }

@@ -19,6 +19,7 @@ struct DriveOptions : ScenarioOptions {
   BusOptions bus;
   bool fast = false;
   bool ends_with_input = false;
+  bool only_checks = false;
   std::optional<std::string> mirror;
 };
 

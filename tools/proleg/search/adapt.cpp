@@ -83,10 +83,14 @@ optimize::AdaptationSettings settings_of(const AdaptOptions& options) {
 }
 
 Atlas atlas_of(const AdaptOptions& options) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(options.atlas, error)) {
+    require_map_store("--atlas", options.atlas);
+  }
   try {
     return optimize::read_atlas(options.atlas);
-  } catch (const optimize::StoreError& error) {
-    throw BadInput(error.what());
+  } catch (const optimize::StoreError& refused) {
+    throw BadInput(refused.what());
   }
 }
 
@@ -110,6 +114,7 @@ std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const A
   reality.scenario = scenario;
   std::string text =
       atlas.fingerprint() + ' ' + reality.fingerprint() + ' ' + (options.robot.bus ? optimize::robot_name : result_key);
+  text += simulated_robot(options.robot);  // a real one may get another bus
   const sim::OverrideWords words = sim::words_of(scenario.overrides);
   for (const std::optional<std::string>& word : {words.friction, words.at, words.heading}) {
     text += ' ' + word.value_or("-");
@@ -134,6 +139,35 @@ optimize::TrialOrigin origin_of(const Atlas& atlas, const sim::Scenario& scenari
     robot += ", " + damage;
   }
   return {inputs_of(atlas, scenario, options), std::filesystem::relative(place, folder).string(), std::move(robot)};
+}
+
+std::string trial_maker(const AdaptOptions& options, const sim::Scenario& scenario) {
+  return std::string(options.robot.bus ? optimize::robot_name : sim::name_of(scenario.environment.engine));
+}
+
+/// The begin of what --json prints.
+Json head_object(const AdaptOptions& options, const sim::Scenario& scenario) {
+  Json damages = Json::empty_array();
+  for (const std::string& damage : options.damages) {
+    damages.append(damage);
+  }
+  return {{"scenario", options.scenario.file}, {"atlas", options.atlas}, {"engine", trial_maker(options, scenario)},
+          {"bus", options.robot.bus},          {"damage", damages},      {"seconds", scenario.duration_s}};
+}
+
+/// Says that the user has stopped this command while it rated the gaits of the atlas. Returns the exit status.
+int end_before_trials(const AdaptOptions& options, const sim::Scenario& scenario) {
+  if (options.scenario.json) {
+    Json object = head_object(options, scenario);
+    object.add("trials", Json::empty_array());
+    object.add("best_trial", Json());
+    object.add("best", Json());
+    object.add("ended", "interrupted");
+    object.add("build_id", build_id);
+    std::cout << object.text() << '\n';
+  }
+  std::cerr << "proleg adapt: interrupted before the first trial; nothing was written\n";
+  return exit_failed;
 }
 
 /// The trials of a robot, with their files.
@@ -161,7 +195,7 @@ class Run {
     return resumed_ = made_.all().size();
   }
 
-  /// Makes trials until they end, or the user stops them.
+  /// Makes trials until they end, the user stops them, or one fails. An error before the first one has the usual way.
   void make_trials(optimize::TrialRobot& robot) {
     write_table();  // a run can be resumed from its first trial on
     try {
@@ -175,36 +209,41 @@ class Run {
           std::cout << made_.line_of_last() << std::endl;  // a trial takes seconds: each is shown at once
         }
       }
+    } catch (const optimize::SearchFailed& error) {
+      failure_ = error.reason();
     } catch (const optimize::SearchEnded&) {
       is_stopped_ = true;
+    } catch (const std::exception& error) {
+      if (made_.all().empty()) {
+        throw;
+      }
+      failure_ = one_line(error.what());
     }
   }
 
   /// Writes picture and scenario, prints the result, and returns the exit status.
   int finish() {
-    const std::string interrupted = "proleg adapt: interrupted after " + std::to_string(made_.all().size()) +
-                                    " trials; the same command with --resume " + shell_argument(folder_.string()) +
-                                    " continues\n";
-    if (made_.all().empty()) {
-      std::cerr << interrupted;
-      return exit_failed;
-    }
-    write_file(folder_ / result_files[1], made_.picture());
     const bool has_best = made_.best() != nullptr;
-    if (has_best) {
-      write_adapted();
+    if (!made_.all().empty()) {
+      write_file(folder_ / result_files[1], made_.picture());
+      if (has_best) {
+        write_adapted();
+      }
     }
     if (options_.scenario.json) {
       std::cout << json().text() << '\n';
-    } else {
+    } else if (!made_.all().empty()) {
       print();
     }
-    if (is_stopped_) {
-      std::cerr << interrupted;
+    if (is_cut_short()) {
+      const std::string trials = std::to_string(made_.all().size()) + " trials";
+      std::cerr << "proleg adapt: "
+                << (failure_ ? "ended after " + trials + ", because " + *failure_ : "interrupted after " + trials)
+                << "; the same command with --resume " << shell_argument(folder_.string()) << " continues\n";
     } else if (!has_best) {
       std::cerr << "proleg adapt: no trial has a score; the first failure: " << made_.all().front().failure << '\n';
     }
-    return has_best && !is_stopped_ ? exit_success : exit_failed;
+    return has_best && !is_cut_short() ? exit_success : exit_failed;
   }
 
  private:
@@ -222,9 +261,9 @@ class Run {
                              folder_, "adapted");
   }
 
-  [[nodiscard]] std::string ending() const { return is_stopped_ ? "interrupted" : made_.ending(); }
-  [[nodiscard]] std::string engine() const {
-    return std::string(options_.robot.bus ? optimize::robot_name : sim::name_of(intact_.environment.engine));
+  [[nodiscard]] bool is_cut_short() const { return is_stopped_ || failure_; }
+  [[nodiscard]] std::string ending() const {
+    return failure_ ? "failed" : is_stopped_ ? "interrupted" : made_.ending();
   }
 
   void print() const {
@@ -235,7 +274,7 @@ class Run {
       std::printf("%-10s %s\n", "best", made_.text_of_best().c_str());
     }
     std::printf("%-10s %s after %zu trials of %s s, engine %s\n", "ended", ending().c_str(), made_.all().size(),
-                number_text(intact_.duration_s).c_str(), engine().c_str());
+                number_text(intact_.duration_s).c_str(), trial_maker(options_, intact_).c_str());
     for (const std::string_view file : result_files) {
       if (std::filesystem::exists(folder_ / file)) {
         std::printf("%-10s %s\n", "written", (folder_ / file).c_str());
@@ -243,16 +282,13 @@ class Run {
     }
   }
 
+  /// What --json prints.
   [[nodiscard]] Json json() const {
-    Json damages = Json::empty_array();
-    for (const std::string& damage : options_.damages) {
-      damages.append(damage);
-    }
-    Json object{{"scenario", options_.scenario.file}, {"atlas", options_.atlas}, {"engine", engine()},
-                {"bus", options_.robot.bus},          {"damage", damages},       {"seconds", intact_.duration_s}};
+    Json object = head_object(options_, intact_);
     made_.add_to(object);
     object.add("resumed", resumed_);
     object.add("ended", ending());
+    object.add("reason", failure_);
     object.add("out", folder_.string());
     object.add("build_id", build_id);
     return object;
@@ -266,6 +302,7 @@ class Run {
   MadeTrials made_;
   std::size_t resumed_ = 0;
   bool is_stopped_ = false;
+  std::optional<std::string> failure_;  ///< why no further trial could be made
 };
 
 int adapt(AdaptOptions& options) {
@@ -284,8 +321,8 @@ int adapt(AdaptOptions& options) {
   std::optional<RobotTrials> robot_trials;
   if (options.robot.bus) {
     refuse_world_options(options.scenario, {{"--damage", !options.damages.empty()}});
-    robot_trials.emplace(options.robot, "proleg adapt", setup.scenario, std::span(atlas.experiment.objectives).first(1),
-                         folder, &interrupted);
+    robot_trials.emplace(options.robot, setup.scenario, std::span(atlas.experiment.objectives).first(1), folder,
+                         &interrupted);
   } else {
     sim::apply_damage(damaged, options.damages);
     static_cast<void>(sim::Simulation(damaged));  // an engine without the features of the world refuses it now
@@ -295,8 +332,7 @@ int adapt(AdaptOptions& options) {
   try {
     rate_for_trials(atlas, setup.scenario.duration_s);
   } catch (const optimize::SearchEnded&) {
-    std::cerr << "proleg adapt: interrupted before the first trial; nothing was written\n";
-    return exit_failed;
+    return end_before_trials(options, setup.scenario);
   }
   const ResultFolder claim(folder, new_files);
   Run run(options, atlas, setup.scenario, folder);

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -22,7 +25,9 @@
 #include "sim/optimize/report/scores.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/common/json_output.hpp"
+#include "tools/proleg/common/result_folder.hpp"
 #include "tools/proleg/common/run_measures.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 #include "tools/proleg/search/map_result.hpp"
 #include "tools/proleg/search/optimise.hpp"
 #include "tools/proleg/search/search_result.hpp"
@@ -130,11 +135,37 @@ void print_cell(const Experiment& experiment, const GaitMap& map, std::size_t ce
   print_line("written", file.string());
 }
 
+/// Throws BadInput for options that mean nothing beside --of.
+void refuse_search(const std::vector<std::string>& given) {
+  constexpr std::array<std::string_view, 6> of_cell{"--of", "--cell", "--near", "--out", "--json", "--algorithms"};
+  for (const std::string& option : given) {
+    if (std::ranges::count(of_cell, option) == 0) {
+      throw BadInput("found --of beside a search (" + option + "), expected one of them");
+    }
+  }
+}
+
+/// Throws BadInput if a file that a person may have edited, or that is of another search, would be replaced.
+/// new_files: has the files that will be written.
+void refuse_other_content(const std::filesystem::path& out, const std::filesystem::path& new_files) {
+  const auto text_of = [](const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(new_files)) {
+    const std::filesystem::path old = out / std::filesystem::relative(entry.path(), new_files);
+    std::error_code error;
+    if (entry.is_regular_file() && std::filesystem::exists(std::filesystem::symlink_status(old, error)) &&
+        (!std::filesystem::is_regular_file(old, error) || text_of(old) != text_of(entry.path()))) {
+      throw BadInput(old.string() +
+                     ": found an existing file with other content, expected none; --out FOLDER names another folder");
+    }
+  }
+}
+
 /// Writes the scenario of a cell of a map that a search has filled.
 int write_cell(const AtlasOptions& options) {
-  if (options.file || options.resume || options.stop || options.estimate) {
-    throw BadInput("found --of beside a search, expected one of them");
-  }
+  require_map_store("--of", *options.of);
   const std::filesystem::path folder(*options.of);
   const std::filesystem::path store = store_path(folder);
   const Experiment experiment = optimize::read_experiment_of(store);
@@ -151,14 +182,21 @@ int write_cell(const AtlasOptions& options) {
   const std::string place = map.place_text(elite.cell);
   std::string name = "cell_" + place;
   std::ranges::replace(name, ',', '_');
-  const std::filesystem::path out(options.out.value_or(folder.string()));
+  const std::filesystem::path out = chosen_folder(options.out, std::nullopt, folder.string(), "cell");
+  check_result_folder(out, {});
   const std::array files{name + ".simulation.xml", name + ".actuation.xml", name + ".files"};
   const std::array<std::string_view, 3> written{files[0], files[1], files[2]};
   refuse_overwriting(experiment, out, written);
-  const std::filesystem::path file = optimize::write_scenario(
-      optimize::searched_world(experiment, evaluation),
-      "Cell " + place + " of the map of gaits of " + std::filesystem::path(experiment.path).filename().string() + ".",
-      out, name);
+  const auto write_to = [&](const std::filesystem::path& its_folder) {
+    return optimize::write_scenario(
+        optimize::searched_world(experiment, evaluation),
+        "Cell " + place + " of the map of gaits of " + std::filesystem::path(experiment.path).filename().string() + ".",
+        its_folder, name);
+  };
+  const ScratchFolder scratch;
+  write_to(scratch.path());
+  refuse_other_content(out, scratch.path());
+  const std::filesystem::path file = write_to(out);
   if (options.json) {
     std::cout << object_of(experiment, map, elite.cell, evaluation, file).text() << '\n';
   } else {
@@ -167,13 +205,14 @@ int write_cell(const AtlasOptions& options) {
   return exit_success;
 }
 
-int atlas(const AtlasOptions& options) {
+int atlas(const AtlasOptions& options, const std::vector<std::string>& given) {
   const bool names_cell = options.cell || options.near;
   if (options.of.has_value() != names_cell) {
     throw BadInput(options.of ? "found --of without a cell, expected --cell or --near"
                               : "found --cell or --near without --of, expected --of FOLDER");
   }
   if (options.of) {
+    refuse_search(given);
     try {
       return write_cell(options);
     } catch (const optimize::StoreError& error) {
@@ -216,7 +255,7 @@ int atlas_command(int argc, char** argv) {
       .value_name("MEASURE=VALUE,...")
       .excludes("--cell");
   command_line.add_algorithms_option();
-  return command_line.run(argc, argv, [&] { return atlas(options); });
+  return command_line.run(argc, argv, [&] { return atlas(options, command_line.given()); });
 }
 
 }  // namespace proleg::tools

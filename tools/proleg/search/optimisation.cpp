@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -81,6 +82,16 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
 
 std::filesystem::path store_path(const std::filesystem::path& folder) { return folder / "store.sqlite"; }
 
+void require_map_store(const std::string& option, const std::filesystem::path& folder) {
+  if (folder.empty()) {
+    throw InputError(option, 0, "an empty name", "the name of a folder");
+  }
+  std::error_code error;
+  if (!std::filesystem::exists(store_path(folder), error)) {
+    throw InputError(option, 0, "no " + store_path(folder).string(), "the folder of a search that has made a map");
+  }
+}
+
 std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder, const optimize::Experiment& experiment,
                                             optimize::Store::Opening opening) {
   if (opening == optimize::Store::Opening::fresh) {
@@ -93,6 +104,13 @@ std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
   } catch (const optimize::StoreError& refused) {
     throw BadInput(refused.what());
   }
+}
+
+std::string ending_text(const SearchOutcome& outcome) {
+  if (!outcome.failure.empty()) {
+    return "failed";
+  }
+  return outcome.ending.empty() ? "interrupted" : outcome.ending;
 }
 
 SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run, optimize::Workers& workers,
@@ -143,6 +161,8 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   const double cpu_start = own_cpu_s();
   try {
     outcome.ending = optimize::search(experiment, run, evaluator);
+  } catch (const optimize::SearchFailed& error) {
+    outcome.failure = error.reason();
   } catch (const optimize::SearchEnded&) {
     if (evaluator.budget_spent()) {
       outcome.ending = budget_ending(experiment.evaluations);

@@ -39,6 +39,8 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
 
 /// Path of the store in the folder of an experiment.
 [[nodiscard]] std::filesystem::path store_path(const std::filesystem::path& folder);
+/// Throws InputError unless the folder that an option names has a store, of which the map of gaits is read.
+void require_map_store(const std::string& option, const std::filesystem::path& folder);
 /// Opens the store in a folder, which is made if it does not exist. Throws BadInput.
 [[nodiscard]] std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
                                                           const optimize::Experiment& experiment,
@@ -48,11 +50,15 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
 struct SearchOutcome {
   std::vector<optimize::Evaluation> evaluations;
   optimize::SearchProgress progress;
-  std::string ending;  ///< reason of its end; empty if it was interrupted
+  std::string ending;   ///< reason of its end; empty if it was interrupted or failed
+  std::string failure;  ///< why it could not go on; empty: it could
   double wall_s = 0.0;
   double confirmation_wall_s = 0.0;  ///< wall time of the fresh runs after the search
   double own_cpu_s = 0.0;            ///< processor time of optimiser, store and scheduling
 };
+
+/// Why a search has ended: "interrupted" by the user, "failed", or what the method says.
+[[nodiscard]] std::string ending_text(const SearchOutcome& outcome);
 
 /// Runs a search until its method ends, its evaluations are used up, or the user interrupts it. Shows progress on the
 /// terminal, with a label. The store says that the run has ended, unless confirm_best() has to follow.

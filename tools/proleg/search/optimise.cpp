@@ -41,8 +41,8 @@ using optimize::Experiment;
 constexpr const char* result_file = "result.json";
 constexpr const char* judged_file = "judged.tsv";
 
-/// What --json prints.
-Json result_object(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+/// What --json prints. result: null if no evaluation has a score.
+Json result_object(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult* result,
                    std::span<const optimize::Confirmation> sample, const std::filesystem::path& folder,
                    std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
@@ -53,9 +53,14 @@ Json result_object(const Experiment& experiment, const SearchOutcome& outcome, c
       {"judge", optimize::is_judged(experiment) ? Json(std::string(sim::name_of(optimize::judging_engine))) : Json()},
       {"trials", experiment.trials.count},
       {"seed", experiment.seed}};
-  add_result(experiment, outcome, result, object);
+  if (result != nullptr) {
+    add_result(experiment, outcome, *result, object);
+  } else {
+    object.add("best_score", Json());
+    object.add("best_number", Json());
+  }
   if (!sample.empty()) {
-    object.add("judged_cells", agreement_object(experiment, sample, result.best));
+    object.add("judged_cells", agreement_object(experiment, sample, result->best));
   }
   object.add("evaluations", progress.evaluations);
   object.add("simulated", progress.simulated);
@@ -63,7 +68,8 @@ Json result_object(const Experiment& experiment, const SearchOutcome& outcome, c
   object.add("restored", progress.restored);
   object.add("failed", progress.failed);
   object.add("simulated_ahead_in_vain", progress.wasted);
-  object.add("ended", outcome.ending);
+  object.add("ended", ending_text(outcome));
+  object.add("reason", outcome.failure.empty() ? Json() : Json(outcome.failure));
   object.add("workers", workers);
   object.add("wall_s", outcome.wall_s);
   object.add("simulated_s", progress.simulated_s);
@@ -191,18 +197,18 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
                      optimize::Workers& workers, optimize::Store& store, std::size_t judged,
                      const std::string& continuation) {
   SearchOutcome outcome = run_search(experiment, 0, workers, store, optimize::method_name(experiment.method));
-  if (outcome.progress.evaluations == 0) {
-    std::cerr << options.program << ": interrupted before the first evaluation; continue with: " << continuation
-              << '\n';
-    return exit_failed;
-  }
+  const bool has_evaluation = outcome.progress.evaluations > 0;
   const bool has_score = outcome.progress.best.has_value();
-  if (!has_score) {
+  if (!has_score && options.json) {
+    std::cout << result_object(experiment, outcome, nullptr, {}, folder, workers.count()).text() << '\n';
+  }
+  if (!has_score && has_evaluation) {
     write_results(experiment, outcome, nullptr, folder);
     std::cerr << options.program << ": none of " << outcome.progress.evaluations
               << " evaluations has a score, so there is no best scenario; the first failure: "
               << outcome.progress.first_failure << '\n';
-  } else {
+  }
+  if (has_score) {
     const std::vector<optimize::Evaluation> cells =
         judged > 0 ? optimize::choose_cells(experiment, outcome.evaluations, judged)
                    : std::vector<optimize::Evaluation>();
@@ -215,7 +221,7 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
       write_file(files.back(), optimize::judged_table(experiment, sample));
     }
     const std::string object =
-        result_object(experiment, outcome, result, sample, folder, workers.count()).text() + '\n';
+        result_object(experiment, outcome, &result, sample, folder, workers.count()).text() + '\n';
     files.push_back(folder / result_file);
     write_file(files.back(), object);
     if (options.json) {
@@ -228,8 +234,11 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
     }
   }
   if (outcome.ending.empty()) {
-    std::cerr << options.program << ": interrupted after " << outcome.progress.evaluations
-              << " evaluations; continue with: " << continuation << '\n';
+    const std::string place = has_evaluation ? "after " + std::to_string(outcome.progress.evaluations) + " evaluations"
+                                             : std::string("before the first evaluation");
+    std::cerr << options.program << ": "
+              << (outcome.failure.empty() ? "interrupted " + place : "ended " + place + ", because " + outcome.failure)
+              << "; continue with: " << continuation << '\n';
   }
   return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
 }
@@ -356,7 +365,7 @@ optimize::Experiment read_experiment(const OptimiseOptions& options) {
                                                                : ": found simulated trials, expected no --bus"));
   }
   if (options.robot.bus) {
-    optimize::put_on_robot(experiment);
+    optimize::put_on_robot(experiment, simulated_robot(options.robot));
   }
   ExperimentOptions changes = options;
   if (options.fills_atlas) {

@@ -59,7 +59,6 @@ int main(int argc, char** argv) {
           return tools::interrupted() || optimize::is_stop_requested(store);
         };
         return std::make_unique<tools::RobotWorker>(
-            experiment, tools::RobotTrials(options.robot, options.program, experiment.scenario, experiment.objectives,
-                                           folder, stop));
+            experiment, tools::RobotTrials(options.robot, experiment.scenario, experiment.objectives, folder, stop));
       });
 }

@@ -5,6 +5,8 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
@@ -15,6 +17,7 @@
 #include "sim/scenario/module_sensors.hpp"
 #include "tools/proleg/common/child_program.hpp"
 #include "tools/proleg/common/installation.hpp"
+#include "tools/proleg/common/scratch_folder.hpp"
 #include "tools/proleg/search/watched_child.hpp"
 
 namespace proleg::tools {
@@ -26,6 +29,8 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds time_to_stop{30};
 /// Beside the gait itself, for set-up and stop over a slow bus.
 constexpr std::chrono::seconds time_around_gait{120};
+/// Far more than it takes to read two scenarios.
+constexpr std::chrono::seconds time_to_check{60};
 
 /// Above a line that shows the progress of a search, if there is one.
 void print_above_progress(const std::string& line) {
@@ -56,13 +61,39 @@ void require_whole_gait(const ChildEnd& end, std::uint32_t ticks) {
   }
 }
 
+/// Lets `proleg drive` read the words of --bus, and the scenario of a simulated robot. Throws BadInput.
+void check_bus(const std::string& bus, const sim::Scenario& scenario) {
+  const ScratchFolder scratch;
+  const fs::path file = optimize::write_scenario(scenario, "A trial of a robot.", scratch.path(), "trial");
+  std::vector<std::string> command{program_folder() / "proleg-drive", file, "--bus", bus, "--check"};
+  for (const std::string& library : loaded_libraries()) {
+    command.insert(command.end(), {"--algorithms", library});
+  }
+  ChildProgram program(command, ".", ChildProgram::Errors::apart);
+  const ChildEnd end = wait_for_end(
+      program, time_to_check, [] { return false; }, [](const std::string& /*line*/) {});
+  if (end.reason == ChildEnd::Reason::late) {
+    throw std::runtime_error("'proleg drive --check' has not ended in " + std::to_string(time_to_check.count()) + " s");
+  }
+  constexpr std::string_view its_name = "proleg drive: ";
+  const std::string problem =
+      end.last_message.starts_with(its_name) ? end.last_message.substr(its_name.size()) : end.last_message;
+  if (end.status == exit_bad_input) {
+    throw BadInput(problem);
+  }
+  if (end.status != exit_success) {
+    throw std::runtime_error("'proleg drive --check' has ended with status " + std::to_string(end.status) +
+                             (problem.empty() ? "" : ": " + problem));
+  }
+}
+
 }  // namespace
 
-RobotTrials::RobotTrials(const TrialOptions& options, std::string program, const sim::Scenario& scenario,
+RobotTrials::RobotTrials(const TrialOptions& options, const sim::Scenario& scenario,
                          std::span<const optimize::Objective> objectives, const fs::path& folder,
                          std::function<bool()> stop)
     : bus_(options.bus.value()),
-      program_(std::move(program)),
+      is_simulated_(!simulated_robot(options).empty()),
       folder_(folder / trials_folder),
       stop_(stop),
       score_(options, objectives, print_above_progress, std::move(stop)) {
@@ -70,6 +101,7 @@ RobotTrials::RobotTrials(const TrialOptions& options, std::string program, const
   if (!scenario.changes.empty()) {
     throw InputError("--set", 0, "a change during the run", "start values: a trial of a robot has no changes");
   }
+  check_bus(bus_, scenario);
 }
 
 sim::MeasureValues RobotTrials::make(const sim::Scenario& scenario, const std::string& name) {
@@ -83,8 +115,7 @@ sim::MeasureValues RobotTrials::make(const sim::Scenario& scenario, const std::s
       }
     }
   } catch (const TrialFailed& error) {
-    print_above_progress(program_ + ": " + name + " has no score: " + error.what());
-    throw optimize::SearchEnded();
+    throw optimize::SearchFailed(name + " has no score: " + one_line(error.what()));
   }
 }
 
@@ -93,13 +124,13 @@ DrivenTrial RobotTrials::drive(const sim::Scenario& scenario, const std::string&
   const fs::path recording = folder_ / (name + ".proleg");
   std::vector<std::string> command{
       program_folder() / "proleg-drive", file, "--bus", bus_, "--record", recording, "--json", "--until-input-ends"};
-  if (bus_.starts_with("sim:")) {
+  if (is_simulated_) {
     command.emplace_back("--fast");
   }
   for (const std::string& library : loaded_libraries()) {
     command.insert(command.end(), {"--algorithms", library});
   }
-  print_above_progress(name + ": the robot moves for " + number_text(scenario.duration_s) + " s");
+  print_above_progress(name + ": the robot will move for " + number_text(scenario.duration_s) + " s");
   // It does not get the Ctrl-C of a terminal: this program passes it on, and a second one is of no effect. If this
   // program is killed, its standard input ends.
   const std::unique_ptr<ChildProgram> program = ChildProgram::with_input(command, ".", -1, time_to_stop);

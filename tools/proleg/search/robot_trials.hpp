@@ -24,22 +24,22 @@ namespace proleg::tools {
 
 class RobotTrials {
  public:
-  /// program: name of the command, for messages. scenario: of the robot; no trial differs in more than its parameters.
-  /// objectives: their measures are needed. folder: of the run. stop: whether the user stops; called often. Throws
-  /// InputError for bad options, and for a scenario that modules cannot run.
-  RobotTrials(const TrialOptions& options, std::string program, const sim::Scenario& scenario,
+  /// scenario: of the robot; no trial differs in more than its parameters. objectives: their measures are needed.
+  /// folder: of the run. stop: whether the user stops; called often. Throws InputError or BadInput for bad options, and
+  /// for a scenario that modules cannot run.
+  RobotTrials(const TrialOptions& options, const sim::Scenario& scenario,
               std::span<const optimize::Objective> objectives, const std::filesystem::path& folder,
               std::function<bool()> stop);
 
   /// Makes a trial, and returns when the servos have no power again. name: of its files. Throws SearchEnded if the user
-  /// ends the trials, and, after a message on standard error, if the trial has no score.
+  /// ends the trials, and SearchFailed if the trial has no score.
   [[nodiscard]] sim::MeasureValues make(const sim::Scenario& scenario, const std::string& name);
 
  private:
   [[nodiscard]] DrivenTrial drive(const sim::Scenario& scenario, const std::string& name);
 
   std::string bus_;
-  std::string program_;
+  bool is_simulated_;  ///< as fast as this computer can
   std::filesystem::path folder_;
   std::function<bool()> stop_;
   TrialScore score_;

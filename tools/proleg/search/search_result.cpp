@@ -322,7 +322,7 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome, co
   if (progress.failed > 0) {
     print_line("failed", std::to_string(progress.failed) + " of them; the first: " + progress.first_failure);
   }
-  print_line("ended", outcome.ending.empty() ? "interrupted" : outcome.ending);
+  print_line("ended", ending_text(outcome));
 }
 
 void add_result(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result, Json& object) {

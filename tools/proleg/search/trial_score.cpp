@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -61,6 +62,19 @@ std::string with_unit(sim::Measure measure) {
   return std::string(declaration.name) + (declaration.unit.empty() ? "" : " in " + std::string(declaration.unit));
 }
 
+/// A larger number is no measure of a robot; sums with it could overflow.
+constexpr double largest_number = 1e9;
+
+bool is_possible(double number, sim::Measure measure) {
+  return std::abs(number) <= largest_number && (number >= 0.0 || sim::declaration_of(measure).may_be_negative);
+}
+
+/// "number from 0 to 1e9 (distance in m)"
+std::string expected_number(sim::Measure measure) {
+  return std::string("number from ") + (sim::declaration_of(measure).may_be_negative ? "-1e9" : "0") + " to 1e9 (" +
+         with_unit(measure) + ")";
+}
+
 }  // namespace
 
 void add_trial_options(CommandLine& command_line, TrialOptions& options) {
@@ -94,6 +108,12 @@ void require_bus(const TrialOptions& options) {
       throw InputError(option, 0, "an option for the trials of a robot", "--bus BUS beside it");
     }
   }
+}
+
+std::string simulated_robot(const TrialOptions& options) {
+  constexpr std::string_view kind = "sim:";
+  const std::string bus = options.bus.value_or("");
+  return lower_case(bus.substr(0, kind.size())) == kind ? std::string(kind) + bus.substr(kind.size()) : std::string();
 }
 
 TrialScore::TrialScore(const TrialOptions& options, std::span<const optimize::Objective> objectives,
@@ -161,19 +181,17 @@ std::optional<sim::MeasureValues> TrialScore::measure(const DrivenTrial& trial) 
 
 std::string TrialScore::next_line() {
   constexpr std::chrono::milliseconds pause{50};
-  while (true) {
-    if (const std::optional<std::string> line = input_lines_.next()) {
-      return std::string(trimmed(*line));
+  while (!stop_()) {  // asked before each line: there may be lines without an end
+    if (std::optional<std::string> line = input_lines_.next()) {
+      return *std::move(line);
     }
     if (input_lines_.has_ended()) {
       print_("standard input has ended: no further trial");
       throw optimize::SearchEnded();
     }
-    if (stop_()) {
-      throw optimize::SearchEnded();
-    }
     std::this_thread::sleep_for(pause);
   }
+  throw optimize::SearchEnded();
 }
 
 std::optional<double> TrialScore::ask(const DrivenTrial& trial) {
@@ -183,25 +201,36 @@ std::optional<double> TrialScore::ask(const DrivenTrial& trial) {
   print_(trial.name + ": the servos have no power. Put the robot back, then type its " + with_unit(measured_) +
          ": the next trial begins at once. Or: again (make this trial once more), stop (end the trials)");
   while (true) {
-    const std::string line = next_line();
+    const std::string whole_line = next_line();
+    const bool is_too_long = whole_line.size() > InputLines::longest_line;
+    const std::string line(is_too_long ? std::string_view() : trimmed(whole_line));
     if (line == "again") {
       return std::nullopt;
     }
     if (line == "stop") {
       throw optimize::SearchEnded();
     }
-    if (const std::optional<double> number = parse_number(line)) {
+    if (const std::optional<double> number = parse_number(line); number && is_possible(*number, measured_)) {
       return number;
     }
-    print_("found " + in_quotes(line) + ", expected a number (" + with_unit(measured_) + "), again or stop");
+    print_("found " +
+           (is_too_long ? "a line of more than " + std::to_string(InputLines::longest_line) + " characters"
+                        : in_quotes(line)) +
+           ", expected a " + expected_number(measured_) + ", again or stop");
   }
 }
 
 double TrialScore::run_program(const DrivenTrial& trial) const {
   const std::vector<std::string> command{program_, fs::absolute(trial.recording).string(),
                                          fs::absolute(trial.scenario_file).string()};
-  ChildProgram program(command, ".", ChildProgram::Errors::apart);
-  const ChildEnd end = wait_for_end(program, timeout_, stop_, print_);
+  const ChildEnd end = [&] {
+    try {
+      ChildProgram program(command, ".", ChildProgram::Errors::apart);
+      return wait_for_end(program, timeout_, stop_, print_);
+    } catch (const std::runtime_error& error) {  // it was there when the trials began
+      throw TrialFailed(error.what());
+    }
+  }();
   const std::string text(trimmed(end.output));
   const std::optional<double> number = parse_number(text);
   std::string found;
@@ -212,7 +241,7 @@ double TrialScore::run_program(const DrivenTrial& trial) const {
     found = "no end in " + proleg::number_text(timeout_.count()) + " s";
   } else if (end.status != 0) {
     found = "exit status " + std::to_string(end.status) + (end.last_message.empty() ? "" : ": " + end.last_message);
-  } else if (!number) {
+  } else if (!number || !is_possible(*number, measured_)) {
     found = text.empty() ? "no output" : in_quotes(text);
   } else {
     if (!end.last_message.empty()) {
@@ -221,7 +250,7 @@ double TrialScore::run_program(const DrivenTrial& trial) const {
     return *number;
   }
   throw TrialFailed(program_ + " of " + trial.recording.string() + ": found " + found +
-                    ", expected exit status 0 and one number on standard output");
+                    ", expected exit status 0 and, on standard output, one " + expected_number(measured_));
 }
 
 }  // namespace proleg::tools

@@ -33,6 +33,9 @@ void add_trial_options(CommandLine& command_line, TrialOptions& options);
 /// Throws InputError for an option of these trials without --bus.
 void require_bus(const TrialOptions& options);
 
+/// "sim:FILE" if the bus of these trials is that of a simulated robot; otherwise empty.
+[[nodiscard]] std::string simulated_robot(const TrialOptions& options);
+
 /// The folder of the trials in that of a run: scenario and recording of each.
 inline constexpr const char* trials_folder = "trials";
 
@@ -67,7 +70,7 @@ class TrialScore {
 
   [[nodiscard]] std::optional<double> ask(const DrivenTrial& trial);
   [[nodiscard]] double run_program(const DrivenTrial& trial) const;
-  /// The next line that the user types. Throws SearchEnded.
+  /// The next line that the user types. Throws SearchEnded, also if the user stops.
   [[nodiscard]] std::string next_line();
 
   Source source_ = Source::person;

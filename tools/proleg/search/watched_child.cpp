@@ -12,40 +12,48 @@ namespace proleg::tools {
 namespace {
 
 constexpr std::size_t most_output = 1'000'000;
+constexpr std::size_t longest_message = 1'000;
+constexpr std::size_t most_messages = 1'000;
 constexpr std::chrono::milliseconds period{20};
 
-/// The lines of a text that comes in parts.
+/// The lines of a text that comes in parts. Of a text without an end it keeps little, and passes on little.
 class Messages {
  public:
   explicit Messages(const std::function<void(const std::string& line)>& pass_on) : pass_on_(pass_on) {}
 
-  void add(const std::string& part) {
-    rest_ += part;
-    for (std::size_t end = rest_.find('\n'); end != std::string::npos; end = rest_.find('\n')) {
-      take(rest_.substr(0, end));
-      rest_.erase(0, end + 1);
+  void add(std::string_view part) {
+    for (std::size_t end = part.find('\n'); end != std::string_view::npos; end = part.find('\n')) {
+      add_to_rest(part.substr(0, end));
+      take_rest();
+      part.remove_prefix(end + 1);
     }
+    add_to_rest(part);
   }
 
   [[nodiscard]] std::string last() {
-    take(std::exchange(rest_, {}));
+    take_rest();
     return std::exchange(last_, {});
   }
 
  private:
-  void take(const std::string& line) {
+  void add_to_rest(std::string_view text) { rest_ += text.substr(0, longest_message - rest_.size()); }
+
+  void take_rest() {
+    const std::string line = std::exchange(rest_, {});
     if (trimmed(line).empty()) {
       return;
     }
-    if (!last_.empty()) {
-      pass_on_(last_);
+    if (!last_.empty() && passed_on_ <= most_messages) {
+      pass_on_(passed_on_ < most_messages ? last_ : "its further messages are not shown");
+      ++passed_on_;
     }
     last_ = one_line(trimmed(line));
   }
 
   const std::function<void(const std::string& line)>& pass_on_;
-  std::string rest_;
+  std::string rest_;  ///< at most longest_message
   std::string last_;
+  std::size_t passed_on_ = 0;
 };
 
 }  // namespace

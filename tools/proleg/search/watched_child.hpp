@@ -23,7 +23,8 @@ struct ChildEnd {
 };
 
 /// Waits until a program has ended, or ends it: when its time is over, or when stop() is true, which is called often.
-/// Returns when it has ended in any case. pass_on: gets the lines of its standard error as they come, but the last.
+/// Returns when it has ended in any case. pass_on: gets the lines of its standard error as they come, but the last; a
+/// thousand of them at most, and of each a thousand characters.
 [[nodiscard]] ChildEnd wait_for_end(ChildProgram& child, std::chrono::duration<double> longest,
                                     const std::function<bool()>& stop,
                                     const std::function<void(const std::string& line)>& pass_on);

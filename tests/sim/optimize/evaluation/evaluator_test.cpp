@@ -241,7 +241,7 @@ TEST(Evaluator, GivesWorkersThePredictedCandidates) {
 
 TEST(Evaluator, LetsARobotMakeOnlyTrialsThatAreAskedFor) {
   Experiment experiment = noisy_experiment();
-  put_on_robot(experiment);
+  put_on_robot(experiment, "");
   MadeUpWorkers workers(experiment, 1, 1);
   Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
   evaluator.expect(std::vector<Candidate>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});

@@ -269,6 +269,27 @@ TEST_F(StoreFile, OfAnotherExperimentIsNotResumedAndTheMessageNamesTheDifference
             "file " + std::filesystem::path(experiment_.scenario.sources.back().path).filename().string());
 }
 
+TEST_F(StoreFile, OfAnotherSimulatedRobotIsNotResumed) {
+  put_on_robot(experiment_, "sim:a.simulation.xml");
+  make();
+  EXPECT_EQ(read_stored_experiment(path_).simulated_robot, "sim:a.simulation.xml");
+  EXPECT_EQ(not_resumed(), "nothing");
+  for (const char* other : {"sim:b.simulation.xml", ""}) {
+    Experiment experiment = small_experiment();
+    put_on_robot(experiment, other);
+    const std::string what = refused(Store::Opening::resume, experiment);
+    EXPECT_TRUE(what.ends_with("differences: simulated robot")) << what;
+  }
+}
+
+TEST_F(StoreFile, ThatIsCutShortIsADamagedDatabase) {
+  make();
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 2);
+  const std::string what = not_resumed();
+  EXPECT_TRUE(what.starts_with("found a damaged database (")) << what;
+  EXPECT_TRUE(what.ends_with("), expected the store of a search")) << what;
+}
+
 TEST_F(StoreFile, IsResumedWithAnotherBudgetAndFromAnotherFolder) {
   make();
   experiment_.evaluations = 5;

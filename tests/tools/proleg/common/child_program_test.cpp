@@ -72,6 +72,25 @@ TEST(ChildProgram, AProgramThatIsMissingIsNamed) {
   }
 }
 
+TEST(ChildProgram, AMissingFileIsNoProgramOfPath) {
+  try {
+    const ChildProgram child({"./no-such-compiler"}, "/");
+    ADD_FAILURE() << "started";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()), "found no program ./no-such-compiler, expected an executable file");
+  }
+}
+
+TEST(ChildProgram, OneThatWritesWithoutAnEndDoesNotKeepItsReader) {
+  ChildProgram child({"sh", "-c", "exec yes >&2"}, "/", ChildProgram::Errors::apart);
+  while (child.read_errors().empty()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_LE(child.read_errors().size(), ChildProgram::most_at_once + 4096);
+  child.end();
+  EXPECT_EQ(wait_for(child).status, 128 + SIGTERM);
+}
+
 TEST(ChildProgram, EndsWithAllThatItHasStarted) {
   ChildProgram child({"sh", "-c", "sleep 1000 & echo $!; wait"}, "/");
   std::string output;

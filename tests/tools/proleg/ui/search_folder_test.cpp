@@ -49,6 +49,8 @@ TEST_F(SearchFolderTest, TheLastLineSaysWhyASearchFailed) {
   EXPECT_EQ(failure("cmaes: 20 of 40\nproleg optimise: a.xml:3: found x, expected y\n\n"),
             "a.xml:3: found x, expected y");
   EXPECT_EQ(failure("proleg optimise: interrupted after 5 evaluations; continue with: ...\n"), "") << "no failure";
+  EXPECT_EQ(failure("proleg optimise: ended after 2 evaluations, because evaluation_2 has no score\n"),
+            "ended after 2 evaluations, because evaluation_2 has no score");
   EXPECT_EQ(failure("cmaes: 20 of 40\n"), "");
 }
 

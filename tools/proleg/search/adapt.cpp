@@ -1,6 +1,7 @@
 // proleg adapt: finds a gait for a robot that is not as its atlas expects, in a few trials.
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -95,14 +96,13 @@ Atlas atlas_of(const AdaptOptions& options) {
 }
 
 void rate_for_trials(Atlas& atlas, double seconds) {
-  RunProgress progress("rating the gaits of the atlas for trials of this length", 1.0);
+  const std::size_t count = atlas.gaits.size();
+  CountProgress progress("gaits of the atlas rated for trials of this length", count);
+  const auto show = [&](double share) {
+    progress.show(static_cast<std::uint64_t>(std::lround(share * static_cast<double>(count))));
+  };
   try {
-    optimize::rate_for_length(atlas, seconds, [&](double share) {
-      progress.show(share);
-      if (interrupted()) {
-        throw optimize::SearchEnded();
-      }
-    });
+    optimize::rate_for_length(atlas, seconds, show, [] { return interrupted(); });
   } catch (const optimize::StoreError& error) {
     throw BadInput(error.what());
   }

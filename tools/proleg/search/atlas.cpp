@@ -171,7 +171,7 @@ int write_cell(const AtlasOptions& options) {
   const Experiment experiment = optimize::read_experiment_of(store);
   require_map(experiment);
   const std::vector<Evaluation> evaluations =
-      optimize::Store(store, experiment, {}, optimize::Store::Opening::look).evaluations(0);
+      optimize::Store(store, experiment, {}, optimize::Store::Opening::trust).evaluations(0);
   const GaitMap map = optimize::gait_map(experiment, evaluations);
   if (map.elites().empty()) {
     throw BadInput(store.string() + ": found no filled cell, expected a search that has filled some");

@@ -266,7 +266,8 @@ class GaitSelector final : public SensingModule {
   /// windows: then 5 % of that 0 are left.
   static std::int32_t before_first_decision(const JointContext& context, const Tuning& tuning) {
     constexpr std::int32_t windows_to_follow = 3;
-    return std::min(tuning.derived[dwell_ticks] - ticks_of(windows_to_follow * tuning.parameters[window], context), 0);
+    return std::min<std::int32_t>(
+        tuning.derived[dwell_ticks] - ticks_of(windows_to_follow * tuning.parameters[window], context), 0);
   }
   static void take(const Neighbour& neighbour, std::int32_t* state) {
     state[current_phase] = neighbour.value(phase_field);

@@ -32,8 +32,7 @@ std::string range_text(const Parameter& parameter) {
     return unit_range_text(parameter.unit);
   }
   const std::string symbol = shown_unit(parameter.unit);
-  return (parameter.unit == Unit::count ? "a whole number from " : "a number from ") +
-         std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
+  return "a number from " + std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
          std::string(format_decimal(parameter.maximum, parameter.unit).view()) + (symbol.empty() ? "" : " " + symbol);
 }
 
@@ -51,12 +50,7 @@ std::string unit_range_text(Unit unit) {
 
 std::int32_t parse_parameter(const Parameter& parameter, const std::string& text, const std::string& file, int line) {
   const DecimalResult result = parse_decimal(text, parameter.unit);
-  const auto is_whole = [&text] {
-    const std::optional<double> number = parse_number(text);
-    return number && std::trunc(*number) == *number;
-  };
-  if (result.error != DecimalError::none || result.raw < parameter.minimum || result.raw > parameter.maximum ||
-      (parameter.unit == Unit::count && !is_whole())) {
+  if (result.error != DecimalError::none || result.raw < parameter.minimum || result.raw > parameter.maximum) {
     throw InputError(file, line, in_quotes(text) + " for parameter " + in_quotes(parameter.name),
                      range_text(parameter));
   }

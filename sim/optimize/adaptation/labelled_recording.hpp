@@ -68,9 +68,9 @@ struct LabelledRun {
 /// selector drives other joints, its sets have other parameters, or a second of its recording is also in another run.
 void check_together(const std::vector<LabelledRun>& runs);
 
-/// Hysteresis only says when a set ends. If the sets of a label were played in all runs of it, nothing tells whether
-/// the robot would choose them while it plays another one. This takes such runs as if none of the right sets were
-/// played. Returns for each run whether it did.
+/// Hysteresis only says when a set ends. If the sets of a label were mostly played in all runs of it, nothing tells
+/// whether the robot would choose them while it plays another one. This takes such runs as if none of the right sets
+/// were played. Returns for each run whether it did.
 std::vector<bool> forget_untried_entries(std::vector<LabelledRun>& runs);
 
 /// What a selector would have chosen in each tick, while the robot played what it played.

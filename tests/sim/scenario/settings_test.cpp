@@ -315,21 +315,6 @@ TEST(Contradictions, AreRefusedByParameterValueAndJointAtTheStartAndAfterAChange
   EXPECT_EQ(found->expected, "two conditions that a value can meet together");
 }
 
-TEST(CountParameters, TakeWholeNumbersOnly) {
-  Scenario small = scenario();
-  small.kernel.slots[3] = {find_algorithm("SensingModule_gait_selector"), JointMask::first(2)};
-  EXPECT_NO_THROW(apply_setting(small, "4.feature_2=-3"));
-  EXPECT_NO_THROW(apply_setting(small, "4.feature_2=2.0"));
-  for (const char* word : {"4.feature_2=1.5", "4.feature_2=-0.25", "4.window=0.9", "4.feature_2=9"}) {
-    try {
-      apply_setting(small, word);
-      ADD_FAILURE() << word;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("expected a whole number from "), std::string::npos) << error.what();
-    }
-  }
-}
-
 TEST(ParsedSetting, HasATickOnlyIfTheWordHasOne) {
   const ParsedSetting at_once = parse_setting(scenario(), "amplitude=22.5");
   EXPECT_FALSE(at_once.tick);

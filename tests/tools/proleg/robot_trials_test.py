@@ -190,11 +190,11 @@ class RobotTrials(unittest.TestCase):
         self.assertEqual(len(self.made("no_number_two")), 2)
 
     def test_a_program_that_vanishes_ends_the_trials_and_what_was_learned_is_kept(self):
-        script = self.script("vanishes", "#!/bin/sh\nrm \"$0\"\necho 0.01\n")
+        script = self.script("vanishes.sh", "#!/bin/sh\nrm \"$0\"\necho 0.01\n")
         failed = self.proleg(*self.adapting("vanishes", self.simulated_bus(), "--score-command", script, "--json"))
         self.assertEqual(failed.returncode, 1, failed.stderr)
         reason = f"trial_2 has no score: found no program {script}, expected an executable file"
-        self.assertIn(f"ended after 1 trials, because {reason}; the same command with --resume", failed.stderr)
+        self.assertIn(f"ended after 1 trial, because {reason}; the same command with --resume", failed.stderr)
         result = json.loads(failed.stdout)
         self.assertEqual((result["ended"], result["reason"], result["best"]), ("failed", reason, 0.01))
         for name in ("trials.svg", "adapted.simulation.xml"):

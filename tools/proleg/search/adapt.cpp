@@ -236,7 +236,8 @@ class Run {
       print();
     }
     if (is_cut_short()) {
-      const std::string trials = std::to_string(made_.all().size()) + " trials";
+      const std::size_t count = made_.all().size();
+      const std::string trials = std::to_string(count) + (count == 1 ? " trial" : " trials");
       std::cerr << "proleg adapt: "
                 << (failure_ ? "ended after " + trials + ", because " + *failure_ : "interrupted after " + trials)
                 << "; the same command with --resume " << shell_argument(folder_.string()) << " continues\n";

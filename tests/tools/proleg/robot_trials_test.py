@@ -220,7 +220,7 @@ class RobotTrials(unittest.TestCase):
             program.say("stop")
             program.end()
         self.assertEqual(program.process.returncode, 1)
-        self.assertIn("interrupted after 1 trials", program.messages[-1])
+        self.assertIn("interrupted after 1 trial;", program.messages[-1])
         self.assertEqual([line.split("\t")[-2] for line in self.made("person")], ["0.01"])
 
     def test_the_end_of_standard_input_ends_the_trials(self):

@@ -133,8 +133,8 @@ class Course:
 
     @staticmethod
     def only(number):
-        """Settings with which one set is played."""
-        return {} if number == 1 else {f"feature_{number}": 4, f"threshold_{number}": -1, "dwell": 100}
+        """Settings with which one set is played from the beginning: a rule that always holds, and no time to wait."""
+        return {} if number == 1 else {f"feature_{number}": 4, f"threshold_{number}": -1, "window": 1, "dwell": 0}
 
     def record(self):
         """Recordings of each gait on each ground, from both sides; the words with which they are labelled."""

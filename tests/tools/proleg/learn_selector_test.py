@@ -32,7 +32,8 @@ SIMULATION = """<simulation>
   <simulationProperties><duration>4</duration></simulationProperties>
 </simulation>
 """
-PLAY_SET_2 = ("--set", "feature_2=-3", "--set", "threshold_2=2", "--set", "dwell=0")  # roll is always below 2
+# Roll is always below 2; the robot decides at once.
+PLAY_SET_2 = ("--set", "feature_2=-3", "--set", "threshold_2=2", "--set", "window=1", "--set", "dwell=0")
 
 
 def run(command, *arguments):

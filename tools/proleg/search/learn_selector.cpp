@@ -183,8 +183,9 @@ std::string rule_text(const RuleParameters& rules, std::int32_t set) {
   return text.empty() ? "never" : text;
 }
 
-/// The scenario of a recording with the values with which it began, but these rules and this window.
-sim::Scenario learned_scenario(const std::string& file, const LearnedRules& learned, std::int32_t window_ms) {
+/// The scenario of a recording with the values with which it began, but these rules and times.
+sim::Scenario learned_scenario(const std::string& file, const LearnedRules& learned,
+                               const optimize::SelectorTimes& times) {
   const sim::Recording recording(file);
   std::optional<sim::Scenario> scenario = sim::recorded_scenario(recording);
   if (!scenario) {
@@ -202,7 +203,8 @@ sim::Scenario learned_scenario(const std::string& file, const LearnedRules& lear
                             static_cast<std::uint8_t>(number), false, setting.raw});
     }
   }
-  std::vector<std::pair<std::uint8_t, std::int32_t>> values{{parameter_number("window"), window_ms},
+  std::vector<std::pair<std::uint8_t, std::int32_t>> values{{parameter_number("window"), times.window_ms},
+                                                            {parameter_number("dwell"), times.dwell_ms},
                                                             {parameter_number("hysteresis"), learned.hysteresis}};
   for (std::size_t i = 0; i < learned.rules.size(); ++i) {
     values.emplace_back(rule_parameter(i), learned.rules[i]);
@@ -322,7 +324,12 @@ int learn(const LearnOptions& options) {
   if (options.out) {
     check_result_folder(*options.out, learned_files);
   }
-  optimize::SelectorTimes times = optimize::selector_times(sim::Recording(labels.front().file));
+  // A recording of one set has short times, so that this set is played from the beginning.
+  optimize::SelectorTimes times{0, 0};
+  for (const optimize::RecordingLabel& label : labels) {
+    const optimize::SelectorTimes its = optimize::selector_times(sim::Recording(label.file));
+    times = {std::max(times.window_ms, its.window_ms), std::max(times.dwell_ms, its.dwell_ms)};
+  }
   times.window_ms = window_of(options, times);
   std::vector<LabelledRun> runs = read_runs(labels, times.window_ms);
   if (std::ranges::all_of(runs,
@@ -348,7 +355,7 @@ int learn(const LearnOptions& options) {
 
   std::string written;
   if (options.out) {
-    const sim::Scenario scenario = learned_scenario(labels.front().file, rules, times.window_ms);
+    const sim::Scenario scenario = learned_scenario(labels.front().file, rules, times);
     const ResultFolder claim(*options.out, learned_files);
     written = optimize::write_scenario(scenario, "Rules that proleg learn-selector learned.", *options.out, "learned")
                   .string();
@@ -387,7 +394,7 @@ int learn_selector_command(int argc, char** argv) {
       .value_name("NAME");
   command_line
       .add_option("--window", options.window,
-                  "over which time features are averaged; default: as in the first recording")
+                  "over which time features are averaged; default: the longest of the recordings")
       .value_name("MS");
   command_line.add_option("--hysteresis", options.hysteresis,
                           "how far a feature goes back before the set that is played ends, 0 to 1; default: learned");

@@ -223,6 +223,12 @@ class RobotTrials(unittest.TestCase):
         self.assertIn("interrupted after 1 trial;", program.messages[-1])
         self.assertEqual([line.split("\t")[-2] for line in self.made("person")], ["0.01"])
 
+    def test_a_robot_that_does_not_move_has_a_score_of_0(self):
+        still = self.proleg(*self.adapting("still", self.simulated_bus(), trials=2), "--alpha", 1, "--json", input="0\n0\n")
+        self.assertEqual(still.returncode, 0, still.stderr)
+        self.assertEqual([trial["failure"] for trial in json.loads(still.stdout)["trials"]], [None, None])
+        self.assertTrue((self.folder / "still" / "adapted.simulation.xml").exists())
+
     def test_the_end_of_standard_input_ends_the_trials(self):
         command = self.adapting("typed", self.simulated_bus(), trials=4)
         ended = self.proleg(*command, input="0.01\n0.02\n")

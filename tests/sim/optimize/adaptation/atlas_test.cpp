@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "shipped_atlas.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/adaptation/simulated_robot.hpp"
@@ -104,6 +105,41 @@ TEST(Atlas, RatesItsGaitsForTheLengthOfATrialInItsOwnEngine) {
   for (const AtlasGait& gait : atlas.gaits) {
     EXPECT_EQ(gait.score, robot.try_gait(gait.candidate).score);
   }
+}
+
+TEST(Atlas, EndsItsRatingInTheTickInWhichItIsStopped) {
+  Atlas atlas = small_atlas();
+  atlas.experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
+  int asked = 0;
+  EXPECT_THROW(rate_for_length(
+                   atlas, 1e6, [](double) { FAIL() << "nothing is done"; }, [&] { return ++asked > 100; }),
+               SearchEnded);
+}
+
+TEST(Atlas, OfFilesThatSomebodyHasChangedIsRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path store = folder.path() / "store.sqlite";
+  const Experiment experiment = shipped_map();
+  fill_store(store, experiment, {made_up_evaluation(experiment, 0, 100, 0.8, 0.0491, 0.399)});
+  const auto message = [&] {
+    try {
+      static_cast<void>(read_atlas(store));
+    } catch (const StoreError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const auto change = [&](const std::string& statement) {
+    Database database(store, SQLITE_OPEN_READWRITE);
+    database.execute(statement.c_str());
+  };
+  change("UPDATE source SET text = replace(text, 'cells=\"25\"', 'cells=\"24\"')");
+  EXPECT_NE(message().find("is the store of another experiment, with fingerprint"), std::string::npos) << message();
+  EXPECT_NE(message().find("differences: map"), std::string::npos) << message();
+  change("UPDATE source SET text = replace(text, 'cells=\"24\"', 'cells=\"25\"')");
+  EXPECT_EQ(message(), "no error");
+  change("UPDATE evaluation SET candidate = 'a b c d e'");
+  EXPECT_NE(message(), "no error") << "a candidate that is none";
 }
 
 TEST(Atlas, RefusesAnotherRobotInOneLine) {

@@ -7,7 +7,9 @@
 #include <thread>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/gait/registry.hpp"
 #include "sim/loop/simulation_batch.hpp"
+#include "sim/scenario/settings.hpp"
 #include "small_experiment.hpp"
 
 namespace proleg::optimize {
@@ -50,6 +52,29 @@ TEST(Batch, IsMadeOfWorldsOfTheReducedEngineWithoutMoves) {
   EXPECT_EQ(sim::batch_size(experiment.scenario), 64U);
   experiment.scenario.moves.emplace_back();
   EXPECT_EQ(sim::batch_size(experiment.scenario), 1U);
+}
+
+TEST(ScenarioRuns, DoNotSimulateParametersThatContradictEachOther) {
+  sim::Scenario good = reduced(small_experiment(0.2)).scenario;
+  good.kernel.slots = {};
+  good.kernel.slots[0] = {find_algorithm("SensingModule_gait_selector"), JointMask::first(good.kernel.joint_count)};
+  good.settings.clear();
+  good.changes.clear();
+  sim::Scenario bad = good;
+  for (const char* word : {"feature_2=4", "threshold_2=0.5", "feature_3=4", "threshold_3=0.4"}) {
+    sim::apply_setting(bad, word);
+  }
+  const std::vector<sim::Scenario> scenarios{good, bad, good, bad, bad, good};
+  std::vector<std::size_t> ended;
+  const auto at_end = [&](std::size_t i, const sim::Simulation&, TrialResult&) { ended.push_back(i); };
+  const std::vector<TrialResult> results = run_scenarios(scenarios, {{}, at_end});
+  EXPECT_EQ(ended, (std::vector<std::size_t>{0, 2, 5}));
+  for (const std::size_t i : {1U, 3U, 4U}) {
+    EXPECT_EQ(results[i].failure.find("found SensingModule_gait_selector (1) with threshold_2 0.5 and threshold_3 0.4"),
+              0U)
+        << results[i].failure;
+  }
+  EXPECT_EQ(results[5].failure, "");
 }
 
 TEST(Batch, GivesEveryTrialTheBitsThatItHasAlone) {

@@ -224,7 +224,7 @@ class RobotTrials(unittest.TestCase):
         self.assertEqual([line.split("\t")[-2] for line in self.made("person")], ["0.01"])
 
     def test_a_robot_that_does_not_move_has_a_score_of_0(self):
-        still = self.proleg(*self.adapting("still", self.simulated_bus(), trials=2), "--alpha", 1, "--json", input="0\n0\n")
+        still = self.proleg(*self.adapting("still", self.simulated_bus(), trials=2), "--json", input="0\n0\n")
         self.assertEqual(still.returncode, 0, still.stderr)
         self.assertEqual([trial["failure"] for trial in json.loads(still.stdout)["trials"]], [None, None])
         self.assertTrue((self.folder / "still" / "adapted.simulation.xml").exists())

@@ -22,6 +22,8 @@ struct GaitFeatures {
     tracking_error,  ///< distance of the angle from its set-point; 1: 90 degrees
   };
   static constexpr unsigned count = 8;
+  /// Time constants after which a feature follows what is sensed: 5 % of an old value are left.
+  static constexpr std::int32_t windows_to_follow = 3;
   /// Number of values of a state: the features, then the first 31 links that touch, a bit each.
   static constexpr unsigned state_size = count + 1;
   /// Number of derived constants.

@@ -262,12 +262,10 @@ class GaitSelector final : public SensingModule {
   static std::int32_t ticks_of(std::int32_t ms, const JointContext& context) {
     return static_cast<std::int32_t>(divide_nearest(std::int64_t{ms} * 1'000, std::int64_t{context.tick_period_us}));
   }
-  /// since_decision of a joint that starts. Its features start at 0, so it does not decide by them within three
-  /// windows: then 5 % of that 0 are left.
+  /// since_decision of a joint that starts. Its features start at 0, so it does not decide until they follow.
   static std::int32_t before_first_decision(const JointContext& context, const Tuning& tuning) {
-    constexpr std::int32_t windows_to_follow = 3;
-    return std::min<std::int32_t>(
-        tuning.derived[dwell_ticks] - ticks_of(windows_to_follow * tuning.parameters[window], context), 0);
+    const std::int32_t to_follow = ticks_of(GaitFeatures::windows_to_follow * tuning.parameters[window], context);
+    return std::min<std::int32_t>(tuning.derived[dwell_ticks] - to_follow, 0);
   }
   static void take(const Neighbour& neighbour, std::int32_t* state) {
     state[current_phase] = neighbour.value(phase_field);

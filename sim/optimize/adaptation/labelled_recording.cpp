@@ -19,7 +19,6 @@
 namespace proleg::optimize {
 namespace {
 
-constexpr std::size_t windows_to_follow = 3;  // after them 5 % of an old value are left
 constexpr std::size_t most_examples_of_run = 400;
 constexpr std::size_t most_examples = 4'000;  // of all runs
 constexpr std::uint32_t most_parts = 10;
@@ -224,7 +223,7 @@ LabelledRun read_labelled_run(const RecordingLabel& label, std::int32_t window_m
   run.label = label;
   run.tick_period_us = recording.tick_period_us();
   run.joints = static_cast<std::uint32_t>(recording.joints().size());
-  run.first_ticks = windows_to_follow * ticks_of(window_ms, run.tick_period_us);
+  run.first_ticks = std::size_t{GaitFeatures::windows_to_follow} * ticks_of(window_ms, run.tick_period_us);
   run.joint_group = slot.joint_group;
   read_gaits(recording, slot, run);
   FeatureReplay replay(recording, slot, window_ms);

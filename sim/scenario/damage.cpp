@@ -103,15 +103,20 @@ Damage read_damage(const RobotModel& robot, const std::string& word) {
   return damage;
 }
 
+std::int32_t raw_angle_of(double degrees) { return static_cast<std::int32_t>(std::lround(degrees / 90.0 * (1 << 30))); }
+
+bool can_have(const AngleLimits& limits, double degrees) {
+  return raw_angle_of(degrees) >= limits.lower && raw_angle_of(degrees) <= limits.upper;
+}
+
 /// strongest: the greatest torque of the robot.
 void jam(Scenario& scenario, std::size_t joint, double degrees, double strongest) {
-  const auto raw_angle = static_cast<std::int32_t>(std::lround(degrees / 90.0 * (1 << 30)));
   AngleLimits& limits = scenario.joint_limits[joint];
-  if (raw_angle < limits.lower || raw_angle > limits.upper) {
+  if (!can_have(limits, degrees)) {
     throw InputError(damage_option, 0, number_text(degrees) + " degrees for " + scenario.robot.joints[joint].name,
                      "an angle within the limits of the joint");
   }
-  limits = {raw_angle, raw_angle};
+  limits = {raw_angle_of(degrees), raw_angle_of(degrees)};
   scenario.robot.joints[joint].max_torque = jam_strength * strongest;
 }
 
@@ -164,6 +169,25 @@ void apply_damage(Scenario& scenario, const std::vector<std::string>& words) {
   for (const Damage& damage : damages) {
     apply_one(scenario, damage, strongest);
   }
+}
+
+std::vector<std::string> usual_damages(const Scenario& scenario) {
+  std::vector<std::string> words;
+  for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {
+    const std::string& name = scenario.robot.joints[joint].name;
+    if (name.find('=') != std::string::npos) {
+      continue;  // no word can name it
+    }
+    words.push_back("powerless:" + name);
+    words.push_back("torque:" + name + "=50%");
+    for (const int degrees : {-20, 0, 20}) {
+      if (can_have(scenario.joint_limits[joint], degrees)) {
+        words.push_back("jammed:" + name + "=" + std::to_string(degrees));
+      }
+    }
+  }
+  words.emplace_back("friction=50%");
+  return words;
 }
 
 Losses losses_of_damage(const Scenario& scenario, const std::vector<std::string>& words) {

@@ -1,24 +1,26 @@
 // What a damaged robot reaches in some trials with an atlas, against a search on the damaged robot, the best gait of
-// the atlas without adaptation, random gaits of the atlas, and trials without what the atlas expects.
+// the atlas without adaptation, random gaits of the atlas, trials without what the atlas expects, trials with the atlas
+// alone (no damage is suspected), and trials of which no suspected damage is of the joint that is damaged.
 //
 //   bench_adaptation ATLAS [--damages 20] [--first 0] [--seconds 10] [--trials 12] [--evaluations 2000]
-//                    [--engine ode] [--kappa K] [--length L] [--noise N] [--all] [--dump FILE]
+//                    [--engine ode] [--kappa K] [--length L] [--noise N] [--all]
 //
 // ATLAS: the folder of a search for a map of gaits. The trials are made in ODE. The search is CMA-ES; --engine reduced:
 // it searches there, and the best 20 of its candidates are rated in ODE. --all: the best gait of the atlas on each
-// robot, too, and --dump writes the scores of all gaits on all robots.
+// robot, too.
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
@@ -26,6 +28,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/adaptation/adaptation.hpp"
 #include "sim/optimize/adaptation/atlas.hpp"
+#include "sim/optimize/adaptation/gait_rating.hpp"
 #include "sim/optimize/adaptation/simulated_robot.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/evaluation/scenario_runs.hpp"
@@ -46,7 +49,6 @@ struct Options {
   std::string engine = "ode";
   AdaptationSettings adaptation;
   bool all = false;
-  std::string dump;
 };
 
 /// The words of --damage of a seed: one damage of each kind in turn, of a joint that is drawn.
@@ -142,8 +144,10 @@ class DamagedSource final : public FitnessSource {
 /// The trials on one damaged robot.
 class Robot {
  public:
-  Robot(const Atlas& atlas, const std::vector<std::string>& words)
+  /// elites: number of gaits that are the best of their cells.
+  Robot(const Atlas& atlas, std::size_t elites, const std::vector<std::string>& words)
       : atlas_(atlas),
+        elites_(static_cast<std::uint32_t>(elites)),
         words_(words),
         robot_(atlas.experiment, damaged(atlas, words, sim::PhysicsEngine::ode),
                sim::losses_of_damage(atlas.experiment.scenario, words), [] { return false; }) {}
@@ -158,30 +162,20 @@ class Robot {
   double value(const Candidate& candidate) { return -atlas_.experiment.objectives.front().cost(score(candidate)); }
   double value_of_gait(std::size_t gait) { return value(atlas_.gaits[gait].candidate); }
 
-  /// Best value and number of trials. has_prior: otherwise all cells are expected to be as good as the mean of all.
-  std::pair<double, std::size_t> adapt(const AdaptationSettings& settings, bool has_prior) {
-    std::vector<AdaptationCell> cells = atlas_.cells();
-    if (!has_prior) {
-      double sum = 0.0;
-      for (const AdaptationCell& cell : cells) {
-        sum += cell.prior;
-      }
-      for (AdaptationCell& cell : cells) {
-        cell.prior = sum / static_cast<double>(cells.size());
-      }
-    }
-    Adaptation adaptation(std::move(cells), settings);
-    while (const std::optional<std::size_t> cell = adaptation.next()) {
-      adaptation.tell(*cell, value_of_gait(*cell));
+  /// Best value and number of trials.
+  std::pair<double, std::size_t> adapt(const std::vector<Hypothesis>& hypotheses, const AdaptationSettings& settings) {
+    Adaptation adaptation(atlas_.points(), hypotheses, settings);
+    while (const std::optional<std::size_t> gait = adaptation.next()) {
+      adaptation.tell(*gait, value_of_gait(*gait));
     }
     return {adaptation.best()->value, adaptation.trials().size()};
   }
 
   double best_of_random(std::uint32_t trials, std::uint32_t seed) {
     Pcg32 random(seed, 1);
-    double best = value_of_gait(random.below(static_cast<std::uint32_t>(atlas_.gaits.size())));
+    double best = value_of_gait(random.below(elites_));
     for (std::uint32_t trial = 1; trial < trials; ++trial) {
-      best = std::max(best, value_of_gait(random.below(static_cast<std::uint32_t>(atlas_.gaits.size()))));
+      best = std::max(best, value_of_gait(random.below(elites_)));
     }
     return best;
   }
@@ -223,6 +217,7 @@ class Robot {
 
  private:
   const Atlas& atlas_;
+  std::uint32_t elites_;
   std::vector<std::string> words_;
   SimulatedRobot robot_;
   std::map<Candidate, double> known_;
@@ -267,9 +262,6 @@ Options read_options(int argc, char** argv) {
       options.adaptation.noise = number_of(next());
     } else if (word == "--all") {
       options.all = true;
-    } else if (word == "--dump") {
-      options.dump = next();
-      options.all = true;
     } else if (options.atlas.empty() && !word.starts_with("-")) {
       options.atlas = word;
     } else {
@@ -282,59 +274,96 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
+/// The first gaits, which are the best of their cells: their cells ascend, and those of the others are among them.
+std::size_t elites_of(const Atlas& atlas) {
+  std::size_t count = 1;
+  while (count < atlas.gaits.size() && atlas.gaits[count].cell > atlas.gaits[count - 1].cell) {
+    ++count;
+  }
+  return count;
+}
+
+/// What a word damages: the name of a joint, or "friction=50%".
+std::string place_of(const std::string& word) {
+  const std::size_t colon = word.find(':');
+  return colon == std::string::npos ? word : word.substr(colon + 1, word.find('=') - colon - 1);
+}
+
+/// Those that are of another place than the damage.
+std::vector<std::string> without_place_of(const std::string& damage, std::vector<std::string> suspects) {
+  std::erase_if(suspects, [&](const std::string& suspect) { return place_of(suspect) == place_of(damage); });
+  return suspects;
+}
+
+/// That all gaits are as good as the mean of all.
+Hypothesis without_prior(const Hypothesis& unknown) {
+  const double sum = std::accumulate(unknown.values.begin(), unknown.values.end(), 0.0);
+  const auto count = static_cast<double>(unknown.values.size());
+  return {std::vector<double>(unknown.values.size(), sum / count), unknown.deviation, 1.0};
+}
+
 void print_table(const Options& options) {
   Atlas atlas = read_atlas(options.atlas);
-  rate_for_length(
-      atlas, options.seconds, [](double) {}, [] { return false; });
-  const std::vector<AdaptationCell> cells = atlas.cells();
-  const auto most_expected =
-      static_cast<std::size_t>(std::ranges::max_element(cells, {}, &AdaptationCell::prior) - cells.begin());
-  std::printf("%zu gaits; the best is expected to have %.3f\n", atlas.gaits.size(), cells[most_expected].prior);
-  std::printf("%-28s %8s %7s %8s %8s %8s %8s %8s\n", "damage", "adapted", "trials", "search", "best", "random",
-              "no prior", options.all ? "all" : "");
-  std::ofstream dump;
-  if (!options.dump.empty()) {
-    dump.open(options.dump);
-    for (std::size_t gait = 0; gait < atlas.gaits.size(); ++gait) {
-      dump << "gait\t" << cells[gait].prior;
-      for (std::size_t axis = 0; axis < atlas.experiment.axes.size(); ++axis) {
-        dump << '\t' << cells[gait].point[axis];
-      }
-      for (std::size_t d = 0; d < atlas.gaits[gait].candidate.size(); ++d) {
-        dump << '\t' << atlas.experiment.space.value(atlas.gaits[gait].candidate, d);
-      }
-      dump << '\n';
-    }
-  }
-  std::uint32_t reached = 0;
+  const ShareDone no_progress = [](double) {};
+  const auto never = [] { return false; };
+  rate_for_length(atlas, options.seconds, no_progress, never);
+  const std::vector<std::string> suspects = sim::usual_damages(atlas.experiment.scenario);
+  const std::vector<Hypothesis> alone = hypotheses_of(atlas, {}, {});
+  const DamageScores scores = rate_with_damages(atlas, suspects, no_progress, never);
+  const std::vector<Hypothesis> hypotheses = hypotheses_of(atlas, suspects, scores);
+  const std::vector<double>& expected = alone.front().values;
+  const auto most_expected = static_cast<std::size_t>(std::ranges::max_element(expected) - expected.begin());
+  std::printf("%zu gaits, %zu of them the best of their cells; the best is expected to have %.3f\n", atlas.gaits.size(),
+              elites_of(atlas), expected[most_expected]);
+  std::printf("%-28s %8s %7s %8s %8s %8s %8s %8s %7s %8s %7s %8s\n", "damage", "adapted", "trials", "search", "best",
+              "random", "no prior", "atlas", "trials", "others", "trials", options.all ? "all" : "");
+  constexpr std::array<std::string_view, 6> ways{"adapted", "best", "random", "no prior", "atlas", "others"};
+  std::array<std::uint32_t, 6> reached{};
+  std::array<double, 6> shares{};
+  std::array<std::size_t, 3> all_trials{};
   for (std::uint32_t seed = options.first; seed < options.first + options.damages; ++seed) {
     const std::vector<std::string> words = damage_of(atlas.experiment.scenario.robot, seed);
     std::string name;
     for (const std::string& word : words) {
       name += (name.empty() ? "" : " ") + word;
     }
-    Robot robot(atlas, words);
-    const auto [adapted, trials] = robot.adapt(options.adaptation, true);
+    Robot robot(atlas, elites_of(atlas), words);
+    const auto [adapted, trials] = robot.adapt(hypotheses, options.adaptation);
     const double searched =
         options.evaluations > 0 ? robot.best_of_search(options.evaluations, options.engine, seed) : 0.0;
-    reached += adapted >= 0.8 * searched ? 1U : 0U;
-    std::printf("%-28s %8.3f %7zu %8.3f %8.3f %8.3f %8.3f", name.c_str(), adapted, trials, searched,
-                robot.value_of_gait(most_expected), robot.best_of_random(options.adaptation.trials, seed),
-                robot.adapt(options.adaptation, false).first);
+    const auto [with_atlas, trials_with_atlas] = robot.adapt(alone, options.adaptation);
+    const std::vector<std::string> others = without_place_of(words.front(), suspects);
+    const auto [with_others, trials_with_others] =
+        robot.adapt(hypotheses_of(atlas, others, scores), options.adaptation);
+    const std::array<double, 6> values{adapted,
+                                       robot.value_of_gait(most_expected),
+                                       robot.best_of_random(options.adaptation.trials, seed),
+                                       robot.adapt({without_prior(alone[1])}, options.adaptation).first,
+                                       with_atlas,
+                                       with_others};
+    for (std::size_t way = 0; way < values.size(); ++way) {
+      reached[way] += values[way] >= 0.8 * searched ? 1U : 0U;
+      shares[way] += searched > 0.0 ? values[way] / searched / options.damages : 0.0;
+    }
+    all_trials[0] += trials;
+    all_trials[1] += trials_with_atlas;
+    all_trials[2] += trials_with_others;
+    std::printf("%-28s %8.3f %7zu %8.3f %8.3f %8.3f %8.3f %8.3f %7zu %8.3f %7zu", name.c_str(), values[0], trials,
+                searched, values[1], values[2], values[3], values[4], trials_with_atlas, values[5], trials_with_others);
     if (options.all) {
       std::printf(" %8.3f", robot.best_of_all());
     }
     std::printf("\n");
     std::fflush(stdout);
-    if (dump.is_open()) {
-      dump << "robot\t" << name << '\t' << searched;
-      for (std::size_t gait = 0; gait < atlas.gaits.size(); ++gait) {
-        dump << '\t' << robot.value_of_gait(gait);
-      }
-      dump << std::endl;
-    }
   }
-  std::printf("at least 80 %% of what the search reaches: %u of %u\n", reached, options.damages);
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    std::printf("%-8s at least 80 %% of what the search reaches: %u of %u, mean %.1f %%\n", ways[way].data(),
+                reached[way], options.damages, 100.0 * shares[way]);
+  }
+  std::printf("trials on average: adapted %.1f, atlas %.1f, others %.1f\n",
+              static_cast<double>(all_trials[0]) / options.damages,
+              static_cast<double>(all_trials[1]) / options.damages,
+              static_cast<double>(all_trials[2]) / options.damages);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ from pathlib import Path
 
 SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
 DAMAGES = 6
-WANTED = 4  # of them: sixteen of twenty, and one for the shortness
+WANTED = 5  # of them; the shipped figures are all of twenty, and one is for the shortness
 
 
 def run(*command):
@@ -25,6 +25,6 @@ with tempfile.TemporaryDirectory() as folder:
         "--engine", "reduced", "--evaluations", 4000, "--out", atlas)
     text = run(PROGRAMS / "bench_adaptation", atlas, "--damages", DAMAGES, "--evaluations", 200, "--engine", "reduced")
 print(text)
-reached, damages = map(int, re.search(r"what the search reaches: (\d+) of (\d+)", text).groups())
+reached, damages = map(int, re.search(r"adapted +at least 80 % of what the search reaches: (\d+) of (\d+)", text).groups())
 assert damages == DAMAGES
 assert reached >= WANTED, f"{reached} of {damages}, expected {WANTED}"

@@ -7,43 +7,89 @@
 namespace proleg::optimize {
 namespace {
 
-/// The scale of the map's values.
-double scale_of(const std::vector<AdaptationCell>& cells) {
+double scale_of(const Hypothesis& hypothesis) {
   double greatest = 0.0;
-  for (const AdaptationCell& cell : cells) {
-    greatest = std::max(greatest, std::abs(cell.prior));
+  for (const double value : hypothesis.values) {
+    greatest = std::max(greatest, std::abs(value));
   }
   return greatest > 0.0 ? greatest : 1.0;
 }
 
 }  // namespace
 
-Adaptation::Adaptation(std::vector<AdaptationCell> cells, const AdaptationSettings& settings)
-    : cells_(std::move(cells)),
-      settings_(settings),
-      process_({settings.length, scale_of(cells_), settings.noise * scale_of(cells_)}),
-      lowest_(std::ranges::min_element(cells_, {}, &AdaptationCell::prior)->prior - scale_of(cells_)) {
+Adaptation::Adaptation(std::vector<std::vector<double>> points, std::vector<Hypothesis> hypotheses,
+                       const AdaptationSettings& settings)
+    : points_(std::move(points)), hypotheses_(std::move(hypotheses)), settings_(settings) {
+  const double scale = scale_of(hypotheses_.front());
+  lowest_ = std::ranges::min(hypotheses_.front().values) - scale;
+  for (Hypothesis& hypothesis : hypotheses_) {
+    for (double& value : hypothesis.values) {
+      value = std::max(value, lowest_);
+    }
+    processes_.emplace_back(Kernel{settings.length, hypothesis.deviation * scale, settings.noise * scale});
+  }
   update();
 }
 
+/// The mean of a mixture is that of the means; its variance is the mean of the variances, and the variance of the
+/// means.
 void Adaptation::update() {
-  expected_.clear();
-  for (const AdaptationCell& cell : cells_) {
-    expected_.push_back(process_.estimate(cell.point, cell.prior));
+  std::vector<double> logarithms;  // of the probabilities, without their common factor
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+    logarithms.push_back(std::log(hypotheses_[h].probability) + processes_[h].log_likelihood());
   }
+  const double greatest = std::ranges::max(logarithms);
+  probabilities_.clear();
+  double sum = 0.0;
+  for (const double logarithm : logarithms) {
+    probabilities_.push_back(std::exp(logarithm - greatest));
+    sum += probabilities_.back();
+  }
+  for (double& probability : probabilities_) {
+    probability /= sum;
+  }
+  expected_.clear();
+  std::vector<Estimate> estimates(hypotheses_.size());
+  for (std::size_t gait = 0; gait < points_.size(); ++gait) {
+    double mean = 0.0;
+    for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+      estimates[h] = processes_[h].estimate(points_[gait], hypotheses_[h].values[gait]);
+      mean += probabilities_[h] * estimates[h].mean;
+    }
+    double variance = 0.0;
+    for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+      const double off = estimates[h].mean - mean;
+      variance += probabilities_[h] * (estimates[h].deviation * estimates[h].deviation + off * off);
+    }
+    expected_.push_back({mean, std::sqrt(variance)});
+  }
+}
+
+double Adaptation::promise(std::size_t gait) const {
+  return expected_[gait].mean + settings_.kappa * expected_[gait].deviation;
+}
+
+/// A second trial of a gait would tell little: its value is known but for the noise.
+std::optional<std::size_t> Adaptation::most_promising() const {
+  std::optional<std::size_t> best;
+  for (std::size_t gait = 0; gait < points_.size(); ++gait) {
+    const bool is_tried = std::ranges::find(trials_, gait, &Trial::gait) != trials_.end();
+    if (!is_tried && (!best || promise(gait) > promise(*best))) {
+      best = gait;
+    }
+  }
+  return best;
 }
 
 std::optional<std::size_t> Adaptation::next() const {
-  if (ending() != AdaptationEnding::none) {
-    return std::nullopt;
-  }
-  const auto promise = [&](const Estimate& estimate) { return estimate.mean + settings_.kappa * estimate.deviation; };
-  return static_cast<std::size_t>(std::ranges::max_element(expected_, {}, promise) - expected_.begin());
+  return ending() == AdaptationEnding::none ? most_promising() : std::nullopt;
 }
 
-void Adaptation::tell(std::size_t cell, double value) {
-  trials_.push_back({cell, expected_[cell], value});
-  process_.observe(cells_[cell].point, cells_[cell].prior, std::max(value, lowest_));
+void Adaptation::tell(std::size_t gait, double value) {
+  trials_.push_back({gait, expected_[gait], value});
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+    processes_[h].observe(points_[gait], hypotheses_[h].values[gait], std::max(value, lowest_));
+  }
   update();
 }
 
@@ -57,8 +103,11 @@ AdaptationEnding Adaptation::ending() const {
   if (trials_.empty()) {
     return AdaptationEnding::none;
   }
-  const double most = std::ranges::max_element(expected_, {}, &Estimate::mean)->mean;
-  if (best()->value >= most - (1.0 - settings_.alpha) * std::abs(most)) {
+  const std::optional<std::size_t> next = most_promising();
+  if (!next) {
+    return AdaptationEnding::all_tried;
+  }
+  if (const double most = promise(*next); best()->value >= most - (1.0 - settings_.alpha) * std::abs(most)) {
     return AdaptationEnding::good_enough;
   }
   return trials_.size() >= settings_.trials ? AdaptationEnding::trials_used_up : AdaptationEnding::none;
@@ -72,6 +121,8 @@ std::string_view text_of(AdaptationEnding ending) {
       return "good enough";
     case AdaptationEnding::trials_used_up:
       return "trials used up";
+    case AdaptationEnding::all_tried:
+      return "all gaits tried";
   }
   return "";
 }

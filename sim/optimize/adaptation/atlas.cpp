@@ -1,6 +1,8 @@
 #include "sim/optimize/adaptation/atlas.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -8,8 +10,6 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/simulation.hpp"
-#include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/experiment/gait_map.hpp"
 #include "sim/optimize/report/scores.hpp"
@@ -81,19 +81,63 @@ void require_same_values(const sim::Scenario& atlas, const sim::Scenario& scenar
   }
 }
 
-}  // namespace
+/// The values of a gait, each from 0 at the first to 1 at the last of its dimension.
+std::vector<double> shares_of(const SearchSpace& space, const Candidate& candidate) {
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < candidate.size(); ++i) {
+    const std::size_t count = space.dimensions[i].values.size();
+    shares.push_back(count > 1 ? candidate[i] / static_cast<double>(count - 1) : 0.0);
+  }
+  return shares;
+}
 
-std::vector<AdaptationCell> Atlas::cells() const {
-  const GaitMap map(experiment);
-  std::vector<AdaptationCell> cells;
-  for (const AtlasGait& gait : gaits) {
-    cells.push_back({map.point(gait.cell), -experiment.objectives.front().cost(gait.score)});
-    for (std::size_t i = 0; i < gait.candidate.size(); ++i) {
-      const std::size_t count = experiment.space.dimensions[i].values.size();
-      cells.back().point.push_back(count > 1 ? gait.candidate[i] / static_cast<double>(count - 1) : 0.0);
+/// Adds gaits, each as far from all that are there as there is (T. F. Gonzalez, "Clustering to minimize the maximum
+/// intercluster distance", Theoretical Computer Science 38, 1985).
+void add_unlike_gaits(Atlas& atlas, const GaitMap& map, const std::vector<Evaluation>& evaluations, std::size_t most) {
+  struct Tried {
+    AtlasGait gait;
+    std::vector<double> shares;
+    double distance = std::numeric_limits<double>::infinity();  ///< squared, from the nearest gait that is there
+  };
+  std::vector<Tried> all;
+  for (const Evaluation& evaluation : evaluations) {
+    if (const std::optional<std::size_t> cell = map.cell_of(evaluation.scores)) {
+      all.push_back({{*cell, evaluation.candidate, evaluation.scores.front()},
+                     shares_of(atlas.experiment.space, evaluation.candidate)});
     }
   }
-  return cells;
+  const auto shorten_distances = [&](const std::vector<double>& shares) {
+    for (Tried& tried : all) {
+      double squares = 0.0;
+      for (std::size_t i = 0; i < shares.size(); ++i) {
+        squares += (tried.shares[i] - shares[i]) * (tried.shares[i] - shares[i]);
+      }
+      tried.distance = std::min(tried.distance, squares);
+    }
+  };
+  for (const AtlasGait& gait : atlas.gaits) {
+    shorten_distances(shares_of(atlas.experiment.space, gait.candidate));
+  }
+  for (std::size_t added = 0; added < most; ++added) {
+    const auto farthest = std::ranges::max_element(all, {}, &Tried::distance);
+    if (farthest == all.end() || farthest->distance == 0.0) {
+      break;
+    }
+    atlas.gaits.push_back(farthest->gait);
+    shorten_distances(std::vector<double>(farthest->shares));
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> Atlas::points() const {
+  const GaitMap map(experiment);
+  std::vector<std::vector<double>> points;
+  for (const AtlasGait& gait : gaits) {
+    points.push_back(map.point(gait.cell));
+    std::ranges::copy(shares_of(experiment.space, gait.candidate), std::back_inserter(points.back()));
+  }
+  return points;
 }
 
 std::string Atlas::fingerprint() const {
@@ -107,7 +151,7 @@ std::string Atlas::fingerprint() const {
   return sha256_hex(text);
 }
 
-Atlas read_atlas(const std::filesystem::path& path) {
+Atlas read_atlas(const std::filesystem::path& path, std::size_t most_others) {
   std::error_code ignored;
   const std::filesystem::path file = std::filesystem::is_directory(path, ignored) ? path / "store.sqlite" : path;
   require_store_file(file);
@@ -125,55 +169,8 @@ Atlas read_atlas(const std::filesystem::path& path) {
   if (atlas.gaits.empty()) {
     refuse(file, "no gait yet");
   }
+  add_unlike_gaits(atlas, map, evaluations, most_others);
   return atlas;
-}
-
-void rate_for_length(Atlas& atlas, double seconds, const std::function<void(double share)>& progress,
-                     const std::function<bool()>& stop) {
-  Experiment& experiment = atlas.experiment;
-  if (experiment.scenario.duration_s == seconds) {
-    return;
-  }
-  if (experiment.on_robot) {
-    const std::string length = number_text(experiment.scenario.duration_s);
-    throw StoreError(experiment.path + ": found a map that a robot has filled in trials of " + length +
-                     " s, expected trials of this length (--seconds " + length + ")");
-  }
-  experiment.scenario.duration_s = seconds;
-  const Objective& objective = experiment.objectives.front();
-  constexpr std::size_t most_at_once = 64;
-  std::vector<bool> has_score(atlas.gaits.size());
-  for (std::size_t first = 0; first < atlas.gaits.size(); first += most_at_once) {
-    const std::span<AtlasGait> gaits =
-        std::span(atlas.gaits).subspan(first, std::min(most_at_once, atlas.gaits.size() - first));
-    std::vector<sim::Scenario> scenarios(gaits.size(), experiment.scenario);
-    for (std::size_t i = 0; i < gaits.size(); ++i) {
-      experiment.space.apply(gaits[i].candidate, scenarios[i]);
-    }
-    const auto after_tick = [&stop](std::size_t, const sim::Simulation&, TrialResult& result) {
-      result.given_up = stop();
-    };
-    const auto at_end = [&](std::size_t i, const sim::Simulation& simulation, TrialResult&) {
-      const sim::MeasureValues measures = simulation.measures(experiment.heading_deg);
-      gaits[i].score = objective.score(measures);
-      has_score[first + i] = objective.is_defined(measures);
-    };
-    static_cast<void>(run_scenarios(scenarios, {after_tick, at_end}));
-    if (stop()) {
-      throw SearchEnded();
-    }
-    progress(static_cast<double>(first + gaits.size()) / static_cast<double>(atlas.gaits.size()));
-  }
-  std::vector<AtlasGait> rated;
-  for (std::size_t i = 0; i < atlas.gaits.size(); ++i) {
-    if (has_score[i]) {
-      rated.push_back(atlas.gaits[i]);
-    }
-  }
-  atlas.gaits = std::move(rated);
-  if (atlas.gaits.empty()) {
-    refuse(experiment.path, "no gait with a score in " + number_text(seconds) + " s");
-  }
 }
 
 void require_same_robot(const Atlas& atlas, const sim::Scenario& scenario) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace proleg::optimize {
 namespace {
@@ -65,6 +66,15 @@ Estimate GaussianProcess::estimate(std::span<const double> point, double prior) 
   const double explained = factor_.matrixL().solve(covariances).squaredNorm();
   return {prior + covariances.dot(weights_),
           std::sqrt(std::max(0.0, kernel_.deviation * kernel_.deviation - explained))};
+}
+
+double GaussianProcess::log_likelihood() const {
+  if (points_.empty()) {
+    return 0.0;
+  }
+  const Eigen::Map<const Eigen::VectorXd> differences(differences_.data(), weights_.size());
+  return -0.5 * differences.dot(weights_) - factor_.matrixLLT().diagonal().array().log().sum() -
+         0.5 * static_cast<double>(points_.size()) * std::log(2.0 * std::numbers::pi);
 }
 
 }  // namespace proleg::optimize

@@ -27,8 +27,8 @@ struct Estimate {
 };
 
 /// Regression with a Gaussian process whose prior mean the caller knows at each point (Rasmussen and Williams,
-/// equations 2.25, 2.26 and 2.38). All points have the same number of coordinates; all numbers must be finite. Equal
-/// points are allowed, also without noise: the estimate is then their mean.
+/// equations 2.25, 2.26, 2.30 and 2.38). All points have the same number of coordinates; all numbers must be finite.
+/// Equal points are allowed, also without noise: the estimate is then their mean.
 class GaussianProcess {
  public:
   explicit GaussianProcess(const Kernel& kernel) : kernel_(kernel) {}
@@ -36,6 +36,8 @@ class GaussianProcess {
   /// prior: the mean at the point before any observation.
   void observe(std::span<const double> point, double prior, double value);
   [[nodiscard]] Estimate estimate(std::span<const double> point, double prior) const;
+  /// Natural logarithm of the probability density of the values that were observed; 0 before any observation.
+  [[nodiscard]] double log_likelihood() const;
 
  private:
   void factorise();

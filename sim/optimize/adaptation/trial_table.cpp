@@ -70,8 +70,18 @@ std::optional<NotedTrial> noted_trial(std::string_view line, std::size_t number,
 std::optional<MadeTrial> read_trial(const Atlas& atlas, const GaitMap& map, std::string_view line, std::size_t number) {
   std::optional<NotedTrial> noted =
       noted_trial(line, number, atlas.experiment.axes.size(), atlas.experiment.space.dimensions.size());
-  const auto gait = std::ranges::find_if(
-      atlas.gaits, [&](const AtlasGait& one) { return noted && map.place_text(one.cell) == noted->place; });
+  const auto is_noted = [&](const AtlasGait& gait) {
+    if (!noted || map.place_text(gait.cell) != noted->place) {
+      return false;
+    }
+    for (std::size_t d = 0; d < noted->values.size(); ++d) {
+      if (atlas.experiment.space.value(gait.candidate, d) != noted->values[d]) {
+        return false;
+      }
+    }
+    return true;
+  };
+  const auto gait = std::ranges::find_if(atlas.gaits, is_noted);
   if (gait == atlas.gaits.end()) {
     return std::nullopt;
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,22 @@ TEST(Damage, IsRefusedInOneLineThatSaysWhatIsExpected) {
   expect({"friction"}, "expected friction=PERCENT");
   expect({"jammed:J3", "torque:J3=40"}, "a second damage");
   expect({"friction=50", "friction=50"}, "a second damage");
+}
+
+TEST(UsualDamages, AreThoseThatTheRobotCanHave) {
+  Scenario scenario = intact_wave();
+  const std::vector<std::string> words = usual_damages(scenario);
+  EXPECT_EQ(words.size(), 5U * scenario.robot.joints.size() + 1U);
+  EXPECT_EQ(std::ranges::count(words, "powerless:J3"), 1);
+  EXPECT_EQ(std::ranges::count(words, "jammed:J3=-20"), 1);
+  for (const std::string& word : words) {
+    EXPECT_NO_THROW(static_cast<void>(damaged_wave({word}))) << word;
+  }
+  scenario.joint_limits[number_of_joint(scenario, "J3")] = {-(1 << 27), 1 << 30};  // from -11.25 degrees on
+  EXPECT_EQ(std::ranges::count(usual_damages(scenario), "jammed:J3=-20"), 0);
+  EXPECT_EQ(std::ranges::count(usual_damages(scenario), "jammed:J3=20"), 1);
+  scenario.robot.joints.front().name = "a=b";  // a word of a damage has one '='
+  EXPECT_EQ(usual_damages(scenario).size(), words.size() - 1U - 5U);
 }
 
 }  // namespace

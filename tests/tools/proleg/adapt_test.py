@@ -46,8 +46,10 @@ class Adapt(unittest.TestCase):
                    evaluations, *(options or ("--out", cls.atlas)))
         assert made.returncode == 0, made.stderr
 
-    def adapt(self, name, *options, scenario=SCENARIO, status=0):
-        result = run("adapt", scenario, "--atlas", self.atlas, "--out", self.folder / name, "--json", *options)
+    def adapt(self, name, *options, scenario=SCENARIO, status=0, suspects=("none",)):
+        """Without the usual suspects, whose simulation takes time, unless there are others."""
+        suspected = [word for suspect in suspects for word in ("--suspect", suspect)]
+        result = run("adapt", scenario, "--atlas", self.atlas, "--out", self.folder / name, "--json", *suspected, *options)
         self.assertEqual(result.returncode, status, result.stderr)
         return json.loads(result.stdout)
 
@@ -63,6 +65,7 @@ class Adapt(unittest.TestCase):
         result = self.adapt("intact")
         self.assertEqual(result["ended"], "good enough")
         self.assertLessEqual(len(result["trials"]), 3)
+        self.assertEqual(result["diagnosis"][0]["damage"], "none")
         first = result["trials"][0]
         self.assertAlmostEqual(first["measured"] / first["expected"], 1, delta=0.15)  # ODE, the reduced engine
 
@@ -86,6 +89,40 @@ class Adapt(unittest.TestCase):
         numbers = {n for text in group.iter("{http://www.w3.org/2000/svg}text") for n in text.text.split(",")}
         self.assertEqual(numbers, {str(i + 1) for i in range(len(result["trials"]))})
 
+    def test_a_suspicion_is_confirmed_and_shortens_the_trials(self):
+        alone = self.adapt("alone", "--damage", "powerless:J4")
+        suspects = ("powerless:J2", "powerless:J4", "jammed:J4=0", "friction=50%")
+        result = self.adapt("suspected", "--damage", "powerless:J4", suspects=("none", *suspects))
+        self.assertLess(len(result["trials"]), len(alone["trials"]))
+        self.assertGreaterEqual(result["best"], alone["best"])
+        probabilities = {its["damage"]: its["probability"] for its in result["diagnosis"]}
+        self.assertEqual(set(probabilities), {"none", "unknown", *suspects})
+        self.assertAlmostEqual(sum(probabilities.values()), 1)
+        self.assertEqual(result["diagnosis"][0], {"damage": "powerless:J4", "probability": max(probabilities.values())})
+        self.assertGreater(probabilities["powerless:J4"], 0.5)
+        self.assertEqual([its["damage"] for its in alone["diagnosis"]], ["unknown", "none"])
+
+    def test_suspected_damages_are_simulated_once_for_an_atlas(self):
+        file = self.atlas / "damage_scores.txt"
+        options = ("--seconds", 3, "--trials", 1)
+        first = self.adapt("once", *options, suspects=("none", "powerless:J5"))
+        scores = file.read_text()
+        file.write_text(scores.replace("\t", "\t0", 1))  # the same number
+        self.assertEqual(self.adapt("again", *options, suspects=("none", "powerless:J5"))["trials"], first["trials"])
+        self.assertEqual(file.read_text(), scores.replace("\t", "\t0", 1))  # read, and not made again
+        file.write_bytes(b"\xff\0# inputs:\n")
+        self.adapt("mended", *options, suspects=("friction=50%", "none", "powerless:J5", "powerless:J5"))
+        lines = file.read_text().splitlines()
+        self.assertEqual([line.split("\t")[0] for line in lines[2:]], ["friction=50%", "powerless:J5"])
+        self.assertIn(lines[3], scores)
+
+    def test_the_usual_damages_are_suspected_beside_those_that_are_named(self):
+        result = self.adapt("usual", "--seconds", 1, "--damage", "powerless:J2", suspects=("powerless:J3", "mass:Head=150%"))
+        damages = {its["damage"] for its in result["diagnosis"]}
+        self.assertEqual(len(damages), 2 + 5 * 5 + 1 + 1)
+        self.assertLessEqual({"mass:Head=150%"}, damages)
+        self.assertLessEqual({"none", "unknown", "friction=50%", "powerless:J2", "torque:J3=50%", "jammed:J1=-20"}, damages)
+
     def test_every_damage_changes_the_trials(self):
         intact = self.adapt("as_it_is", "--trials", 1)["best"]
         for damage in ("jammed:J3", "torque:J3=40", "powerless:J3", "lost:J3", "friction=50%", "mass:Head=300"):
@@ -98,8 +135,8 @@ class Adapt(unittest.TestCase):
         options = ["--damage", "jammed:J3=20", "--alpha", 1, "--length", 0.05]
         whole = self.adapt("whole", *options, "--trials", 5)
         self.adapt("parts", *options, "--trials", 2)
-        rest = run("adapt", SCENARIO, "--atlas", self.atlas, *options, "--trials", 5, "--resume", self.folder / "parts",
-                   "--json")
+        rest = run("adapt", SCENARIO, "--atlas", self.atlas, *options, "--suspect", "none", "--trials", 5, "--resume",
+                   self.folder / "parts", "--json")
         self.assertEqual(rest.returncode, 0, rest.stderr)
         rest = json.loads(rest.stdout)
         self.assertEqual(rest["resumed"], 2)
@@ -109,19 +146,19 @@ class Adapt(unittest.TestCase):
 
     def test_other_inputs_do_not_continue(self):
         self.adapt("refused", "--trials", 1, "--damage", "jammed:J2")
-        resume = ["--resume", self.folder / "refused", "--atlas", self.atlas]
+        resume = ["--resume", self.folder / "refused", "--atlas", self.atlas, "--suspect", "none"]
         for options in (["--damage", "jammed:J3"], ["--damage", "jammed:J2", "--seconds", 11],
                         ["--damage", "jammed:J2", "--friction", 0.4]):
             self.assertIn("trials.tsv:1: found trials of another atlas, scenario or program",
                           self.refused(SCENARIO, *resume, *options))
         self.assertIn("nothing to resume",
-                      self.refused(SCENARIO, "--atlas", self.atlas, "--resume", self.folder / "nowhere"))
+                      self.refused(SCENARIO, *resume[2:], "--resume", self.folder / "nowhere"))
         self.assertFalse((self.folder / "nowhere").exists())
 
     def test_control_c_keeps_what_was_learned(self):
         folder = self.folder / "interrupted"
         command = [PROGRAMS / "proleg", "adapt", SCENARIO, "--atlas", self.atlas, "--damage", "jammed:J3", "--seconds",
-                   "30", "--alpha", "1"]
+                   "30", "--alpha", "1", "--suspect", "none"]
         program = subprocess.Popen([*command, "--trials", "1000", "--out", folder], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         self.assertTrue(program.stdout.readline().startswith("trial 1 "))
@@ -141,6 +178,8 @@ class Adapt(unittest.TestCase):
         out = ["--out", self.folder / "none"]
         atlas = ["--atlas", self.atlas]
         self.assertIn("--damage: found", self.refused(SCENARIO, *atlas, *out, "--damage", "jammed:J9"))
+        self.assertIn("--suspect: found", self.refused(SCENARIO, *atlas, *out, "--suspect", "jammed:J9"))
+        self.assertIn("--suspect: found", self.refused(SCENARIO, *atlas, *out, "--suspect", "none", "--suspect", "lost"))
         self.assertIn("--trials", self.refused(SCENARIO, *atlas, *out, "--trials", 0))
         self.assertIn("--alpha", self.refused(SCENARIO, *atlas, *out, "--alpha", "nan"))
         self.assertIn("--seconds", self.refused(SCENARIO, *atlas, *out, "--seconds", 0))

@@ -125,7 +125,7 @@ class RobotTrials(unittest.TestCase):
 
     def adapting(self, out, bus, *options, trials=2):
         return ["adapt", self.scenario, "--atlas", self.atlas, "--out", self.folder / out, "--bus", bus, "--seconds", 2,
-                "--trials", trials, "--alpha", 1, "--length", 0.05, *options]
+                "--trials", trials, "--alpha", 1, "--length", 0.05, "--suspect", "none", *options]
 
     def made(self, out):
         """The trials that were kept."""
@@ -153,7 +153,8 @@ class RobotTrials(unittest.TestCase):
                 self.assertEqual(sum(f"{joint} has power" in line for line in bus.messages), 3, bus.messages)
         robot = json.loads(made.stdout)
         simulated = json.loads(self.proleg("adapt", self.scenario, "--atlas", self.atlas, "--out", self.folder / "simulated",
-                                           "--seconds", 2, "--trials", 3, "--alpha", 1, "--length", 0.05, "--json").stdout)
+                                           "--seconds", 2, "--trials", 3, "--alpha", 1, "--length", 0.05, "--suspect", "none",
+                                           "--json").stdout)
         self.assertEqual(len(robot["trials"]), 3)
         self.assertEqual(robot["trials"], simulated["trials"])
         self.assertEqual((robot["engine"], robot["bus"]), ("robot", bus.address))

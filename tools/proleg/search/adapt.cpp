@@ -20,6 +20,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/adaptation/atlas.hpp"
+#include "sim/optimize/adaptation/gait_rating.hpp"
 #include "sim/optimize/adaptation/simulated_robot.hpp"
 #include "sim/optimize/adaptation/trial_table.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
@@ -37,6 +38,7 @@
 #include "tools/proleg/search/made_trials.hpp"
 #include "tools/proleg/search/optimise.hpp"
 #include "tools/proleg/search/robot_trials.hpp"
+#include "tools/proleg/search/suspects.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -48,10 +50,11 @@ struct AdaptOptions {
   ScenarioOptions scenario;
   std::string atlas;
   std::vector<std::string> damages;
+  std::vector<std::string> suspects;
   TrialOptions robot;
   std::string trials = "12";
   std::string alpha = "0.9";
-  std::string kappa = "0.05";
+  std::string kappa = "1";
   std::string length = "0.3";
   std::string noise = "0.03";
   std::optional<std::string> out;
@@ -108,6 +111,10 @@ void rate_for_trials(Atlas& atlas, double seconds) {
   }
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& atlas) {
+  return std::filesystem::is_regular_file(atlas) ? std::filesystem::absolute(atlas).parent_path() : atlas;
+}
+
 /// What decides the outcome of a trial. What a robot has measured holds for every build of this program.
 std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options) {
   optimize::Experiment reality = atlas.experiment;
@@ -127,10 +134,7 @@ std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const A
 
 optimize::TrialOrigin origin_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options,
                                 const std::filesystem::path& folder) {
-  std::filesystem::path place = options.atlas;
-  if (std::filesystem::is_regular_file(place)) {
-    place = std::filesystem::absolute(place).parent_path();
-  }
+  const std::filesystem::path place = folder_of(options.atlas);
   std::string robot = std::filesystem::path(options.scenario.file).filename().string();
   if (options.robot.bus) {
     robot += " on " + *options.robot.bus;
@@ -170,30 +174,31 @@ int end_before_trials(const AdaptOptions& options, const sim::Scenario& scenario
   return exit_failed;
 }
 
+/// The trials that an earlier run has made.
+std::vector<MadeTrial> earlier_trials(const Atlas& atlas, const std::string& inputs,
+                                      const std::filesystem::path& folder) {
+  const std::filesystem::path table = folder / result_files[0];
+  if (const auto found = found_instead_of_file(table)) {
+    throw InputError(table.string(), 0, *found, "the trials of an earlier run; there is nothing to resume");
+  }
+  std::ifstream stream(table, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  return optimize::read_trial_table(atlas, inputs, table.string(), text);
+}
+
 /// The trials of a robot, with their files.
 class Run {
  public:
-  Run(const AdaptOptions& options, const Atlas& atlas, const sim::Scenario& intact, std::filesystem::path folder)
+  /// made: knows the trials of an earlier run.
+  Run(const AdaptOptions& options, const Atlas& atlas, const sim::Scenario& intact, std::filesystem::path folder,
+      MadeTrials made)
       : options_(options),
         atlas_(atlas),
         intact_(intact),
         folder_(std::move(folder)),
         origin_(origin_of(atlas, intact, options, folder_)),
-        made_(atlas, settings_of(options)) {}
-
-  /// Reads the trials that were made before. Returns their number.
-  std::size_t resume() {
-    const std::filesystem::path table = folder_ / result_files[0];
-    if (const auto found = found_instead_of_file(table)) {
-      throw InputError(table.string(), 0, *found, "the trials of an earlier run; there is nothing to resume");
-    }
-    std::ifstream stream(table, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    for (const MadeTrial& trial : optimize::read_trial_table(atlas_, origin_.inputs, table.string(), text)) {
-      made_.add(trial);
-    }
-    return resumed_ = made_.all().size();
-  }
+        made_(std::move(made)),
+        resumed_(made_.all().size()) {}
 
   /// Makes trials until they end, the user stops them, or one fails. An error before the first one has the usual way.
   void make_trials(optimize::TrialRobot& robot) {
@@ -274,6 +279,9 @@ class Run {
     if (made_.best() != nullptr) {
       std::printf("%-10s %s\n", "best", made_.text_of_best().c_str());
     }
+    if (const std::string diagnosis = made_.text_of_diagnosis(); !diagnosis.empty()) {
+      std::printf("%-10s %s\n", "damage", diagnosis.c_str());
+    }
     std::printf("%-10s %s after %zu trials of %s s, engine %s\n", "ended", ending().c_str(), made_.all().size(),
                 number_text(intact_.duration_s).c_str(), trial_maker(options_, intact_).c_str());
     for (const std::string_view file : result_files) {
@@ -301,7 +309,7 @@ class Run {
   std::filesystem::path folder_;
   optimize::TrialOrigin origin_;
   MadeTrials made_;
-  std::size_t resumed_ = 0;
+  std::size_t resumed_;
   bool is_stopped_ = false;
   std::optional<std::string> failure_;  ///< why no further trial could be made
 };
@@ -318,6 +326,7 @@ int adapt(AdaptOptions& options) {
   check_result_folder(folder, new_files);
   Atlas atlas = atlas_of(options);
   optimize::require_same_robot(atlas, setup.scenario);
+  const std::vector<std::string> suspects = suspected_damages(options.suspects, atlas);
   sim::Scenario damaged = setup.scenario;
   std::optional<RobotTrials> robot_trials;
   if (options.robot.bus) {
@@ -330,16 +339,27 @@ int adapt(AdaptOptions& options) {
   }
   print_warnings("proleg adapt", setup.scenario);
   catch_interrupts();
+  std::vector<optimize::Hypothesis> hypotheses;
   try {
     rate_for_trials(atlas, setup.scenario.duration_s);
+    if (options.resume) {  // a wrong folder is refused before what takes a minute
+      static_cast<void>(earlier_trials(atlas, inputs_of(atlas, setup.scenario, options), folder));
+    }
+    hypotheses = optimize::hypotheses_of(atlas, suspects, scores_with(atlas, folder_of(options.atlas), suspects));
   } catch (const optimize::SearchEnded&) {
     return end_before_trials(options, setup.scenario);
   }
   const ResultFolder claim(folder, new_files);
-  Run run(options, atlas, setup.scenario, folder);
-  const std::size_t made = options.resume ? run.resume() : 0;
+  MadeTrials made(atlas, std::move(hypotheses), suspects, settings_of(options));
+  if (options.resume) {
+    for (const MadeTrial& trial : earlier_trials(atlas, inputs_of(atlas, setup.scenario, options), folder)) {
+      made.add(trial);
+    }
+  }
+  const std::size_t made_before = made.all().size();
+  Run run(options, atlas, setup.scenario, folder, std::move(made));
   if (robot_trials) {
-    RobotOnBus robot(atlas.experiment, setup.scenario, *robot_trials, made);
+    RobotOnBus robot(atlas.experiment, setup.scenario, *robot_trials, made_before);
     run.make_trials(robot);
   } else {
     optimize::SimulatedRobot robot(atlas.experiment, damaged, sim::losses_of_damage(damaged, options.damages),
@@ -367,14 +387,26 @@ int adapt_command(int argc, char** argv) {
       .add_option("--damage", options.damages,
                   "what is wrong with the robot beside what FILE says: " + sim::damage_forms() + ". May be repeated.")
       .value_name("DAMAGE");
+  command_line
+      .add_option(
+          "--suspect", options.suspects,
+          "what may be wrong with the robot, in the forms of --damage, beside the usual: the gaits are simulated "
+          "with it before the trials, which tell whether it is true. Usual are each joint without power, with half "
+          "its torque, or jammed at -20, 0 or 20 degrees, and half the friction. May be repeated; \"none\": the "
+          "usual is not suspected")
+      .value_name("DAMAGE");
   add_trial_options(command_line, options.robot);
   command_line.add_option("--seconds", options.scenario.seconds, "time of a trial; default: 10");
   command_line.add_option("--trials", options.trials, "largest number of trials").shows_default();
   command_line
       .add_option("--alpha", options.alpha,
-                  "the trials end when the best has this share of the best score that is expected of any cell")
+                  "the trials end when the best has this share of the most that any gait promises")
       .shows_default();
-  command_line.add_option("--kappa", options.kappa, "weight of the uncertainty in the choice of the next cell")
+  command_line
+      .add_option(
+          "--kappa", options.kappa,
+          "weight of the standard deviation in what a gait promises: what is expected of it, and this times the "
+          "deviation. The next trial is the gait that promises most")
       .shows_default();
   command_line
       .add_option("--length", options.length,

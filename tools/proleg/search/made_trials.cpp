@@ -1,6 +1,11 @@
 #include "tools/proleg/search/made_trials.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/report.hpp"
@@ -13,11 +18,15 @@ namespace proleg::tools {
 using optimize::MadeTrial;
 using optimize::rounded_text;
 
-MadeTrials::MadeTrials(const optimize::Atlas& atlas, const optimize::AdaptationSettings& settings)
+MadeTrials::MadeTrials(const optimize::Atlas& atlas, std::vector<optimize::Hypothesis> hypotheses,
+                       const std::vector<std::string>& damages, const optimize::AdaptationSettings& settings)
     : atlas_(atlas),
       map_(atlas.experiment),
       objective_(atlas.experiment.objectives.front()),
-      adaptation_(atlas.cells(), settings) {}
+      names_{"none", "unknown"},
+      adaptation_(atlas.points(), std::move(hypotheses), settings) {
+  names_.insert(names_.end(), damages.begin(), damages.end());
+}
 
 void MadeTrials::add(const MadeTrial& trial) {
   adaptation_.tell(trial.gait, value_of(trial.measured));
@@ -70,7 +79,30 @@ std::string MadeTrials::text_of_best() const {
   const MadeTrial& trial = *best();
   return "trial " + std::to_string(number_of(trial)) + ", " + rounded_text(trial.measured, objective_.unit()) + " (" +
          objective_.name +
-         "); the best that is expected of any cell: " + rounded_text(best_expected(), objective_.unit());
+         "); the best that is expected of any gait: " + rounded_text(best_expected(), objective_.unit());
+}
+
+std::vector<std::size_t> MadeTrials::likely_hypotheses() const {
+  std::vector<std::size_t> order(names_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](std::size_t h) { return adaptation_.probabilities()[h]; });
+  return order;
+}
+
+std::string MadeTrials::text_of_diagnosis() const {
+  constexpr std::size_t most = 3;
+  constexpr long least_percent = 5;
+  std::string text;
+  std::vector<std::size_t> order = likely_hypotheses();
+  order.resize(names_.size() > 2 ? std::min(most, order.size()) : 0);
+  for (const std::size_t h : order) {
+    const long percent = std::lround(100.0 * adaptation_.probabilities()[h]);
+    if (percent >= least_percent) {
+      text += (text.empty() ? "" : ", ") + names_[h] + ' ' + std::to_string(percent) + " %";
+    }
+  }
+  return text;
 }
 
 Json MadeTrials::object_of(const MadeTrial& trial) const {
@@ -102,12 +134,26 @@ void MadeTrials::add_to(Json& object) const {
   object.add("best_trial", its_best == nullptr ? Json() : Json(number_of(*its_best)));
   object.add("best", its_best == nullptr ? Json() : Json(its_best->measured));
   object.add("best_expected", best_expected());
+  Json diagnosis = Json::empty_array();
+  for (const std::size_t h : likely_hypotheses()) {
+    diagnosis.append({{"damage", names_[h]}, {"probability", adaptation_.probabilities()[h]}});
+  }
+  object.add("diagnosis", diagnosis);
 }
 
 std::string MadeTrials::picture() const {
-  std::vector<optimize::GaitMap::Elite> cells;
+  std::map<std::size_t, optimize::GaitMap::Elite> best_of_cells;
   for (std::size_t i = 0; i < atlas_.gaits.size(); ++i) {
-    cells.push_back({atlas_.gaits[i].cell, i, score_of(adaptation_.expected()[i].mean)});
+    const optimize::GaitMap::Elite gait{atlas_.gaits[i].cell, i, score_of(adaptation_.expected()[i].mean)};
+    const auto [place, is_new] = best_of_cells.try_emplace(gait.cell, gait);
+    if (!is_new && objective_.better(gait.score, place->second.score)) {
+      place->second = gait;
+    }
+  }
+  std::vector<optimize::GaitMap::Elite> cells;
+  cells.reserve(best_of_cells.size());
+  for (const auto& [cell, gait] : best_of_cells) {
+    cells.push_back(gait);
   }
   std::vector<std::size_t> tried;
   for (const MadeTrial& trial : trials_) {

@@ -17,8 +17,9 @@ namespace proleg::tools {
 
 class MadeTrials {
  public:
-  /// atlas: must outlive this.
-  MadeTrials(const optimize::Atlas& atlas, const optimize::AdaptationSettings& settings);
+  /// atlas: must outlive this. hypotheses: of optimize::hypotheses_of(); damages: those that it was given.
+  MadeTrials(const optimize::Atlas& atlas, std::vector<optimize::Hypothesis> hypotheses,
+             const std::vector<std::string>& damages, const optimize::AdaptationSettings& settings);
 
   /// Learns from a trial.
   void add(const optimize::MadeTrial& trial);
@@ -38,6 +39,9 @@ class MadeTrials {
   [[nodiscard]] std::string line_of_last() const;
   /// "trial 3, 1.9 m (distance); the best that is expected of any cell: 2 m"
   [[nodiscard]] std::string text_of_best() const;
+  /// What is likely wrong with the robot after the trials, the most likely first: "powerless:J4 92 %, none 6 %". Empty
+  /// if no damage was suspected.
+  [[nodiscard]] std::string text_of_diagnosis() const;
   /// Adds the trials and the best of them to the result of a run.
   void add_to(Json& object) const;
   /// The map with what is expected of each cell now, as SVG.
@@ -49,10 +53,13 @@ class MadeTrials {
   [[nodiscard]] std::size_t number_of(const optimize::MadeTrial& trial) const;
   [[nodiscard]] double best_expected() const;
   [[nodiscard]] Json object_of(const optimize::MadeTrial& trial) const;
+  /// The numbers of the hypotheses, the most likely first.
+  [[nodiscard]] std::vector<std::size_t> likely_hypotheses() const;
 
   const optimize::Atlas& atlas_;
   const optimize::GaitMap map_;  ///< for the places of its cells
   const optimize::Objective& objective_;
+  std::vector<std::string> names_;  ///< of the hypotheses
   optimize::Adaptation adaptation_;
   std::vector<optimize::MadeTrial> trials_;
 };

@@ -45,18 +45,45 @@ TEST(Atlas, HasTheBestGaitOfEachFilledCell) {
               made_up_evaluation(experiment, 1, 10, 0.5, 0.001, 0.201),
               made_up_evaluation(experiment, 2, 20, 0.6, 0.001, 0.201)});
   for (const std::filesystem::path& path : {folder.path(), folder.path() / "store.sqlite"}) {
-    const Atlas atlas = read_atlas(path);
+    const Atlas atlas = read_atlas(path, 0);
     ASSERT_EQ(atlas.gaits.size(), 2U);
     EXPECT_EQ(atlas.gaits[0].cell, 0U);
     EXPECT_EQ(atlas.gaits[0].candidate, Candidate(5, 20));
     EXPECT_EQ(atlas.gaits[1].cell, 499U);
-    EXPECT_EQ(atlas.cells()[1].prior, 0.8);
-    EXPECT_EQ(atlas.cells()[0].point, (std::vector<double>{0.02, 0.025, 0.125, 0.125, 0.125, 0.125, 0.125}))
+    EXPECT_EQ(atlas.gaits[1].score, 0.8);
+    EXPECT_EQ(atlas.points()[0], (std::vector<double>{0.02, 0.025, 0.125, 0.125, 0.125, 0.125, 0.125}))
         << "the middle of the cell, and 5 of 40 degrees for each joint";
     const std::vector<double> middle = GaitMap(atlas.experiment).middle(atlas.gaits[1].cell);
     EXPECT_NEAR(middle[0], 0.049, 1e-12) << "the middle of the cell, in m";
     EXPECT_NEAR(middle[1], 0.395, 1e-12);
   }
+}
+
+TEST(Atlas, HasBesideTheseWhatTheSearchHasTriedThatIsUnlikeAllBefore) {
+  const TemporaryFolder folder;
+  const Experiment experiment = shipped_map();
+  const auto tried = [&](std::uint64_t number, std::uint32_t amplitude, double distance) {
+    return made_up_evaluation(experiment, number, amplitude, distance, 0.001, 0.201);  // all in one cell
+  };
+  std::vector<Evaluation> evaluations{tried(0, 80, 0.9), tried(1, 10, 0.1), tried(2, 160, 0.2), tried(3, 84, 0.3),
+                                      tried(4, 150, 0.4)};
+  evaluations.push_back(tried(5, 0, 0.0));
+  evaluations.back().scores = {experiment.objectives.front().failed, 0.001, 0.201};
+  fill_store(folder.path() / "store.sqlite", experiment, evaluations);
+  const auto amplitudes = [&](std::size_t most_others) {
+    std::vector<std::uint32_t> found;
+    for (const AtlasGait& gait : read_atlas(folder.path(), most_others).gaits) {
+      found.push_back(gait.candidate.front());
+    }
+    return found;
+  };
+  EXPECT_EQ(amplitudes(0), (std::vector<std::uint32_t>{80}));
+  EXPECT_EQ(amplitudes(1), (std::vector<std::uint32_t>{80, 160})) << "80 away; 10 is only 70 away";
+  EXPECT_EQ(amplitudes(3), (std::vector<std::uint32_t>{80, 160, 10, 150}));
+  EXPECT_EQ(amplitudes(100), (std::vector<std::uint32_t>{80, 160, 10, 150, 84})) << "no run that failed";
+  const Atlas atlas = read_atlas(folder.path());
+  EXPECT_EQ(atlas.gaits[1].score, 0.2);
+  EXPECT_EQ(atlas.gaits[1].cell, atlas.gaits[0].cell);
 }
 
 TEST(Atlas, HasAnotherFingerprintWithAnotherGait) {
@@ -85,35 +112,6 @@ TEST(Atlas, IsRefusedWithoutAMapOrAGait) {
   fill_store(folder.path() / "store.sqlite",
              read_experiment(source_path("/sim/scenarios/travelling_wave/great_deluge.optimise.xml"), files), {});
   EXPECT_NE(message().find("found a search without a map"), std::string::npos);
-}
-
-TEST(Atlas, RatesItsGaitsForTheLengthOfATrialInItsOwnEngine) {
-  Atlas atlas = small_atlas();
-  atlas.experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
-  rate_for_length(
-      atlas, 30.0, [](double) { FAIL() << "the atlas has this length"; }, [] { return false; });
-  EXPECT_EQ(atlas.gaits[0].score, 1.25);
-  double done = 0.0;
-  rate_for_length(
-      atlas, 1.0, [&](double share) { done = share; }, [] { return false; });
-  EXPECT_EQ(done, 1.0);
-  ASSERT_EQ(atlas.gaits.size(), 2U);
-  sim::Scenario scenario = shipped_map().scenario;
-  scenario.environment.engine = sim::PhysicsEngine::reduced;
-  scenario.duration_s = 1.0;
-  SimulatedRobot robot(atlas.experiment, scenario, {}, [] { return false; });
-  for (const AtlasGait& gait : atlas.gaits) {
-    EXPECT_EQ(gait.score, robot.try_gait(gait.candidate).score);
-  }
-}
-
-TEST(Atlas, EndsItsRatingInTheTickInWhichItIsStopped) {
-  Atlas atlas = small_atlas();
-  atlas.experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
-  int asked = 0;
-  EXPECT_THROW(rate_for_length(
-                   atlas, 1e6, [](double) { FAIL() << "nothing is done"; }, [&] { return ++asked > 100; }),
-               SearchEnded);
 }
 
 TEST(Atlas, OfFilesThatSomebodyHasChangedIsRefused) {

@@ -82,6 +82,22 @@ TEST(GaussianProcess, AgreesWithAnIndependentComputation) {
   }
 }
 
+TEST(GaussianProcess, HasTheLogarithmOfTheDensityOfItsObservations) {
+  const Kernel kernel{0.7, 1.5, 0.2};
+  GaussianProcess process(kernel);
+  EXPECT_EQ(process.log_likelihood(), 0.0);
+  process.observe(Point{0.0}, 0.5, 2.0);
+  const double variance = 1.5 * 1.5 + 0.2 * 0.2;
+  const double two_pi = 2.0 * std::acos(-1.0);
+  EXPECT_NEAR(process.log_likelihood(), -0.5 * 1.5 * 1.5 / variance - 0.5 * std::log(two_pi * variance), 1e-12);
+  process.observe(Point{1.0}, 0.25, -1.0);
+  const double covariant = covariance(kernel, 1.0);
+  const double determinant = variance * variance - covariant * covariant;
+  const double square = (variance * 1.5 * 1.5 - 2.0 * covariant * 1.5 * -1.25 + variance * 1.25 * 1.25) / determinant;
+  EXPECT_NEAR(process.log_likelihood(), -0.5 * square - std::log(two_pi) - 0.5 * std::log(determinant), 1e-12)
+      << "the density of two normal values that are correlated";
+}
+
 TEST(GaussianProcess, WithoutNoiseGoesThroughItsObservations) {
   GaussianProcess process({0.3, 1.0, 0.0});
   const std::vector<double> places{0.0, 0.2, 0.5, 0.9};

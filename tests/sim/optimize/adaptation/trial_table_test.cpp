@@ -51,6 +51,17 @@ TEST(TrialTable, IsReadBack) {
   EXPECT_EQ(read[1].failure, "the robot fell");
 }
 
+TEST(TrialTable, TellsGaitsOfOneCellApartByTheirValues) {
+  Atlas atlas = small_atlas();
+  atlas.gaits.push_back({atlas.gaits[0].cell, atlas.gaits[0].candidate, 0.5});
+  atlas.gaits.back().candidate[3] += 1;
+  const std::vector<MadeTrial> made{{2, 0.5, 0.1, 0.4, ""}, {0, 1.2, 0.1, 1.1, ""}};
+  const std::vector<MadeTrial> read = read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, origin, made));
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].gait, 2U);
+  EXPECT_EQ(read[1].gait, 0U);
+}
+
 TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
   const std::string table = trial_table(small_atlas(), origin, two_trials);
   EXPECT_NE(message_of("abd", table).find("trials.tsv:1: found trials of another atlas"), std::string::npos);

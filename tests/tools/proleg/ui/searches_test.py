@@ -270,9 +270,9 @@ def adaptations_are_found_with_their_map(program):
         ("height", "m", 0, 0.05, 25), ("duty_factor", "", 0.2, 0.4, 20)], opened["axes"]
     assert opened["centroids"] is None
     assert program.must("search.adaptations", name="atlas") == {"adaptations": []}
-    run("adapt", scenario, "--atlas", atlas, "--seconds", "1", "--trials", "3", "--alpha", "1", "--damage", "jammed:J3=20",
+    run("adapt", scenario, "--atlas", atlas, "--seconds", "1", "--trials", "3", "--alpha", "1", "--suspect", "none", "--damage", "jammed:J3=20",
         "--out", program.folder / "deep/jammed")
-    run("adapt", scenario, "--atlas", atlas / "store.sqlite", "--seconds", "1", "--trials", "1", "--out", program.folder / "intact")
+    run("adapt", scenario, "--atlas", atlas / "store.sqlite", "--seconds", "1", "--trials", "1", "--suspect", "none", "--out", program.folder / "intact")
     shutil.copytree(program.folder / "intact", program.folder / "elsewhere/intact")  # its path leads to no atlas
     found = program.must("search.adaptations", name="atlas")["adaptations"]
     assert [(its["name"], its["robot"]) for its in found] == [

@@ -24,7 +24,7 @@ constexpr std::size_t most_at_once = 64;
 
 // How far the robot is from what a hypothesis expects, as shares of the best score. A simulation of the right damage
 // errs by the difference of two engines and by details of the damage; one of the intact robot by what the damage does.
-// Chosen on simulated robots with damages (docs/adaptation.md): half or twice these values change little.
+// Chosen on simulated robots with damages; docs/adaptation.md has what they reach on robots that were not among these.
 constexpr double deviation_of_simulation = 0.1;
 constexpr double deviation_of_unknown = 0.3;
 constexpr double probability_of_unknown = 0.1;

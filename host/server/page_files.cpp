@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 
 namespace proleg::host {
 namespace {
@@ -47,15 +46,6 @@ std::string_view content_type_of(const fs::path& path) {
   return *type;
 }
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) {
-    throw FileError(path, "cannot be read");
-  }
-  return bytes;
-}
-
 }  // namespace
 
 PageFiles::PageFiles(const fs::path& folder) {
@@ -78,7 +68,7 @@ PageFiles::PageFiles(const fs::path& folder) {
         throw InputError(folder.string(), 0, "more than 64 MiB", "the folder of the page");
       }
       files_.emplace("/" + entry.path().lexically_relative(folder).generic_string(),
-                     PageFile{content_type_of(entry.path()), bytes_of(entry.path())});
+                     PageFile{content_type_of(entry.path()), read_whole_file(entry.path())});
     }
   } catch (const fs::filesystem_error& error) {
     throw FileError(error.path1(), error.code().message());
@@ -106,7 +96,8 @@ std::optional<PageFile> DocumentFiles::read(std::string_view path) const {
     return std::nullopt;
   }
   try {
-    return PageFile{known_content_type(found->second).value_or("application/octet-stream"), bytes_of(found->second)};
+    return PageFile{known_content_type(found->second).value_or("application/octet-stream"),
+                    read_whole_file(found->second)};
   } catch (const FileError&) {
     return std::nullopt;
   }

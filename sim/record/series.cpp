@@ -16,18 +16,6 @@ namespace {
 constexpr std::size_t max_points = 1U << 16U;  // of a series; a multiple of four
 constexpr std::string_view series_option = "--series";
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t tab = line.find('\t');
-    cells.push_back(line.substr(0, tab));
-    if (tab == std::string_view::npos) {
-      return cells;
-    }
-    line.remove_prefix(tab + 1);
-  }
-}
-
 /// The lowest and the highest of each four neighbours.
 void keep_extremes(Polyline& points) {
   const auto lower = [](const Point& a, const Point& b) { return a.y < b.y; };

@@ -25,6 +25,10 @@ constexpr double jam_strength = 10.0;
 /// Of the servo's own torque, which must be above 0.
 constexpr double no_power = 1e-6;
 
+/// Of the damages that a robot may have.
+constexpr std::array<int, 3> usual_jams{-20, 0, 20};  // degrees
+constexpr const char* usual_percent = "50%";
+
 struct DamageKind {
   std::string_view kind;
   std::string_view place;  ///< "JOINT", "LINK"; empty: none
@@ -179,15 +183,27 @@ std::vector<std::string> usual_damages(const Scenario& scenario) {
       continue;  // no word can name it
     }
     words.push_back("powerless:" + name);
-    words.push_back("torque:" + name + "=50%");
-    for (const int degrees : {-20, 0, 20}) {
+    words.push_back("torque:" + name + "=" + usual_percent);
+    for (const int degrees : usual_jams) {
       if (can_have(scenario.joint_limits[joint], degrees)) {
         words.push_back("jammed:" + name + "=" + std::to_string(degrees));
       }
     }
   }
-  words.emplace_back("friction=50%");
+  words.push_back(std::string("friction=") + usual_percent);
   return words;
+}
+
+std::string usual_damages_text() {
+  std::string angles;
+  for (const int degrees : usual_jams) {
+    angles += (degrees == usual_jams.front()  ? ""
+               : degrees == usual_jams.back() ? " or "
+                                              : ", ") +
+              std::to_string(degrees);
+  }
+  return std::string("each joint without power, with ") + usual_percent + " of its torque, or jammed at " + angles +
+         " degrees, and " + usual_percent + " of all friction";
 }
 
 Losses losses_of_damage(const Scenario& scenario, const std::vector<std::string>& words) {

@@ -21,9 +21,12 @@ namespace proleg::sim {
 /// overcomes, with the limits of its set-points at one angle.
 void apply_damage(Scenario& scenario, const std::vector<std::string>& words);
 
-/// Words of damages that a robot may have, for programs that find out which one it has: for each joint no power, half
-/// of its torque, and a jam at -20, 0 and 20 degrees, of those angles that it can have; half of all friction.
+/// Words of damages that a robot may have, for programs that find out which one it has: each joint without
+/// power, with a weak servo, and jammed at those of some angles that it can have; less friction everywhere.
 [[nodiscard]] std::vector<std::string> usual_damages(const Scenario& scenario);
+
+/// What usual_damages() has, in words for help texts.
+[[nodiscard]] std::string usual_damages_text();
 
 /// The state frames that are lost with the modules, in a run of the scenario's length.
 [[nodiscard]] Losses losses_of_damage(const Scenario& scenario, const std::vector<std::string>& words);

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -216,6 +217,25 @@ void check_outputs(std::span<const PlannedOutput> outputs) {
       require_different(outputs[other], outputs[i]);
     }
   }
+}
+
+std::string read_whole_file(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  std::string text;
+  std::array<char, 1U << 16U> part{};
+  ssize_t count = file < 0 ? -1 : 1;
+  while (count > 0 || (count < 0 && file >= 0 && errno == EINTR)) {
+    count = read(file, part.data(), part.size());
+    text.append(part.data(), count > 0 ? static_cast<std::size_t>(count) : 0U);
+  }
+  const int reason = errno;
+  if (file >= 0) {
+    close(file);
+  }
+  if (count < 0) {
+    throw FileError(path, std::string("cannot be read: ") + std::strerror(reason));
+  }
+  return text;
 }
 
 std::string first_bytes(const fs::path& path, std::size_t size) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// The files into which programs write their results: how they are written, and which existing files they may replace.
+// The files into which programs write their results: how they are written, which existing files they may replace, and
+// how they are read back.
 
 #include <filesystem>
 #include <functional>
@@ -74,6 +75,9 @@ struct PlannedOutput {
 /// another kind, for a folder, for a file that cannot be created or written, and for two outputs that are one file,
 /// whatever their names are.
 void check_outputs(std::span<const PlannedOutput> outputs);
+
+/// The bytes of a whole file. Throws FileError if the system refuses, also in the middle of the file.
+[[nodiscard]] std::string read_whole_file(const std::filesystem::path& path);
 
 /// The first bytes of a file, at most `size`.
 [[nodiscard]] std::string first_bytes(const std::filesystem::path& path, std::size_t size);

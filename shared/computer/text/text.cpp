@@ -300,4 +300,16 @@ std::string hexadecimal(std::uint32_t value, unsigned min_digits) {
   return "0x" + text;
 }
 
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const std::size_t tab = line.find('\t');
+    cells.push_back(line.substr(0, tab));
+    if (tab == std::string_view::npos) {
+      return cells;
+    }
+    line.remove_prefix(tab + 1);
+  }
+}
+
 }  // namespace proleg

@@ -98,6 +98,9 @@ template <typename Integer>
 /// A hexadecimal number such as "0x1F", with at least `min_digits` digits.
 [[nodiscard]] std::string hexadecimal(std::uint32_t value, unsigned min_digits = 1);
 
+/// The cells of a line of a tab-separated table; one for an empty line.
+[[nodiscard]] std::vector<std::string_view> cells_of(std::string_view line);
+
 /// A line of a tab-separated table. Its first cell is not empty.
 class TableLine {
  public:

@@ -17,6 +17,7 @@ namespace {
 constexpr std::string_view inputs_comment = "# inputs: ";
 constexpr std::string_view atlas_comment = "# atlas: ";
 constexpr std::string_view robot_comment = "# robot: ";
+constexpr std::string_view diagnosis_comment = "# damage: ";
 constexpr std::size_t columns_of_scores = 4;  // expected, deviation, measured, failure
 
 std::string head_of(const Atlas& atlas) {
@@ -36,19 +37,9 @@ std::string head_of(const Atlas& atlas) {
   return head + "\tfailure";
 }
 
-std::vector<std::string_view> columns_of(std::string_view line) {
-  std::vector<std::string_view> columns;
-  for (std::size_t tab = line.find('\t'); tab != std::string_view::npos; tab = line.find('\t')) {
-    columns.push_back(line.substr(0, tab));
-    line.remove_prefix(tab + 1);
-  }
-  columns.push_back(line);
-  return columns;
-}
-
 /// A trial of a line; nothing if it is damaged. number: that it has to have. values: number of a gait's values.
 std::optional<NotedTrial> noted_trial(std::string_view line, std::size_t number, std::size_t axes, std::size_t values) {
-  const std::vector<std::string_view> columns = columns_of(line);
+  const std::vector<std::string_view> columns = cells_of(line);
   const std::size_t first_value = 2 + axes;
   const std::size_t scores = first_value + values;
   if (columns.size() != scores + columns_of_scores || parse_whole<std::size_t>(columns[0]) != number) {
@@ -101,13 +92,15 @@ std::optional<std::string_view> line_behind_comments(TextLines& lines, const Tak
 
 }  // namespace
 
-std::string trial_table(const Atlas& atlas, const TrialOrigin& origin, const std::vector<MadeTrial>& trials) {
+std::string trial_table(const Atlas& atlas, const TrialComments& comments, const std::vector<MadeTrial>& trials) {
   const GaitMap map(atlas.experiment);
   std::string text;
   for (const auto& [comment, said] :
-       {std::pair{inputs_comment, &origin.inputs}, std::pair{atlas_comment, &origin.atlas},
-        std::pair{robot_comment, &origin.robot}}) {
-    text.append(comment).append(one_line(*said)) += '\n';
+       {std::pair{inputs_comment, &comments.inputs}, std::pair{atlas_comment, &comments.atlas},
+        std::pair{robot_comment, &comments.robot}, std::pair{diagnosis_comment, &comments.diagnosis}}) {
+    if (!said->empty()) {
+      text.append(comment).append(one_line(*said)) += '\n';
+    }
   }
   text += head_of(atlas) + '\n';
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -164,16 +157,16 @@ std::optional<TrialNotes> look_at_trials(std::string_view text, std::size_t axes
   TrialNotes notes;
   const std::optional<std::string_view> head = line_behind_comments(lines, [&](std::string_view comment) {
     for (const auto& [begin, said] :
-         {std::pair{inputs_comment, &notes.origin.inputs}, std::pair{atlas_comment, &notes.origin.atlas},
-          std::pair{robot_comment, &notes.origin.robot}}) {
+         {std::pair{inputs_comment, &notes.comments.inputs}, std::pair{atlas_comment, &notes.comments.atlas},
+          std::pair{robot_comment, &notes.comments.robot}, std::pair{diagnosis_comment, &notes.comments.diagnosis}}) {
       if (comment.starts_with(begin)) {
         *said = comment.substr(begin.size());
       }
     }
   });
-  const std::size_t columns = head ? columns_of(*head).size() : 0;
+  const std::size_t columns = head ? cells_of(*head).size() : 0;
   const std::size_t others = 2 + axes + columns_of_scores;
-  if (notes.origin.inputs.empty() || notes.origin.atlas.empty() || columns < others) {
+  if (notes.comments.inputs.empty() || notes.comments.atlas.empty() || columns < others) {
     return std::nullopt;
   }
   while (const std::optional<std::string_view> line = lines.next()) {

@@ -22,17 +22,19 @@ struct MadeTrial {
   std::string failure;    ///< why it has no score of its own; empty: it has one
 };
 
-/// Where trials come from. Texts without line ends.
-struct TrialOrigin {
+/// Where trials come from, and what they have shown. Texts without line ends.
+struct TrialComments {
   std::string inputs;  ///< tells adaptations apart, such as a fingerprint
   std::string atlas;   ///< folder of the atlas, as a path from the folder of the table
   std::string robot;   ///< what makes the trials, for people
+  /// What is probably wrong with the robot, for people; empty: nothing was suspected.
+  std::string diagnosis = {};
 };
 
-/// Comments with the origin; a head; and a line for each trial: its number from 1, place and middle of its cell,
+/// The comments; a head; and a line for each trial: its number from 1, place and middle of its cell,
 /// the gait's values, expected score and its standard deviation, measured score, failure. Columns are separated by
 /// tabs.
-[[nodiscard]] std::string trial_table(const Atlas& atlas, const TrialOrigin& origin,
+[[nodiscard]] std::string trial_table(const Atlas& atlas, const TrialComments& comments,
                                       const std::vector<MadeTrial>& trials);
 
 /// Reads what trial_table() wrote. name: of the file, for messages. Throws InputError if it is damaged or has other
@@ -50,7 +52,7 @@ struct NotedTrial {
   std::string failure;
 };
 struct TrialNotes {
-  TrialOrigin origin;
+  TrialComments comments;
   std::vector<NotedTrial> trials;
 };
 /// What a table says, also if its atlas has changed since: of its lines those up to the first one that is damaged.

@@ -45,18 +45,6 @@ std::optional<std::string_view> take_line(std::string_view& text) {
   return line;
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t end = line.find('\t');
-    cells.push_back(line.substr(0, end));
-    if (end == std::string_view::npos) {
-      return cells;
-    }
-    line.remove_prefix(end + 1);
-  }
-}
-
 /// The positions of the values of each quantity.
 using ValuePlaces = std::vector<std::map<std::string_view, std::uint64_t>>;
 

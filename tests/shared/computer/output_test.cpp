@@ -99,5 +99,26 @@ TEST(Output, CreatesTheFileThatALinkNames) {
   EXPECT_EQ(file_contents(folder / "table.tsv"), "text");
 }
 
+TEST(ReadWholeFile, HasEachByte) {
+  const TemporaryFolder folder;
+  std::string bytes;
+  for (int i = 0; i < 200'000; ++i) {
+    bytes += static_cast<char>(i * 7 % 256);
+  }
+  write_file(folder / "bytes", bytes);
+  EXPECT_TRUE(read_whole_file(folder / "bytes") == bytes);
+  write_file(folder / "empty", "");
+  EXPECT_EQ(read_whole_file(folder / "empty"), "");
+}
+
+TEST(ReadWholeFile, RefusesWhatTheSystemDoesNotRead) {
+  const TemporaryFolder folder;
+  const auto message = [](const std::filesystem::path& path) {
+    return message_of<FileError>([&] { static_cast<void>(read_whole_file(path)); });
+  };
+  EXPECT_EQ(message(folder / "none"), (folder / "none").string() + ": cannot be read: No such file or directory");
+  EXPECT_EQ(message(folder.path()), folder.path().string() + ": cannot be read: Is a directory");
+}
+
 }  // namespace
 }  // namespace proleg

@@ -163,6 +163,14 @@ TEST(TableLine, HasTabsBetweenCellsAndALineEnd) {
   EXPECT_EQ(line.finish(), "tick\t18446744073709551615\t0.1\n");
 }
 
+TEST(CellsOf, AreWhatIsBetweenTabs) {
+  using Cells = std::vector<std::string_view>;
+  EXPECT_EQ(cells_of("tick\t1 2\t0.1"), (Cells{"tick", "1 2", "0.1"}));
+  EXPECT_EQ(cells_of("\ta\t\t"), (Cells{"", "a", "", ""}));
+  EXPECT_EQ(cells_of("one"), (Cells{"one"}));
+  EXPECT_EQ(cells_of(""), (Cells{""}));
+}
+
 TEST(TableLine, IsEmptyAgainAfterItsEnd) {
   TableLine line;
   line.add("first");

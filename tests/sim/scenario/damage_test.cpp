@@ -118,6 +118,9 @@ TEST(UsualDamages, AreThoseThatTheRobotCanHave) {
   EXPECT_EQ(words.size(), 5U * scenario.robot.joints.size() + 1U);
   EXPECT_EQ(std::ranges::count(words, "powerless:J3"), 1);
   EXPECT_EQ(std::ranges::count(words, "jammed:J3=-20"), 1);
+  EXPECT_EQ(
+      usual_damages_text(),
+      "each joint without power, with 50% of its torque, or jammed at -20, 0 or 20 degrees, and 50% of all friction");
   for (const std::string& word : words) {
     EXPECT_NO_THROW(static_cast<void>(damaged_wave({word}))) << word;
   }

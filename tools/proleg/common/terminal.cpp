@@ -60,6 +60,10 @@ void CountProgress::show(std::uint64_t done) {
   }
 }
 
+void CountProgress::show_share(double share) {
+  show(static_cast<std::uint64_t>(std::lround(share * static_cast<double>(total_))));
+}
+
 using std::chrono::steady_clock;
 
 TerminalLine::TerminalLine(std::chrono::milliseconds delay)

@@ -90,6 +90,8 @@ class CountProgress {
 
   /// Cheap; draws at most ten times a second.
   void show(std::uint64_t done);
+  /// share: of all that is done, 0 to 1.
+  void show_share(double share);
   /// Erases the line, so that a message can be printed.
   void erase() { terminal_line_.erase(); }
 

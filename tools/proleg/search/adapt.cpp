@@ -1,12 +1,9 @@
 // proleg adapt: finds a gait for a robot that is not as its atlas expects, in a few trials.
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -99,11 +96,8 @@ Atlas atlas_of(const AdaptOptions& options) {
 }
 
 void rate_for_trials(Atlas& atlas, double seconds) {
-  const std::size_t count = atlas.gaits.size();
-  CountProgress progress("gaits of the atlas rated for trials of this length", count);
-  const auto show = [&](double share) {
-    progress.show(static_cast<std::uint64_t>(std::lround(share * static_cast<double>(count))));
-  };
+  CountProgress progress("gaits of the atlas rated for trials of this length", atlas.gaits.size());
+  const auto show = [&](double share) { progress.show_share(share); };
   try {
     optimize::rate_for_length(atlas, seconds, show, [] { return interrupted(); });
   } catch (const optimize::StoreError& error) {
@@ -132,8 +126,8 @@ std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const A
   return sha256_hex(text);
 }
 
-optimize::TrialOrigin origin_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options,
-                                const std::filesystem::path& folder) {
+optimize::TrialComments comments_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options,
+                                    const std::filesystem::path& folder) {
   const std::filesystem::path place = folder_of(options.atlas);
   std::string robot = std::filesystem::path(options.scenario.file).filename().string();
   if (options.robot.bus) {
@@ -142,7 +136,7 @@ optimize::TrialOrigin origin_of(const Atlas& atlas, const sim::Scenario& scenari
   for (const std::string& damage : options.damages) {
     robot += ", " + damage;
   }
-  return {inputs_of(atlas, scenario, options), std::filesystem::relative(place, folder).string(), std::move(robot)};
+  return {inputs_of(atlas, scenario, options), std::filesystem::relative(place, folder).string(), std::move(robot), {}};
 }
 
 std::string trial_maker(const AdaptOptions& options, const sim::Scenario& scenario) {
@@ -181,9 +175,7 @@ std::vector<MadeTrial> earlier_trials(const Atlas& atlas, const std::string& inp
   if (const auto found = found_instead_of_file(table)) {
     throw InputError(table.string(), 0, *found, "the trials of an earlier run; there is nothing to resume");
   }
-  std::ifstream stream(table, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  return optimize::read_trial_table(atlas, inputs, table.string(), text);
+  return optimize::read_trial_table(atlas, inputs, table.string(), read_whole_file(table));
 }
 
 /// The trials of a robot, with their files.
@@ -196,7 +188,7 @@ class Run {
         atlas_(atlas),
         intact_(intact),
         folder_(std::move(folder)),
-        origin_(origin_of(atlas, intact, options, folder_)),
+        comments_(comments_of(atlas, intact, options, folder_)),
         made_(std::move(made)),
         resumed_(made_.all().size()) {}
 
@@ -253,8 +245,9 @@ class Run {
   }
 
  private:
-  void write_table() const {
-    write_file(folder_ / result_files[0], optimize::trial_table(atlas_, origin_, made_.all()));
+  void write_table() {
+    comments_.diagnosis = made_.all().empty() ? std::string() : made_.text_of_diagnosis();
+    write_file(folder_ / result_files[0], optimize::trial_table(atlas_, comments_, made_.all()));
   }
 
   /// The scenario is that of FILE with the gait: damages by options are not in it.
@@ -307,7 +300,7 @@ class Run {
   const Atlas& atlas_;
   const sim::Scenario& intact_;  ///< without the damages of the command line
   std::filesystem::path folder_;
-  optimize::TrialOrigin origin_;
+  optimize::TrialComments comments_;
   MadeTrials made_;
   std::size_t resumed_;
   bool is_stopped_ = false;
@@ -391,9 +384,8 @@ int adapt_command(int argc, char** argv) {
       .add_option(
           "--suspect", options.suspects,
           "what may be wrong with the robot, in the forms of --damage, beside the usual: the gaits are simulated "
-          "with it before the trials, which tell whether it is true. Usual are each joint without power, with half "
-          "its torque, or jammed at -20, 0 or 20 degrees, and half the friction. May be repeated; \"none\": the "
-          "usual is not suspected")
+          "with it before the trials, which tell whether it is true. Usual are " +
+              sim::usual_damages_text() + ". May be repeated; \"none\": the usual is not suspected")
       .value_name("DAMAGE");
   add_trial_options(command_line, options.robot);
   command_line.add_option("--seconds", options.scenario.seconds, "time of a trial; default: 10");

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/evaluation/store.hpp"
@@ -148,15 +147,11 @@ void refuse_search(const std::vector<std::string>& given) {
 /// Throws BadInput if a file that a person may have edited, or that is of another search, would be replaced.
 /// new_files: has the files that will be written.
 void refuse_other_content(const std::filesystem::path& out, const std::filesystem::path& new_files) {
-  const auto text_of = [](const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-  };
   for (const auto& entry : std::filesystem::recursive_directory_iterator(new_files)) {
     const std::filesystem::path old = out / std::filesystem::relative(entry.path(), new_files);
     std::error_code error;
     if (entry.is_regular_file() && std::filesystem::exists(std::filesystem::symlink_status(old, error)) &&
-        (!std::filesystem::is_regular_file(old, error) || text_of(old) != text_of(entry.path()))) {
+        (!std::filesystem::is_regular_file(old, error) || read_whole_file(old) != read_whole_file(entry.path()))) {
       throw BadInput(old.string() +
                      ": found an existing file with other content, expected none; --out FOLDER names another folder");
     }

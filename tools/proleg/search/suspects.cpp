@@ -1,11 +1,7 @@
 #include "tools/proleg/search/suspects.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string_view>
 
@@ -60,9 +56,7 @@ optimize::DamageScores scores_with(const optimize::Atlas& atlas, const std::file
   const std::string inputs = sha256_hex(atlas.fingerprint() + ' ' + result_key);
   optimize::DamageScores scores;
   if (!found_instead_of_file(file)) {  // nothing that cannot be read to an end, such as a pipe
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    scores = optimize::read_damage_scores(text, inputs, atlas.gaits.size());
+    scores = optimize::read_damage_scores(read_whole_file(file), inputs, atlas.gaits.size());
   }
   std::vector<std::string> missing;
   for (const std::string& suspect : suspects) {
@@ -76,7 +70,7 @@ optimize::DamageScores scores_with(const optimize::Atlas& atlas, const std::file
         std::span(missing).subspan(first, std::min(damages_at_once, missing.size() - first));
     const auto show = [&](double share) {
       const double done = static_cast<double>(first) + share * static_cast<double>(damages.size());
-      progress.show(static_cast<std::uint64_t>(std::lround(done * static_cast<double>(atlas.gaits.size()))));
+      progress.show_share(done / static_cast<double>(missing.size()));
     };
     scores.merge(optimize::rate_with_damages(atlas, damages, show, [] { return interrupted(); }));
     try {

@@ -8,9 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -130,8 +128,7 @@ std::vector<SweepRun> interrupted_runs(const Sweep& sweep, const std::filesystem
   if (const auto found = found_instead_of_file(table)) {
     throw InputError(table.string(), 0, *found, "the table of an interrupted sweep; there is nothing to resume");
   }
-  std::ifstream stream(table, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const std::string text = read_whole_file(table);
   std::vector<SweepRun> runs = optimize::read_sweep_table(sweep, result_key, table.string(), text);
   std::filesystem::resize_file(table, text.rfind('\n') + 1);
   return runs;

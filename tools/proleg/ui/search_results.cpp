@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/adaptation/trial_table.hpp"
 #include "sim/optimize/evaluation/store.hpp"
@@ -100,8 +100,11 @@ std::optional<std::string> text_of_trials(const fs::path& table) {
   if (fs::file_size(table, error) > most || error) {
     return std::nullopt;
   }
-  std::ifstream stream(table, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  try {
+    return read_whole_file(table);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
 }
 
 json trials_json(const optimize::TrialNotes& notes) {
@@ -266,9 +269,11 @@ json SearchResults::adaptations(const fs::path& search, const fs::path& folder) 
     const fs::file_time_type time = fs::last_write_time(table, error);
     const std::optional<std::string> text = text_of_trials(table);
     const std::optional<optimize::TrialNotes> notes = text ? optimize::look_at_trials(*text, axes) : std::nullopt;
-    if (notes && fs::weakly_canonical(folder / name / notes->origin.atlas, error) == search) {
-      found.emplace_back(
-          time, json{{"name", name}, {"robot", one_line(notes->origin.robot)}, {"trials", trials_json(*notes)}});
+    if (notes && fs::weakly_canonical(folder / name / notes->comments.atlas, error) == search) {
+      found.emplace_back(time, json{{"name", name},
+                                    {"robot", one_line(notes->comments.robot)},
+                                    {"diagnosis", text_or_null(one_line(notes->comments.diagnosis))},
+                                    {"trials", trials_json(*notes)}});
     }
   }
   std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
@@ -93,8 +92,7 @@ const SweepResults::Table& SweepResults::table_of(const fs::path& sweep) {
   const auto begin = Clock::now();
   table_.reset();
   Table table{sweep, size, time, {}, SweepFolder::note_of(sweep), {}, {}, {}};
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const std::string text = size > 0 ? read_whole_file(file) : std::string();
   table.content = optimize::look_at_sweep_table(table.note.outline, file.filename().string(), text);
   const auto end = Clock::now();
   table.next_look = end + 9 * (end - begin);  // at most a tenth of the time

@@ -221,6 +221,7 @@ export interface AdaptationTrial {
 export interface Adaptation {
   name: string; // path of its folder
   robot: string; // what made the trials
+  diagnosis: string | null; // what is probably wrong with it: "powerless:J4 92 %, none 6 %"; null: nothing was suspected
   trials: AdaptationTrial[]; // in the order in which they were made
 }
 

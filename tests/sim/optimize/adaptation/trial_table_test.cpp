@@ -14,7 +14,7 @@
 namespace proleg::optimize {
 namespace {
 
-const TrialOrigin origin{"abc", "../atlas", "uniform.simulation.xml, jammed:J3=20"};
+const TrialComments comments{"abc", "../atlas", "uniform.simulation.xml, jammed:J3=20"};
 const std::vector<MadeTrial> two_trials{{1, 0.75, 0.125, 0.1, ""}, {0, 1.2, 1.25, 0.0, "the robot\tfell"}};
 
 std::string message_of(const std::string& inputs, const std::string& text) {
@@ -27,7 +27,7 @@ std::string message_of(const std::string& inputs, const std::string& text) {
 }
 
 TEST(TrialTable, SaysOfEachTrialItsCellGaitAndScores) {
-  EXPECT_EQ(trial_table(small_atlas(), origin, two_trials),
+  EXPECT_EQ(trial_table(small_atlas(), comments, two_trials),
             "# inputs: abc\n"
             "# atlas: ../atlas\n"
             "# robot: uniform.simulation.xml, jammed:J3=20\n"
@@ -40,7 +40,7 @@ TEST(TrialTable, SaysOfEachTrialItsCellGaitAndScores) {
 TEST(TrialTable, IsReadBack) {
   const Atlas atlas = small_atlas();
   const std::vector<MadeTrial> read =
-      read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, origin, two_trials));
+      read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, comments, two_trials));
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].gait, 1U);
   EXPECT_EQ(read[0].expected, 0.75);
@@ -56,14 +56,14 @@ TEST(TrialTable, TellsGaitsOfOneCellApartByTheirValues) {
   atlas.gaits.push_back({atlas.gaits[0].cell, atlas.gaits[0].candidate, 0.5});
   atlas.gaits.back().candidate[3] += 1;
   const std::vector<MadeTrial> made{{2, 0.5, 0.1, 0.4, ""}, {0, 1.2, 0.1, 1.1, ""}};
-  const std::vector<MadeTrial> read = read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, origin, made));
+  const std::vector<MadeTrial> read = read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, comments, made));
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].gait, 2U);
   EXPECT_EQ(read[1].gait, 0U);
 }
 
 TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
-  const std::string table = trial_table(small_atlas(), origin, two_trials);
+  const std::string table = trial_table(small_atlas(), comments, two_trials);
   EXPECT_NE(message_of("abd", table).find("trials.tsv:1: found trials of another atlas"), std::string::npos);
   EXPECT_NE(message_of("abc", "").find("trials.tsv:1: found no table"), std::string::npos);
   const auto with = [&](const std::string& old_text, const std::string& new_text) {
@@ -79,19 +79,19 @@ TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
 }
 
 TEST(TrialTable, OfAVersionWithoutTheAtlasIsReadToo) {
-  std::string table = trial_table(small_atlas(), origin, two_trials);
+  std::string table = trial_table(small_atlas(), comments, two_trials);
   table.erase(table.find("# atlas"), table.find("trial\t") - table.find("# atlas"));
   EXPECT_EQ(read_trial_table(small_atlas(), "abc", "trials.tsv", table).size(), 2U);
   EXPECT_FALSE(look_at_trials(table, 2)) << "whose atlas is not known";
 }
 
 TEST(TrialTable, SaysWithoutItsAtlasWhatWasTriedAndWhere) {
-  const std::string table = trial_table(small_atlas(), origin, two_trials);
+  const std::string table = trial_table(small_atlas(), comments, two_trials);
   const std::optional<TrialNotes> notes = look_at_trials(table, 2);
   ASSERT_TRUE(notes);
-  EXPECT_EQ(notes->origin.inputs, "abc");
-  EXPECT_EQ(notes->origin.atlas, "../atlas");
-  EXPECT_EQ(notes->origin.robot, "uniform.simulation.xml, jammed:J3=20");
+  EXPECT_EQ(notes->comments.inputs, "abc");
+  EXPECT_EQ(notes->comments.atlas, "../atlas");
+  EXPECT_EQ(notes->comments.robot, "uniform.simulation.xml, jammed:J3=20");
   ASSERT_EQ(notes->trials.size(), 2U);
   EXPECT_EQ(notes->trials[0].place, "25,20");
   EXPECT_EQ(notes->trials[0].values, (std::vector<double>{30, 30, 30, 30, 30}));
@@ -101,8 +101,17 @@ TEST(TrialTable, SaysWithoutItsAtlasWhatWasTriedAndWhere) {
   EXPECT_EQ(notes->trials[1].failure, "the robot fell");
 }
 
+TEST(TrialTable, SaysWhatIsProbablyWrongIfSomethingWasSuspected) {
+  TrialComments suspected = comments;
+  suspected.diagnosis = "powerless:J4 92 %, none 6 %";
+  const std::string table = trial_table(small_atlas(), suspected, two_trials);
+  EXPECT_NE(table.find("\n# damage: powerless:J4 92 %, none 6 %\n"), std::string::npos) << table;
+  EXPECT_EQ(look_at_trials(table, 2)->comments.diagnosis, suspected.diagnosis);
+  EXPECT_EQ(read_trial_table(small_atlas(), "abc", "trials.tsv", table).size(), 2U);
+}
+
 TEST(TrialTable, IsLookedAtUpToWhatIsDamaged) {
-  const std::string table = trial_table(small_atlas(), origin, two_trials);
+  const std::string table = trial_table(small_atlas(), comments, two_trials);
   for (std::size_t size = 0; size <= table.size(); ++size) {
     const std::optional<TrialNotes> notes = look_at_trials(std::string_view(table).substr(0, size), 2);
     for (const NotedTrial& trial : notes ? notes->trials : std::vector<NotedTrial>()) {

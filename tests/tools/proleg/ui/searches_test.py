@@ -272,11 +272,14 @@ def adaptations_are_found_with_their_map(program):
     assert program.must("search.adaptations", name="atlas") == {"adaptations": []}
     run("adapt", scenario, "--atlas", atlas, "--seconds", "1", "--trials", "3", "--alpha", "1", "--suspect", "none", "--damage", "jammed:J3=20",
         "--out", program.folder / "deep/jammed")
-    run("adapt", scenario, "--atlas", atlas / "store.sqlite", "--seconds", "1", "--trials", "1", "--suspect", "none", "--out", program.folder / "intact")
+    run("adapt", scenario, "--atlas", atlas / "store.sqlite", "--seconds", "1", "--trials", "1", "--suspect", "none", "--suspect", "powerless:J2",
+        "--out", program.folder / "intact")
     shutil.copytree(program.folder / "intact", program.folder / "elsewhere/intact")  # its path leads to no atlas
     found = program.must("search.adaptations", name="atlas")["adaptations"]
     assert [(its["name"], its["robot"]) for its in found] == [
         ("intact", "uniform.simulation.xml"), ("deep/jammed", "uniform.simulation.xml, jammed:J3=20")], found
+    assert re.search(r"none \d+ %", found[0]["diagnosis"]) and f'\n# damage: {found[0]["diagnosis"]}\n' in (program.folder / "intact/trials.tsv").read_text()
+    assert found[1]["diagnosis"] is None
     table = [line.split("\t") for line in (program.folder / "deep/jammed/trials.tsv").read_text().splitlines() if line[0] in "123"]
     assert len(table) == 3
     for trial, columns in zip(found[1]["trials"], table):

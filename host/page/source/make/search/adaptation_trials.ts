@@ -26,11 +26,13 @@ export function trialCells(adaptation: Pick<Adaptation, 'trials'>, map: GaitMap,
   return [...byCell.values()];
 }
 
-// The evaluation whose gait was tried; null if the map has another gait there now, because the search was continued.
-export function trialRow({ cell: name, values }: AdaptationTrial, store: RowStore, map: GaitMap): number | null {
-  const cell = map.cellNamed(name);
-  const row = cell === null ? undefined : map.elites.get(cell);
-  if (row === undefined || values.length !== store.dimensions) return null;
+// The first evaluation of the gait that was tried, which need not be the best of its cell; null if the store has none.
+export function trialRow({ values }: Pick<AdaptationTrial, 'values'>, store: RowStore): number | null {
+  if (values.length !== store.dimensions) return null;
   // The store has them with less precision; values of a search are farther apart.
-  return values.every((value, dimension) => Math.abs(value - store.valueOf(row, dimension)) <= 1e-5 * Math.max(1, Math.abs(value))) ? row : null;
+  const isValueOf = (row: number) => (value: number, dimension: number) => Math.abs(value - store.valueOf(row, dimension)) <= 1e-5 * Math.max(1, Math.abs(value));
+  for (let row = 0; row < store.count; row += 1) {
+    if (values.every(isValueOf(row))) return row;
+  }
+  return null;
 }

@@ -1,6 +1,6 @@
 // The map of gaits of a search with MAP-Elites, and the trials of adaptations on it. The mouse and the arrow keys go from cell to
 // cell; a click or Enter chooses the gait of a cell.
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useMemo, useRef } from 'preact/hooks';
 import type { Adaptation, OpenedSearch } from '../../wire/messages.js';
 import { bestTrial, trialCells, trialRow } from './adaptation_trials.js';
 import type { ChosenSearch, ShownRows } from './chosen_search.js';
@@ -81,15 +81,17 @@ function MapChart({ shown }: { shown: Shown }) {
   );
 }
 
-function TrialTable({ shown: { chosen, opened, rows, map }, adaptation }: { shown: Shown; adaptation: Adaptation }) {
+function TrialTable({ shown: { chosen, opened, rows: { store } }, adaptation }: { shown: Shown; adaptation: Adaptation }) {
   const { name, unit, maximise } = opened.objectives[0]!;
   const measure = unit === '' ? name : `${name} (${unit})`;
   const best = bestTrial(adaptation, maximise);
+  const rows = useMemo(() => adaptation.trials.map((trial) => trialRow(trial, store)), [adaptation, store, store.clears, store.count]);
   return (
     <div class="table-frame candidates" tabIndex={0} role="group" aria-label="Table of trials">
       <table data-testid="trials">
         <caption class="hint">
           {adaptation.robot}: {adaptation.trials.length === 0 ? 'no trial yet' : 'what was expected of the gaits, and what was measured'}. Choose a trial to see how its gait moves.
+          {adaptation.diagnosis !== null && <p data-testid="diagnosis">Probable damage: {adaptation.diagnosis}.</p>}
         </caption>
         <thead>
           <tr>
@@ -101,12 +103,12 @@ function TrialTable({ shown: { chosen, opened, rows, map }, adaptation }: { show
         </thead>
         <tbody>
           {adaptation.trials.map((trial, place) => {
-            const row = trialRow(trial, rows.store, map);
+            const row = rows[place]!;
             const isChosen = row !== null && row === chosen.number.value;
             return (
               <tr key={place} class={isChosen ? 'chosen' : ''} onClick={() => row !== null && chosen.chooseCandidate(row)}>
                 <th scope="row">
-                  <button type="button" aria-pressed={isChosen} disabled={row === null} title={row === null ? 'The map has another gait there now.' : `Candidate ${row}`}>
+                  <button type="button" aria-pressed={isChosen} disabled={row === null} title={row === null ? 'No candidate of this search has these values.' : `Candidate ${row}`}>
                     {place + 1}
                   </button>
                   {place === best && <span class="hint"> best</span>}

@@ -124,12 +124,11 @@ describe('the trials of an adaptation', () => {
     ]);
   });
 
-  it('have the evaluation whose gait they tried, unless the map has another one there now', () => {
-    const { map, store } = mapOf([[1, 1.2, 0.1], [2, 2.6, 0.7]]);
-    assert.equal(trialRow(trial('4,2', 1, { values: [0.25] }), store, map), 1);
-    assert.equal(trialRow(trial('4,2', 1, { values: [0.5] }), store, map), null);
-    assert.equal(trialRow(trial('4,2', 1, { values: [0.25, 1] }), store, map), null);
-    assert.equal(trialRow(trial('2,2', 1, { values: [0.25] }), store, map), null, 'an empty cell');
-    assert.equal(trialRow(trial('9,9', 1, { values: [0.25] }), store, map), null);
+  it('have the first evaluation of the gait that they tried, also if it is not the best of its cell', () => {
+    const { map, store } = mapOf([[1, 1.2, 0.1], [2, 2.6, 0.7], [3, 2.6, 0.7]]);
+    assert.equal(map.elites.get(map.cellNamed('4,2')!), 2);
+    assert.equal(trialRow({ values: [0.25] }, store), 1);
+    assert.equal(trialRow({ values: [0.125] }, store), null);
+    assert.equal(trialRow({ values: [0.25, 1] }, store), null);
   });
 });

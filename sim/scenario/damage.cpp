@@ -197,10 +197,8 @@ std::vector<std::string> usual_damages(const Scenario& scenario) {
 std::string usual_damages_text() {
   std::string angles;
   for (const int degrees : usual_jams) {
-    angles += (degrees == usual_jams.front()  ? ""
-               : degrees == usual_jams.back() ? " or "
-                                              : ", ") +
-              std::to_string(degrees);
+    const char* const before = degrees == usual_jams.back() ? " or " : ", ";
+    angles += (angles.empty() ? "" : before) + std::to_string(degrees);
   }
   return std::string("each joint without power, with ") + usual_percent + " of its torque, or jammed at " + angles +
          " degrees, and " + usual_percent + " of all friction";

@@ -56,7 +56,11 @@ optimize::DamageScores scores_with(const optimize::Atlas& atlas, const std::file
   const std::string inputs = sha256_hex(atlas.fingerprint() + ' ' + result_key);
   optimize::DamageScores scores;
   if (!found_instead_of_file(file)) {  // nothing that cannot be read to an end, such as a pipe
-    scores = optimize::read_damage_scores(read_whole_file(file), inputs, atlas.gaits.size());
+    try {
+      scores = optimize::read_damage_scores(read_whole_file(file), inputs, atlas.gaits.size());
+    } catch (const FileError&) {
+      // They are made again.
+    }
   }
   std::vector<std::string> missing;
   for (const std::string& suspect : suspects) {

@@ -175,6 +175,19 @@ void apply_damage(Scenario& scenario, const std::vector<std::string>& words) {
   }
 }
 
+std::string damage_word(const Scenario& scenario, const std::string& word) {
+  const RobotModel& robot = scenario.robot;
+  const Damage damage = read_damage(robot, word);
+  std::string text(damage.kind);
+  if (damage.kind != "friction") {
+    text += ':' + (is_of_joint(damage) ? robot.joints[damage.place].name : robot.links[damage.place].name);
+  }
+  if (damage.kind == "jammed") {
+    return text + '=' + exact_text(damage.value.value_or(0.0) + 0.0);  // turns -0 into 0
+  }
+  return damage.value ? text + '=' + exact_text(*damage.value) + '%' : text;
+}
+
 std::vector<std::string> usual_damages(const Scenario& scenario) {
   std::vector<std::string> words;
   for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {

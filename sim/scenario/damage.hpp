@@ -21,6 +21,10 @@ namespace proleg::sim {
 /// overcomes, with the limits of its set-points at one angle.
 void apply_damage(Scenario& scenario, const std::vector<std::string>& words);
 
+/// The word as usual_damages() spells it, so that equal damages are equal words: "jammed:J3=0" for "jammed:J3",
+/// "torque:J3=40%" for "torque:J3=40.0". Throws InputError as apply_damage() does for a word that it cannot read.
+[[nodiscard]] std::string damage_word(const Scenario& scenario, const std::string& word);
+
 /// Words of damages that a robot may have, for programs that find out which one it has: each joint without
 /// power, with a weak servo, and jammed at those of some angles that it can have; less friction everywhere.
 [[nodiscard]] std::vector<std::string> usual_damages(const Scenario& scenario);

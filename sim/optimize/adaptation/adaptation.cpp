@@ -7,12 +7,10 @@
 namespace proleg::optimize {
 namespace {
 
+/// For values that are costs, the worst one says nothing about what a good gait can do.
 double scale_of(const Hypothesis& hypothesis) {
-  double greatest = 0.0;
-  for (const double value : hypothesis.values) {
-    greatest = std::max(greatest, std::abs(value));
-  }
-  return greatest > 0.0 ? greatest : 1.0;
+  const double best = std::abs(std::ranges::max(hypothesis.values));
+  return best > 0.0 ? best : 1.0;
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ class Adaptation {
   };
 
   /// points: one for each gait, at least one; gaits with nearby points have similar values. All have the same number of
-  /// coordinates. hypotheses: at least one. All numbers are finite. The scale is the greatest absolute value of the
-  /// first hypothesis, so that settings and deviations have no unit; 1 if all its values are 0.
+  /// coordinates. hypotheses: at least one. All numbers are finite. The scale is the absolute value of the best
+  /// gait by the first hypothesis, so that settings and deviations have no unit; 1 if that is 0.
   Adaptation(std::vector<std::vector<double>> points, std::vector<Hypothesis> hypotheses,
              const AdaptationSettings& settings);
 

@@ -40,7 +40,7 @@ DamageScores read_damage_scores(std::string_view text, const std::string& inputs
     }
     std::vector<double> of_gaits;
     for (const std::string_view word : words(line->substr(tab + 1))) {
-      const std::optional<double> score = parse_number(word);
+      const std::optional<double> score = parse_score(word);
       if (!score) {
         return {};
       }

@@ -47,7 +47,7 @@ std::optional<NotedTrial> noted_trial(std::string_view line, std::size_t number,
   }
   std::vector<double> numbers;
   for (std::size_t i = first_value; i < scores + 3; ++i) {
-    const std::optional<double> its = parse_number(columns[i]);
+    const std::optional<double> its = parse_score(columns[i]);
     if (!its) {
       return std::nullopt;
     }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/record/plot_frame.hpp"
 
 namespace proleg::optimize {
@@ -34,6 +35,12 @@ std::string fixed_text(double value, int decimals) {
   std::array<char, 400> text;  // the longest double has 309 digits before the point
   return {text.data(),
           std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr};
+}
+
+std::optional<double> parse_score(std::string_view word) {
+  constexpr double largest = 1e12;
+  const std::optional<double> score = parse_number(word);
+  return score && std::abs(*score) <= largest ? score : std::nullopt;
 }
 
 double drawable(double score) { return std::clamp(score, -1e9, 1e9); }

@@ -2,6 +2,7 @@
 
 // Scores of evaluations, as text and in figures.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,10 @@ namespace proleg::optimize {
 [[nodiscard]] std::string rounded_text(double value);
 /// The same with a unit, if it has one: "1.958 m".
 [[nodiscard]] std::string rounded_text(double value, std::string_view unit);
+
+/// A number that a score can be: at most 10^12 or at least -10^12, which is the range of the score of a run that failed
+///. Nothing for anything else: calculations with it could overflow.
+[[nodiscard]] std::optional<double> parse_score(std::string_view word);
 
 /// The score, limited to +-10^9, so that sums and coordinates stay finite.
 [[nodiscard]] double drawable(double score);

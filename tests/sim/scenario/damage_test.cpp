@@ -112,6 +112,22 @@ TEST(Damage, IsRefusedInOneLineThatSaysWhatIsExpected) {
   expect({"friction=50", "friction=50"}, "a second damage");
 }
 
+TEST(DamageWord, IsTheSameForTheSameDamage) {
+  const Scenario scenario = intact_wave();
+  for (const char* const word : {"jammed:J3", "jammed:J3=0", "jammed:J3=-0", "jammed:J3=0.0"}) {
+    EXPECT_EQ(damage_word(scenario, word), "jammed:J3=0");
+  }
+  EXPECT_EQ(damage_word(scenario, "jammed:J3=-20.50"), "jammed:J3=-20.5");
+  EXPECT_EQ(damage_word(scenario, "torque:J3=40.0"), "torque:J3=40%");
+  EXPECT_EQ(damage_word(scenario, "mass:Head=115%"), "mass:Head=115%");
+  EXPECT_EQ(damage_word(scenario, "friction=5e1"), "friction=50%");
+  EXPECT_EQ(damage_word(scenario, "lost:J3"), "lost:J3");
+  for (const std::string& word : usual_damages(scenario)) {
+    EXPECT_EQ(damage_word(scenario, word), word);
+  }
+  EXPECT_THROW(static_cast<void>(damage_word(scenario, "jammed:J9")), InputError);
+}
+
 TEST(UsualDamages, AreThoseThatTheRobotCanHave) {
   Scenario scenario = intact_wave();
   const std::vector<std::string> words = usual_damages(scenario);

@@ -5,10 +5,12 @@ Usage: adapt_test.py SOURCE_FOLDER PROGRAM_FOLDER
 """
 
 import json
+import os
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -103,7 +105,7 @@ class Adapt(unittest.TestCase):
         self.assertEqual([its["damage"] for its in alone["diagnosis"]], ["unknown", "none"])
 
     def test_suspected_damages_are_simulated_once_for_an_atlas(self):
-        file = self.atlas / "damage_scores.txt"
+        file = self.atlas / "damage_scores_3s.txt"
         options = ("--seconds", 3, "--trials", 1)
         first = self.adapt("once", *options, suspects=("none", "powerless:J5"))
         scores = file.read_text()
@@ -115,6 +117,58 @@ class Adapt(unittest.TestCase):
         lines = file.read_text().splitlines()
         self.assertEqual([line.split("\t")[0] for line in lines[2:]], ["friction=50%", "powerless:J5"])
         self.assertIn(lines[3], scores)
+        self.adapt("other_length", "--seconds", 1, "--trials", 1, suspects=("none", "powerless:J5"))
+        self.assertEqual(file.read_text().splitlines(), lines)
+        file.unlink()
+        os.mkfifo(file)  # which no program reads
+        self.adapt("pipe", *options, suspects=("none", "powerless:J5"))
+
+    def test_a_damage_is_suspected_once_however_it_is_written(self):
+        result = self.adapt("spelling", "--seconds", 1, "--trials", 1, "--damage", "jammed:J3=20.0", "--damage", "friction=90",
+                            suspects=("none", "jammed:J3", "jammed:J3=-0", "jammed:J3=0.0", "torque:J2=40", "torque:J2=40.0%"))
+        self.assertEqual({its["damage"] for its in result["diagnosis"]}, {"none", "unknown", "jammed:J3=0", "torque:J2=40%"})
+        again = run("adapt", SCENARIO, "--atlas", self.atlas, "--resume", self.folder / "spelling", "--suspect", "none", "--seconds", 1,
+                    "--trials", 1, "--damage", "friction=90%", "--damage", "jammed:J3=20", "--json")
+        self.assertEqual(json.loads(again.stdout)["resumed"], 1, again.stderr)
+
+    def test_what_was_tried_is_kept_if_its_picture_cannot_be_written(self):
+        options = ("--damage", "jammed:J3=20", "--alpha", 1, "--seconds", 1)
+        first = self.adapt("no_picture", *options, "--trials", 2)
+        folder = self.folder / "no_picture"
+        (folder / "trials.svg").unlink()
+        (folder / "trials.svg").mkdir()
+        resume = ("adapt", SCENARIO, "--atlas", self.atlas, "--suspect", "none", *options, "--trials", 3, "--resume", folder, "--json")
+        refused = run(*resume)
+        self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+        self.assertIn("trials.svg: found a folder, expected a file of `proleg adapt`", refused.stderr)
+        (folder / "trials.svg").rmdir()
+        (folder / "adapted.files").rename(folder / "moved")
+        (folder / "adapted.files").write_text("")  # where a folder has to be
+        failed = run(*resume)
+        self.assertEqual(failed.returncode, 1, failed.stderr)
+        result = json.loads(failed.stdout)
+        self.assertEqual((result["ended"], len(result["trials"]), result["trials"][:2]), ("failed", 3, first["trials"]))
+        self.assertIn("adapted.files", result["reason"])
+        self.assertEqual(len(lines_of_trials(folder)), 3)
+        self.assertRegex(failed.stderr, "ended after 3 trials, because .*; the same command with --resume .* continues")
+
+    def test_an_interruption_before_the_next_trial_forgets_none(self):
+        options = ("--damage", "jammed:J3=20", "--alpha", 1)
+        first = self.adapt("earlier", *options, "--trials", 2)
+        suspects = [word for degrees in range(-40, 41) for word in ("--suspect", f"jammed:J2={degrees}")]
+        command = [PROGRAMS / "proleg", "adapt", SCENARIO, "--atlas", self.atlas, "--resume", self.folder / "earlier", "--json", "--trials", "3",
+                   *map(str, options), "--suspect", "none", *suspects]
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not (self.atlas / "damage_scores_10s.txt").exists() or "jammed:J2=-4" not in (self.atlas / "damage_scores_10s.txt").read_text():
+            self.assertIsNone(running.poll())
+            time.sleep(0.05)
+        running.send_signal(signal.SIGINT)
+        out, errors = running.communicate()
+        self.assertEqual(running.returncode, 1, errors)
+        result = json.loads(out)
+        self.assertEqual((result["ended"], result["resumed"], result["trials"], result["best"]),
+                         ("interrupted", 2, first["trials"], first["best"]))
+        self.assertIn("interrupted after 2 trials; the same command with --resume", errors)
 
     def test_the_usual_damages_are_suspected_beside_those_that_are_named(self):
         result = self.adapt("usual", "--seconds", 1, "--damage", "powerless:J2", suspects=("powerless:J3", "mass:Head=150%"))

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -120,7 +121,11 @@ std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const A
   for (const std::optional<std::string>& word : {words.friction, words.at, words.heading}) {
     text += ' ' + word.value_or("-");
   }
+  std::set<std::string> damages;
   for (const std::string& damage : options.damages) {
+    damages.insert(sim::damage_word(scenario, damage));
+  }
+  for (const std::string& damage : damages) {
     text += ' ' + damage;
   }
   return sha256_hex(text);
@@ -153,21 +158,6 @@ Json head_object(const AdaptOptions& options, const sim::Scenario& scenario) {
           {"bus", options.robot.bus},          {"damage", damages},      {"seconds", scenario.duration_s}};
 }
 
-/// Says that the user has stopped this command while it rated the gaits of the atlas. Returns the exit status.
-int end_before_trials(const AdaptOptions& options, const sim::Scenario& scenario) {
-  if (options.scenario.json) {
-    Json object = head_object(options, scenario);
-    object.add("trials", Json::empty_array());
-    object.add("best_trial", Json());
-    object.add("best", Json());
-    object.add("ended", "interrupted");
-    object.add("build_id", build_id);
-    std::cout << object.text() << '\n';
-  }
-  std::cerr << "proleg adapt: interrupted before the first trial; nothing was written\n";
-  return exit_failed;
-}
-
 /// The trials that an earlier run has made.
 std::vector<MadeTrial> earlier_trials(const Atlas& atlas, const std::string& inputs,
                                       const std::filesystem::path& folder) {
@@ -176,6 +166,19 @@ std::vector<MadeTrial> earlier_trials(const Atlas& atlas, const std::string& inp
     throw InputError(table.string(), 0, *found, "the trials of an earlier run; there is nothing to resume");
   }
   return optimize::read_trial_table(atlas, inputs, table.string(), read_whole_file(table));
+}
+
+/// Throws InputError if a file that will be written again is none: a pipe would wait for a reader.
+void require_replaceable(const std::filesystem::path& folder) {
+  for (const std::string_view name : std::span(result_files).first(4)) {
+    const std::filesystem::path file = folder / name;
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) {
+      if (const auto found = found_instead_of_file(file)) {
+        throw InputError(file.string(), 0, *found, "a file of `proleg adapt`");
+      }
+    }
+  }
 }
 
 /// The trials of a robot, with their files.
@@ -194,8 +197,8 @@ class Run {
 
   /// Makes trials until they end, the user stops them, or one fails. An error before the first one has the usual way.
   void make_trials(optimize::TrialRobot& robot) {
-    write_table();  // a run can be resumed from its first trial on
     try {
+      write_table();  // a run can be resumed from its first trial on
       while (std::optional<MadeTrial> trial = made_.next()) {
         const optimize::TrialOutcome outcome = robot.try_gait(made_.gait_of(*trial));
         trial->measured = outcome.score;
@@ -221,11 +224,15 @@ class Run {
   /// Writes picture and scenario, prints the result, and returns the exit status.
   int finish() {
     const bool has_best = made_.best() != nullptr;
-    if (!made_.all().empty()) {
-      write_file(folder_ / result_files[1], made_.picture());
+    try {
       if (has_best) {
         write_adapted();
       }
+      if (!made_.all().empty()) {
+        write_file(folder_ / result_files[1], made_.picture());
+      }
+    } catch (const std::exception& error) {  // the trials are in their table
+      failure_ = failure_.value_or(one_line(error.what()));
     }
     if (options_.scenario.json) {
       std::cout << json().text() << '\n';
@@ -233,18 +240,42 @@ class Run {
       print();
     }
     if (is_cut_short()) {
-      const std::size_t count = made_.all().size();
-      const std::string trials = std::to_string(count) + (count == 1 ? " trial" : " trials");
-      std::cerr << "proleg adapt: "
-                << (failure_ ? "ended after " + trials + ", because " + *failure_ : "interrupted after " + trials)
-                << "; the same command with --resume " << shell_argument(folder_.string()) << " continues\n";
+      print_how_to_continue();
     } else if (!has_best) {
       std::cerr << "proleg adapt: no trial has a score; the first failure: " << made_.all().front().failure << '\n';
     }
     return has_best && !is_cut_short() ? exit_success : exit_failed;
   }
 
+  /// The user has stopped this command while it simulated the gaits of the atlas: it knows what was tried earlier, and
+  /// nothing of what the gaits promise now. Writes no file. Returns the exit status.
+  int end_before_trials() {
+    is_stopped_ = true;
+    has_expectations_ = false;
+    if (options_.scenario.json) {
+      std::cout << json().text() << '\n';
+    }
+    if (made_.all().empty()) {
+      std::cerr << "proleg adapt: interrupted before the first trial\n";
+    } else {
+      print_how_to_continue();
+    }
+    return exit_failed;
+  }
+
  private:
+  [[nodiscard]] std::string count_text() const {
+    const std::size_t count = made_.all().size();
+    return std::to_string(count) + (count == 1 ? " trial" : " trials");
+  }
+
+  void print_how_to_continue() const {
+    std::cerr << "proleg adapt: "
+              << (failure_ ? "ended after " + count_text() + ", because " + *failure_
+                           : "interrupted after " + count_text())
+              << "; the same command with --resume " << shell_argument(folder_.string()) << " continues\n";
+  }
+
   void write_table() {
     comments_.diagnosis = made_.all().empty() ? std::string() : made_.text_of_diagnosis();
     write_file(folder_ / result_files[0], optimize::trial_table(atlas_, comments_, made_.all()));
@@ -275,7 +306,7 @@ class Run {
     if (const std::string diagnosis = made_.text_of_diagnosis(); !diagnosis.empty()) {
       std::printf("%-10s %s\n", "damage", diagnosis.c_str());
     }
-    std::printf("%-10s %s after %zu trials of %s s, engine %s\n", "ended", ending().c_str(), made_.all().size(),
+    std::printf("%-10s %s after %s of %s s, engine %s\n", "ended", ending().c_str(), count_text().c_str(),
                 number_text(intact_.duration_s).c_str(), trial_maker(options_, intact_).c_str());
     for (const std::string_view file : result_files) {
       if (std::filesystem::exists(folder_ / file)) {
@@ -287,7 +318,10 @@ class Run {
   /// What --json prints.
   [[nodiscard]] Json json() const {
     Json object = head_object(options_, intact_);
-    made_.add_to(object);
+    made_.add_trials_to(object);
+    if (has_expectations_) {
+      made_.add_expectations_to(object);
+    }
     object.add("resumed", resumed_);
     object.add("ended", ending());
     object.add("reason", failure_);
@@ -304,6 +338,7 @@ class Run {
   MadeTrials made_;
   std::size_t resumed_;
   bool is_stopped_ = false;
+  bool has_expectations_ = true;
   std::optional<std::string> failure_;  ///< why no further trial could be made
 };
 
@@ -317,6 +352,9 @@ int adapt(AdaptOptions& options) {
   const std::span<const std::string_view> new_files =
       options.resume ? std::span<const std::string_view>() : result_files;
   check_result_folder(folder, new_files);
+  if (options.resume) {
+    require_replaceable(folder);
+  }
   Atlas atlas = atlas_of(options);
   optimize::require_same_robot(atlas, setup.scenario);
   const std::vector<std::string> suspects = suspected_damages(options.suspects, atlas);
@@ -333,6 +371,13 @@ int adapt(AdaptOptions& options) {
   print_warnings("proleg adapt", setup.scenario);
   catch_interrupts();
   std::vector<optimize::Hypothesis> hypotheses;
+  const auto add_earlier = [&](MadeTrials& made) {
+    if (options.resume) {
+      for (const MadeTrial& trial : earlier_trials(atlas, inputs_of(atlas, setup.scenario, options), folder)) {
+        made.add(trial);
+      }
+    }
+  };
   try {
     rate_for_trials(atlas, setup.scenario.duration_s);
     if (options.resume) {  // a wrong folder is refused before what takes a minute
@@ -340,15 +385,13 @@ int adapt(AdaptOptions& options) {
     }
     hypotheses = optimize::hypotheses_of(atlas, suspects, scores_with(atlas, folder_of(options.atlas), suspects));
   } catch (const optimize::SearchEnded&) {
-    return end_before_trials(options, setup.scenario);
+    MadeTrials made(atlas, optimize::hypotheses_of(atlas, {}, {}), {}, settings_of(options));
+    add_earlier(made);
+    return Run(options, atlas, setup.scenario, folder, std::move(made)).end_before_trials();
   }
   const ResultFolder claim(folder, new_files);
   MadeTrials made(atlas, std::move(hypotheses), suspects, settings_of(options));
-  if (options.resume) {
-    for (const MadeTrial& trial : earlier_trials(atlas, inputs_of(atlas, setup.scenario, options), folder)) {
-      made.add(trial);
-    }
-  }
+  add_earlier(made);
   const std::size_t made_before = made.all().size();
   Run run(options, atlas, setup.scenario, folder, std::move(made));
   if (robot_trials) {

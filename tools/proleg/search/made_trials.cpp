@@ -121,7 +121,7 @@ Json MadeTrials::object_of(const MadeTrial& trial) const {
           {"failure", trial.failure.empty() ? Json() : Json(one_line(trial.failure))}};
 }
 
-void MadeTrials::add_to(Json& object) const {
+void MadeTrials::add_trials_to(Json& object) const {
   Json trials = Json::empty_array();
   for (const MadeTrial& trial : trials_) {
     trials.append(object_of(trial));
@@ -133,6 +133,9 @@ void MadeTrials::add_to(Json& object) const {
   object.add("trials", trials);
   object.add("best_trial", its_best == nullptr ? Json() : Json(number_of(*its_best)));
   object.add("best", its_best == nullptr ? Json() : Json(its_best->measured));
+}
+
+void MadeTrials::add_expectations_to(Json& object) const {
   object.add("best_expected", best_expected());
   Json diagnosis = Json::empty_array();
   for (const std::size_t h : likely_hypotheses()) {

@@ -43,7 +43,9 @@ class MadeTrials {
   /// if no damage was suspected.
   [[nodiscard]] std::string text_of_diagnosis() const;
   /// Adds the trials and the best of them to the result of a run.
-  void add_to(Json& object) const;
+  void add_trials_to(Json& object) const;
+  /// Adds what is expected of the gaits, and the probabilities of the damages.
+  void add_expectations_to(Json& object) const;
   /// The map with what is expected of each cell now, as SVG.
   [[nodiscard]] std::string picture() const;
 

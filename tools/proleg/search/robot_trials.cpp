@@ -48,7 +48,9 @@ void require_whole_gait(const ChildEnd& end, std::uint32_t ticks) {
     if (message.empty() && result.is_object()) {
       message = ": its result is " + one_line(result.dump());
     }
-    throw TrialFailed("'proleg drive' has ended with status " + std::to_string(end.status) + message);
+    constexpr int first_of_signals = 129;  // its last act, the end of the power, is then uncertain
+    throw TrialFailed("'proleg drive' has ended with status " + std::to_string(end.status) + message +
+                      (end.status >= first_of_signals ? "; switch the robot off" : ""));
   }
   if (!result.is_object() || !result.contains("ticks") || !result.contains("restarts")) {
     throw TrialFailed("'proleg drive' has printed no result" + message);

@@ -4,6 +4,7 @@
 #include <exception>
 #include <span>
 #include <string_view>
+#include <system_error>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/hash/sha256.hpp"
@@ -23,6 +24,33 @@ constexpr std::string_view no_suspects = "none";
 /// Damages that are simulated before the scores are kept: a user who stops the command loses no more.
 constexpr std::size_t damages_at_once = 8;
 
+/// Those of an earlier command with the same inputs. What cannot be read is made again.
+optimize::DamageScores kept_scores(const std::filesystem::path& file, const std::string& inputs, std::size_t gaits) {
+  if (found_instead_of_file(file)) {  // also what cannot be read to an end, such as a pipe
+    return {};
+  }
+  try {
+    return optimize::read_damage_scores(read_whole_file(file), inputs, gaits);
+  } catch (const FileError&) {
+    return {};
+  }
+}
+
+/// Adds scores to those of the file, which another command may have written meanwhile.
+void keep_scores(const std::filesystem::path& file, const std::string& inputs, optimize::DamageScores scores,
+                 std::size_t gaits) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
+    return;
+  }
+  try {
+    scores.merge(kept_scores(file, inputs, gaits));
+    write_file(file, optimize::text_of(scores, inputs));
+  } catch (const std::exception&) {
+    // An atlas that cannot be written to, or a full disk: the next time takes longer, and nothing else is lost.
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> suspected_damages(const std::vector<std::string>& named, const optimize::Atlas& atlas) {
@@ -32,7 +60,7 @@ std::vector<std::string> suspected_damages(const std::vector<std::string>& named
     suspects = sim::usual_damages(intact);
   }
   for (const std::string& word : named) {
-    if (word == no_suspects || std::ranges::find(suspects, word) != suspects.end()) {
+    if (word == no_suspects) {
       continue;
     }
     if (atlas.experiment.on_robot) {
@@ -45,23 +73,19 @@ std::vector<std::string> suspected_damages(const std::vector<std::string>& named
     } catch (const InputError& refused) {
       throw InputError(std::string("--suspect: ") + refused.problem());
     }
-    suspects.push_back(word);
+    if (const std::string its = sim::damage_word(intact, word); std::ranges::find(suspects, its) == suspects.end()) {
+      suspects.push_back(its);
+    }
   }
   return suspects;
 }
 
 optimize::DamageScores scores_with(const optimize::Atlas& atlas, const std::filesystem::path& folder,
                                    const std::vector<std::string>& suspects) {
-  const std::filesystem::path file = folder / "damage_scores.txt";
+  const std::filesystem::path file =
+      folder / ("damage_scores_" + number_text(atlas.experiment.scenario.duration_s) + "s.txt");
   const std::string inputs = sha256_hex(atlas.fingerprint() + ' ' + result_key);
-  optimize::DamageScores scores;
-  if (!found_instead_of_file(file)) {  // nothing that cannot be read to an end, such as a pipe
-    try {
-      scores = optimize::read_damage_scores(read_whole_file(file), inputs, atlas.gaits.size());
-    } catch (const FileError&) {
-      // They are made again.
-    }
-  }
+  optimize::DamageScores scores = kept_scores(file, inputs, atlas.gaits.size());
   std::vector<std::string> missing;
   for (const std::string& suspect : suspects) {
     if (!scores.contains(suspect)) {
@@ -77,11 +101,7 @@ optimize::DamageScores scores_with(const optimize::Atlas& atlas, const std::file
       progress.show_share(done / static_cast<double>(missing.size()));
     };
     scores.merge(optimize::rate_with_damages(atlas, damages, show, [] { return interrupted(); }));
-    try {
-      write_file(file, optimize::text_of(scores, inputs));
-    } catch (const std::exception&) {
-      // An atlas that cannot be written to, or a full disk: the next time takes longer, and nothing else is lost.
-    }
+    keep_scores(file, inputs, scores, atlas.gaits.size());
   }
   return scores;
 }

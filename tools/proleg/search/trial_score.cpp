@@ -69,6 +69,9 @@ bool is_possible(double number, sim::Measure measure) {
   return std::abs(number) <= largest_number && (number >= 0.0 || sim::declaration_of(measure).may_be_negative);
 }
 
+/// So many are no person's: another program writes into standard input.
+constexpr int most_wrong_answers = 100;
+
 /// "number from 0 to 1e9 (distance in m)"
 std::string expected_number(sim::Measure measure) {
   return std::string("number from ") + (sim::declaration_of(measure).may_be_negative ? "-1e9" : "0") + " to 1e9 (" +
@@ -200,7 +203,7 @@ std::optional<double> TrialScore::ask(const DrivenTrial& trial) {
   }
   print_(trial.name + ": the servos have no power. Put the robot back, then type its " + with_unit(measured_) +
          ": the next trial begins at once. Or: again (make this trial once more), stop (end the trials)");
-  while (true) {
+  for (int wrong = 0; wrong < most_wrong_answers; ++wrong) {
     const std::string whole_line = next_line();
     const bool is_too_long = whole_line.size() > InputLines::longest_line;
     const std::string line(is_too_long ? std::string_view() : trimmed(whole_line));
@@ -218,6 +221,8 @@ std::optional<double> TrialScore::ask(const DrivenTrial& trial) {
                         : in_quotes(line)) +
            ", expected a " + expected_number(measured_) + ", again or stop");
   }
+  print_(std::to_string(most_wrong_answers) + " wrong answers: no further trial");
+  throw optimize::SearchEnded();
 }
 
 double TrialScore::run_program(const DrivenTrial& trial) const {
@@ -242,7 +247,7 @@ double TrialScore::run_program(const DrivenTrial& trial) const {
   } else if (end.status != 0) {
     found = "exit status " + std::to_string(end.status) + (end.last_message.empty() ? "" : ": " + end.last_message);
   } else if (!number || !is_possible(*number, measured_)) {
-    found = text.empty() ? "no output" : in_quotes(text);
+    found = text.empty() ? "no output" : in_quotes(one_line(text));
   } else {
     if (!end.last_message.empty()) {
       print_(end.last_message);

@@ -71,6 +71,15 @@ TEST(Adaptation, FindsTheHillThatIsLeftWhenTheHighestIsDamaged) {
   EXPECT_NEAR(map.points[adaptation.best()->gait][0], 0.8, 0.1);
 }
 
+TEST(Adaptation, MeasuresAllInSharesOfTheBestGaitAlsoIfValuesAreCosts) {
+  for (const double sign : {1.0, -1.0}) {
+    const Map map{{{0.0}, {100.0}}, {sign * 7.0, sign * 7.0 - 16.0}};
+    const Adaptation adaptation = map.adaptation({});
+    EXPECT_DOUBLE_EQ(adaptation.expected()[0].deviation, 7.0);
+    EXPECT_DOUBLE_EQ(adaptation.expected()[1].deviation, 7.0);
+  }
+}
+
 TEST(Adaptation, LearnsNothingOfGaitsThatAreFarAway) {
   const Map map{{{0.0, 0.0}, {0.05, 0.0}, {1.0, 1.0}}, {1.0, 1.0, 0.7}};
   Adaptation adaptation = map.adaptation({.kappa = 0.05, .length = 0.1});

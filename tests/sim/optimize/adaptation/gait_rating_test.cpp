@@ -130,6 +130,7 @@ TEST(DamageScores, OfOtherInputsOrOfADamagedFileAreNone) {
   EXPECT_TRUE(read_damage_scores(text, "abc", 3).empty());
   EXPECT_TRUE(read_damage_scores(text + "powerless:J3", "abc", 2).empty());
   EXPECT_TRUE(read_damage_scores(text + "powerless:J3\t0.1 nan", "abc", 2).empty());
+  EXPECT_TRUE(read_damage_scores(text + "powerless:J3\t0.1 1e308\n", "abc", 2).empty());
   EXPECT_TRUE(read_damage_scores("", "abc", 2).empty());
   EXPECT_TRUE(read_damage_scores(std::string("\0\xff\n", 3), "abc", 2).empty());
   for (std::size_t length = 0; length < text.size(); ++length) {

@@ -75,6 +75,7 @@ TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
   EXPECT_NE(with("\n2\t1,1\t", "\n2\t8,1\t").find("trials.tsv:6:"), std::string::npos) << "no gait in this cell";
   EXPECT_NE(with("\n2\t1,1\t", "\n3\t1,1\t").find("trials.tsv:6:"), std::string::npos) << "trial 2 is missing";
   EXPECT_NE(with("0.125\t0.1\t", "0.125\tinf\t").find("trials.tsv:5:"), std::string::npos);
+  EXPECT_NE(with("0.125\t0.1\t", "0.125\t1e200\t").find("trials.tsv:5:"), std::string::npos);
   EXPECT_NE(with("0.125\t0.1\t", "0.125\t").find("trials.tsv:5:"), std::string::npos);
 }
 

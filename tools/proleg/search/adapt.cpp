@@ -1,9 +1,6 @@
 // proleg adapt: finds a gait for a robot that is not as its atlas expects, in a few trials.
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <set>
 #include <span>
@@ -23,7 +20,6 @@
 #include "sim/optimize/adaptation/trial_table.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
-#include "sim/optimize/report/report.hpp"
 #include "sim/scenario/damage.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -33,6 +29,7 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/common/terminal.hpp"
+#include "tools/proleg/search/adaptation_run.hpp"
 #include "tools/proleg/search/made_trials.hpp"
 #include "tools/proleg/search/optimise.hpp"
 #include "tools/proleg/search/robot_trials.hpp"
@@ -58,9 +55,6 @@ struct AdaptOptions {
   std::optional<std::string> out;
   std::optional<std::string> resume;
 };
-
-constexpr std::array<std::string_view, 6> result_files{
-    "trials.tsv", "trials.svg", "adapted.simulation.xml", "adapted.actuation.xml", "adapted.files", trials_folder};
 
 double number_of(const std::string& option, const std::string& word, double lowest, double highest) {
   const std::optional<double> number = parse_number(word);
@@ -131,37 +125,31 @@ std::string inputs_of(const Atlas& atlas, const sim::Scenario& scenario, const A
   return sha256_hex(text);
 }
 
-optimize::TrialComments comments_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options,
-                                    const std::filesystem::path& folder) {
-  const std::filesystem::path place = folder_of(options.atlas);
+AdaptationLabels labels_of(const Atlas& atlas, const sim::Scenario& scenario, const AdaptOptions& options,
+                           const std::filesystem::path& folder) {
+  std::string maker(options.robot.bus ? optimize::robot_name : sim::name_of(scenario.environment.engine));
   std::string robot = std::filesystem::path(options.scenario.file).filename().string();
   if (options.robot.bus) {
     robot += " on " + *options.robot.bus;
   }
-  for (const std::string& damage : options.damages) {
-    robot += ", " + damage;
-  }
-  return {inputs_of(atlas, scenario, options), std::filesystem::relative(place, folder).string(), std::move(robot), {}};
-}
-
-std::string trial_maker(const AdaptOptions& options, const sim::Scenario& scenario) {
-  return std::string(options.robot.bus ? optimize::robot_name : sim::name_of(scenario.environment.engine));
-}
-
-/// The begin of what --json prints.
-Json head_object(const AdaptOptions& options, const sim::Scenario& scenario) {
   Json damages = Json::empty_array();
   for (const std::string& damage : options.damages) {
+    robot += ", " + damage;
     damages.append(damage);
   }
-  return {{"scenario", options.scenario.file}, {"atlas", options.atlas}, {"engine", trial_maker(options, scenario)},
-          {"bus", options.robot.bus},          {"damage", damages},      {"seconds", scenario.duration_s}};
+  const Json head{{"scenario", options.scenario.file}, {"atlas", options.atlas}, {"engine", maker},
+                  {"bus", options.robot.bus},          {"damage", damages},      {"seconds", scenario.duration_s}};
+  const std::filesystem::path place = std::filesystem::relative(folder_of(options.atlas), folder);
+  return {{inputs_of(atlas, scenario, options), place.string(), std::move(robot), {}},
+          std::move(maker),
+          head,
+          options.scenario.json};
 }
 
 /// The trials that an earlier run has made.
 std::vector<MadeTrial> earlier_trials(const Atlas& atlas, const std::string& inputs,
                                       const std::filesystem::path& folder) {
-  const std::filesystem::path table = folder / result_files[0];
+  const std::filesystem::path table = folder / AdaptationRun::files[0];
   if (const auto found = found_instead_of_file(table)) {
     throw InputError(table.string(), 0, *found, "the trials of an earlier run; there is nothing to resume");
   }
@@ -170,7 +158,7 @@ std::vector<MadeTrial> earlier_trials(const Atlas& atlas, const std::string& inp
 
 /// Throws InputError if a file that will be written again is none: a pipe would wait for a reader.
 void require_replaceable(const std::filesystem::path& folder) {
-  for (const std::string_view name : std::span(result_files).first(4)) {
+  for (const std::string_view name : std::span(AdaptationRun::files).first(4)) {
     const std::filesystem::path file = folder / name;
     std::error_code error;
     if (std::filesystem::exists(file, error)) {
@@ -181,167 +169,6 @@ void require_replaceable(const std::filesystem::path& folder) {
   }
 }
 
-/// The trials of a robot, with their files.
-class Run {
- public:
-  /// made: knows the trials of an earlier run.
-  Run(const AdaptOptions& options, const Atlas& atlas, const sim::Scenario& intact, std::filesystem::path folder,
-      MadeTrials made)
-      : options_(options),
-        atlas_(atlas),
-        intact_(intact),
-        folder_(std::move(folder)),
-        comments_(comments_of(atlas, intact, options, folder_)),
-        made_(std::move(made)),
-        resumed_(made_.all().size()) {}
-
-  /// Makes trials until they end, the user stops them, or one fails. An error before the first one has the usual way.
-  void make_trials(optimize::TrialRobot& robot) {
-    try {
-      write_table();  // a run can be resumed from its first trial on
-      while (std::optional<MadeTrial> trial = made_.next()) {
-        const optimize::TrialOutcome outcome = robot.try_gait(made_.gait_of(*trial));
-        trial->measured = outcome.score;
-        trial->failure = outcome.failure;
-        made_.add(*trial);
-        write_table();
-        if (!options_.scenario.json) {
-          std::cout << made_.line_of_last() << std::endl;  // a trial takes seconds: each is shown at once
-        }
-      }
-    } catch (const optimize::SearchFailed& error) {
-      failure_ = error.reason();
-    } catch (const optimize::SearchEnded&) {
-      is_stopped_ = true;
-    } catch (const std::exception& error) {
-      if (made_.all().empty()) {
-        throw;
-      }
-      failure_ = one_line(error.what());
-    }
-  }
-
-  /// Writes picture and scenario, prints the result, and returns the exit status.
-  int finish() {
-    const bool has_best = made_.best() != nullptr;
-    try {
-      if (has_best) {
-        write_adapted();
-      }
-      if (!made_.all().empty()) {
-        write_file(folder_ / result_files[1], made_.picture());
-      }
-    } catch (const std::exception& error) {  // the trials are in their table
-      failure_ = failure_.value_or(one_line(error.what()));
-    }
-    if (options_.scenario.json) {
-      std::cout << json().text() << '\n';
-    } else if (!made_.all().empty()) {
-      print();
-    }
-    if (is_cut_short()) {
-      print_how_to_continue();
-    } else if (!has_best) {
-      std::cerr << "proleg adapt: no trial has a score; the first failure: " << made_.all().front().failure << '\n';
-    }
-    return has_best && !is_cut_short() ? exit_success : exit_failed;
-  }
-
-  /// The user has stopped this command while it simulated the gaits of the atlas: it knows what was tried earlier, and
-  /// nothing of what the gaits promise now. Writes no file. Returns the exit status.
-  int end_before_trials() {
-    is_stopped_ = true;
-    has_expectations_ = false;
-    if (options_.scenario.json) {
-      std::cout << json().text() << '\n';
-    }
-    if (made_.all().empty()) {
-      std::cerr << "proleg adapt: interrupted before the first trial\n";
-    } else {
-      print_how_to_continue();
-    }
-    return exit_failed;
-  }
-
- private:
-  [[nodiscard]] std::string count_text() const {
-    const std::size_t count = made_.all().size();
-    return std::to_string(count) + (count == 1 ? " trial" : " trials");
-  }
-
-  void print_how_to_continue() const {
-    std::cerr << "proleg adapt: "
-              << (failure_ ? "ended after " + count_text() + ", because " + *failure_
-                           : "interrupted after " + count_text())
-              << "; the same command with --resume " << shell_argument(folder_.string()) << " continues\n";
-  }
-
-  void write_table() {
-    comments_.diagnosis = made_.all().empty() ? std::string() : made_.text_of_diagnosis();
-    write_file(folder_ / result_files[0], optimize::trial_table(atlas_, comments_, made_.all()));
-  }
-
-  /// The scenario is that of FILE with the gait: damages by options are not in it.
-  void write_adapted() const {
-    sim::Scenario adapted = intact_;
-    atlas_.experiment.space.apply(made_.gait_of(*made_.best()), adapted);
-    optimize::write_scenario(adapted,
-                             "The best gait of " + std::to_string(made_.all().size()) +
-                                 " trials. Damages and friction of the command line are not in these files.",
-                             folder_, "adapted");
-  }
-
-  [[nodiscard]] bool is_cut_short() const { return is_stopped_ || failure_; }
-  [[nodiscard]] std::string ending() const {
-    return failure_ ? "failed" : is_stopped_ ? "interrupted" : made_.ending();
-  }
-
-  void print() const {
-    if (resumed_ > 0) {
-      std::printf("%-10s %zu trials were there already\n", "resumed", resumed_);
-    }
-    if (made_.best() != nullptr) {
-      std::printf("%-10s %s\n", "best", made_.text_of_best().c_str());
-    }
-    if (const std::string diagnosis = made_.text_of_diagnosis(); !diagnosis.empty()) {
-      std::printf("%-10s %s\n", "damage", diagnosis.c_str());
-    }
-    std::printf("%-10s %s after %s of %s s, engine %s\n", "ended", ending().c_str(), count_text().c_str(),
-                number_text(intact_.duration_s).c_str(), trial_maker(options_, intact_).c_str());
-    for (const std::string_view file : result_files) {
-      if (std::filesystem::exists(folder_ / file)) {
-        std::printf("%-10s %s\n", "written", (folder_ / file).c_str());
-      }
-    }
-  }
-
-  /// What --json prints.
-  [[nodiscard]] Json json() const {
-    Json object = head_object(options_, intact_);
-    made_.add_trials_to(object);
-    if (has_expectations_) {
-      made_.add_expectations_to(object);
-    }
-    object.add("resumed", resumed_);
-    object.add("ended", ending());
-    object.add("reason", failure_);
-    object.add("out", folder_.string());
-    object.add("build_id", build_id);
-    return object;
-  }
-
-  const AdaptOptions& options_;
-  const Atlas& atlas_;
-  const sim::Scenario& intact_;  ///< without the damages of the command line
-  std::filesystem::path folder_;
-  optimize::TrialComments comments_;
-  MadeTrials made_;
-  std::size_t resumed_;
-  bool is_stopped_ = false;
-  bool has_expectations_ = true;
-  std::optional<std::string> failure_;  ///< why no further trial could be made
-};
-
 int adapt(AdaptOptions& options) {
   static_cast<void>(settings_of(options));  // errors in them come before the work
   require_bus(options.robot);
@@ -350,7 +177,7 @@ int adapt(AdaptOptions& options) {
   const std::filesystem::path folder =
       chosen_folder(options.out, options.resume, name.substr(0, name.find('.')) + "_adapt", "run");
   const std::span<const std::string_view> new_files =
-      options.resume ? std::span<const std::string_view>() : result_files;
+      options.resume ? std::span<const std::string_view>() : AdaptationRun::files;
   check_result_folder(folder, new_files);
   if (options.resume) {
     require_replaceable(folder);
@@ -387,13 +214,15 @@ int adapt(AdaptOptions& options) {
   } catch (const optimize::SearchEnded&) {
     MadeTrials made(atlas, optimize::hypotheses_of(atlas, {}, {}), {}, settings_of(options));
     add_earlier(made);
-    return Run(options, atlas, setup.scenario, folder, std::move(made)).end_before_trials();
+    return AdaptationRun(labels_of(atlas, setup.scenario, options, folder), atlas, setup.scenario, folder,
+                         std::move(made))
+        .end_before_trials();
   }
   const ResultFolder claim(folder, new_files);
   MadeTrials made(atlas, std::move(hypotheses), suspects, settings_of(options));
   add_earlier(made);
   const std::size_t made_before = made.all().size();
-  Run run(options, atlas, setup.scenario, folder, std::move(made));
+  AdaptationRun run(labels_of(atlas, setup.scenario, options, folder), atlas, setup.scenario, folder, std::move(made));
   if (robot_trials) {
     RobotOnBus robot(atlas.experiment, setup.scenario, *robot_trials, made_before);
     run.make_trials(robot);

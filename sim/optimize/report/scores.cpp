@@ -38,7 +38,7 @@ std::string fixed_text(double value, int decimals) {
 }
 
 std::optional<double> parse_score(std::string_view word) {
-  constexpr double largest = 1e12;
+  constexpr double largest = 1e100;
   const std::optional<double> score = parse_number(word);
   return score && std::abs(*score) <= largest ? score : std::nullopt;
 }

@@ -26,8 +26,8 @@ namespace proleg::optimize {
 /// The same with a unit, if it has one: "1.958 m".
 [[nodiscard]] std::string rounded_text(double value, std::string_view unit);
 
-/// A number that a score can be: at most 10^12 or at least -10^12, which is the range of the score of a run that failed
-///. Nothing for anything else: calculations with it could overflow.
+/// The score that is the whole word; nothing for what is no number, or beyond +-10^100: its square could overflow. (The
+/// cost of transport of a robot that hardly moves is large, too, but far below that.)
 [[nodiscard]] std::optional<double> parse_score(std::string_view word);
 
 /// The score, limited to +-10^9, so that sums and coordinates stay finite.

@@ -168,6 +168,8 @@ class Adapt(unittest.TestCase):
         result = json.loads(out)
         self.assertEqual((result["ended"], result["resumed"], result["trials"], result["best"]),
                          ("interrupted", 2, first["trials"], first["best"]))
+        self.assertEqual(set(result), set(first))
+        self.assertIsNone(result["diagnosis"])
         self.assertIn("interrupted after 2 trials; the same command with --resume", errors)
 
     def test_the_usual_damages_are_suspected_beside_those_that_are_named(self):

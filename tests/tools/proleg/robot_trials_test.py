@@ -224,6 +224,13 @@ class RobotTrials(unittest.TestCase):
         self.assertIn("interrupted after 1 trial;", program.messages[-1])
         self.assertEqual([line.split("\t")[-2] for line in self.made("person")], ["0.01"])
 
+    def test_a_program_that_types_what_is_no_answer_ends_the_trials(self):
+        ended = self.proleg(*self.adapting("flood", self.simulated_bus()), "--json", input="0.01\n" + 10_000 * "y\n")
+        self.assertEqual(ended.returncode, 1)
+        self.assertEqual(ended.stderr.count("found 'y', expected a number"), 100)
+        self.assertIn("100 wrong answers: no further trial", ended.stderr)
+        self.assertEqual([line.split("\t")[-2] for line in self.made("flood")], ["0.01"])
+
     def test_a_robot_that_does_not_move_has_a_score_of_0(self):
         still = self.proleg(*self.adapting("still", self.simulated_bus(), trials=2), "--json", input="0\n0\n")
         self.assertEqual(still.returncode, 0, still.stderr)

@@ -144,6 +144,9 @@ Json AdaptationRun::json() const {
   made_.add_trials_to(object);
   if (has_expectations_) {
     made_.add_expectations_to(object);
+  } else {
+    object.add("best_expected", Json());
+    object.add("diagnosis", Json());
   }
   object.add("resumed", resumed_);
   object.add("ended", ending());

@@ -51,6 +51,12 @@ TEST(TrialTable, IsReadBack) {
   EXPECT_EQ(read[1].failure, "the robot fell");
 }
 
+TEST(TrialTable, OfARobotThatHardlyMovesIsReadBackThoughItsCostsAreLarge) {
+  const Atlas atlas = small_atlas();
+  const std::vector<MadeTrial> made{{0, 1.2, 0.1, 3.1e17, ""}};
+  EXPECT_EQ(read_trial_table(atlas, "abc", "trials.tsv", trial_table(atlas, comments, made)).at(0).measured, 3.1e17);
+}
+
 TEST(TrialTable, TellsGaitsOfOneCellApartByTheirValues) {
   Atlas atlas = small_atlas();
   atlas.gaits.push_back({atlas.gaits[0].cell, atlas.gaits[0].candidate, 0.5});

@@ -47,10 +47,6 @@ std::int32_t joint_angle_in_steps(double radians) {
 
 }  // namespace
 
-bool needs_process_of_its_own(const Scenario& scenario) {
-  return scenario.environment.engine == PhysicsEngine::ode && choose_stepper(scenario) == Stepper::iterative;
-}
-
 Plant::Plant(const Scenario& scenario, std::unique_ptr<World> world)
     : scenario_(scenario),
       world_(world ? std::move(world) : make_world(scenario)),

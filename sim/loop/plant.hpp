@@ -21,10 +21,6 @@
 
 namespace proleg::sim {
 
-/// Whether a world of the scenario repeats only in a process that has no other world at that time: the iterative solver
-/// of ODE has one random generator for all of them.
-[[nodiscard]] bool needs_process_of_its_own(const Scenario& scenario);
-
 /// The servos and the world that the joints' programs move, in steps of the physics. A tick is a whole number of steps.
 class Plant {
  public:

@@ -1,6 +1,7 @@
 #include "sim/ode/engine.hpp"
 
 #include <ode/ode.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <array>
@@ -42,7 +43,30 @@ void keep_message(int /*number*/, const char* format, va_list arguments) {
 
 thread_local StepMemory* selected = nullptr;
 
+std::mutex* shared_lock = nullptr;
+
+/// Never destroyed: threads may simulate while the program ends. fork() waits for the end of a step, so that the child
+/// has the engine between two steps, and a lock that is free.
+std::mutex& own_lock() {
+  static auto* const lock = [] {
+    static auto* const made = new std::mutex;
+    pthread_atfork([] { made->lock(); }, [] { made->unlock(); }, [] { made->unlock(); });
+    return made;
+  }();
+  return *lock;
+}
+
 }  // namespace
+
+std::mutex& SolverRandomNumbers::lock() { return shared_lock != nullptr ? *shared_lock : own_lock(); }
+void SolverRandomNumbers::use_lock(std::mutex& lock) { shared_lock = &lock; }
+
+void SolverRandomNumbers::quick_step(dWorldID world, double step_s) {
+  const std::lock_guard turn(lock());
+  dRandSetSeed(state_);
+  dWorldQuickStep(world, step_s);
+  state_ = dRandGetSeed();
+}
 
 void prepare_engine_for_this_thread() {
   static std::once_flag once;

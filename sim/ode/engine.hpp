@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include <cstddef>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,23 @@ void prepare_engine_for_this_thread();
 [[nodiscard]] std::size_t engine_messages();
 /// The first messages that differ, at most ten.
 [[nodiscard]] std::span<const std::string> engine_message_texts();
+
+/// The random numbers with which dWorldQuickStep orders its rows. The engine has one generator for a process, so each
+/// world keeps the state of its own, and lends it to the engine for a step. Worlds that are stepped by several threads
+/// repeat like worlds that are alone.
+class SolverRandomNumbers {
+ public:
+  /// dWorldQuickStep with this state. Waits while another thread is in it.
+  void quick_step(dWorldID world, double step_s);
+
+  /// The lock of all worlds of this process. A process that loads this code several times (extension modules of Python)
+  /// must give the same lock to each copy, before its first step. A child that fork() makes can use it at once.
+  [[nodiscard]] static std::mutex& lock();
+  static void use_lock(std::mutex& lock);
+
+ private:
+  unsigned long state_ = 0;
+};
 
 /// The memory that the engine takes for the steps of a world. If an error of the engine ends a step in its middle, the
 /// engine does not free this memory; the destructor frees it.

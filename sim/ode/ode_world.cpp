@@ -51,7 +51,6 @@ class OdeWorld final : public World {
     threading_.reset(dThreadingAllocateSelfThreadedImplementation());
     dWorldSetStepThreadingImplementation(world_.get(), dThreadingImplementationGetFunctions(threading_.get()),
                                          threading_.get());
-    dRandSetSeed(0);  // dWorldQuickStep shuffles its rows with these random numbers
     robot_space_.reset(dSimpleSpaceCreate(nullptr));
     environment_space_.reset(dSimpleSpaceCreate(nullptr));
     object_space_.reset(dSimpleSpaceCreate(nullptr));
@@ -222,7 +221,7 @@ class OdeWorld final : public World {
     if (stepper_ == Stepper::direct) {
       dWorldStep(world_.get(), step_s_);
     } else {
-      dWorldQuickStep(world_.get(), step_s_);
+      random_numbers_.quick_step(world_.get(), step_s_);
     }
     contacts_->end_step();
     for (HingeMotor& motor : motors_) {
@@ -352,6 +351,7 @@ class OdeWorld final : public World {
 
   // The engine needs these in the order of declaration; they are destroyed in reverse.
   StepMemory step_memory_;
+  SolverRandomNumbers random_numbers_;
   Shapes shapes_;
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;

@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <thread>
+#include <vector>
 
 #include "sim/physics/physics_error.hpp"
 #include "tests/sim/physics/world_contract.hpp"
@@ -14,6 +20,8 @@ namespace {
 std::unique_ptr<World> iterative_world(const RobotModel& robot, const EnvironmentModel& environment) {
   return make_ode_world(robot, environment, step_s, Stepper::iterative);
 }
+
+constexpr std::size_t crawling_links = 13;
 
 const Engine direct{.name = "Direct", .make = ode_world, .position = 1e-12, .stop = 2.1e-3};
 const Engine iterative{.name = "Iterative", .make = iterative_world};
@@ -28,6 +36,81 @@ INSTANTIATE_TEST_SUITE_P(Ode, MovingObjects, testing::Values(direct), engine_nam
 INSTANTIATE_TEST_SUITE_P(Ode, TouchingBoxes, testing::Values(direct), engine_name);
 INSTANTIATE_TEST_SUITE_P(Ode, PulledPlate, testing::Combine(testing::Values(direct, iterative), headings),
                          engine_and_heading);
+
+/// The positions of all links after some steps of a chain that falls and crawls, bit by bit.
+std::vector<double> positions_after_steps(World& world, int steps) {
+  std::vector<double> numbers;
+  for (int i = 0; i < steps; ++i) {
+    for (std::size_t joint = 0; joint < crawling_links - 1; ++joint) {
+      world.set_joint_speed(joint, std::sin(0.03 * i + static_cast<double>(joint)));
+    }
+    world.step();
+  }
+  for (std::size_t link = 0; link < crawling_links; ++link) {
+    const Pose pose = world.link_pose(link);
+    numbers.insert(numbers.end(), {pose.position.x(), pose.position.y(), pose.position.z()});
+  }
+  return numbers;
+}
+
+std::unique_ptr<World> crawling_world() { return iterative_world(chain(crawling_links), flat_ground(0.5, 0.026)); }
+
+TEST(OdeWorld, TheIterativeStepperRepeatsBesideAWorldThatIsSteppedInTurns) {
+  const std::vector<double> alone = positions_after_steps(*crawling_world(), 300);
+  const std::unique_ptr<World> first = crawling_world();
+  const std::unique_ptr<World> second = crawling_world();
+  positions_after_steps(*first, 7);
+  positions_after_steps(*second, 100);
+  const std::unique_ptr<World> third = crawling_world();  // made while others run
+  EXPECT_EQ(positions_after_steps(*third, 300), alone);
+  const std::vector<double> rest_alone = [] {
+    const std::unique_ptr<World> world = crawling_world();
+    positions_after_steps(*world, 7);
+    return positions_after_steps(*world, 300);
+  }();
+  EXPECT_EQ(positions_after_steps(*first, 300), rest_alone);
+  EXPECT_NE(rest_alone, alone) << "another run, so the comparison can fail";
+}
+
+TEST(OdeWorld, TheIterativeStepperRepeatsBesideWorldsOfOtherThreads) {
+  const std::vector<double> alone = positions_after_steps(*crawling_world(), 1'000);
+  std::array<std::vector<double>, 4> beside;
+  std::vector<std::thread> threads;
+  for (std::vector<double>& numbers : beside) {
+    threads.emplace_back([&numbers] { numbers = positions_after_steps(*crawling_world(), 1'000); });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (const std::vector<double>& numbers : beside) {
+    EXPECT_EQ(numbers, alone);
+  }
+}
+
+/// A child of fork() has the threads of its parent no more, whatever they were in the middle of.
+TEST(OdeWorld, TheIterativeStepperWorksInAChildThatWasForkedDuringAStep) {
+  std::atomic<bool> stops = false;
+  std::thread beside([&stops] {
+    const std::unique_ptr<World> world = crawling_world();
+    while (!stops) {
+      positions_after_steps(*world, 1);
+    }
+  });
+  const std::vector<double> alone = positions_after_steps(*crawling_world(), 20);
+  for (int i = 0; i < 20; ++i) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      alarm(600);  // the test ends if the child waits for ever
+      _exit(positions_after_steps(*crawling_world(), 20) == alone ? 0 : 1);
+    }
+    int status = -1;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  stops = true;
+  beside.join();
+}
 
 /// Runs until the engine fails. With almost no inertia its direct solver fails one of its assertions.
 void struggle() {

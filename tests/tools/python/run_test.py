@@ -122,7 +122,7 @@ class ARun(unittest.TestCase):
         self.assertEqual(proleg.simulate(runs[0].scenario).world_hash, runs[0].world_hash)
 
     def test_in_many_threads_is_the_same(self):
-        """Worlds of ODE's iterative solver share a random generator; they take turns."""
+        """Worlds of ODE's iterative solver share the random generator of the engine."""
         for name in ("caterpillar", "twenty_joints"):
             expected = proleg.simulate(name, 0.3, engine="ode")
             runs = []

@@ -285,8 +285,6 @@ void LiveSimulation::end_recording() {
   }
 }
 
-/// The simulation before is destroyed first: the iterative solver has one random generator in the process, which each
-/// new world begins anew.
 void LiveSimulation::begin() {
   earlier_servos_.clear();
   simulation_.reset();

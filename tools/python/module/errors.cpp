@@ -1,9 +1,9 @@
 #include <exception>
-
 #include <mutex>
-#include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 
+#include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/ode/engine.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -62,7 +62,7 @@ void add_errors(pybind11::module_& module) {
   run_error = add(module, "RunError", "A simulation failed: the robot flew off, or the engine broke down.",
                   with(PyExc_RuntimeError));
   pybind11::register_local_exception_translator(translate);
-  module.attr("_solver_lock") = pybind11::capsule(solver_lock(), lock_name);
+  module.attr("_solver_lock") = pybind11::capsule(&sim::SolverRandomNumbers::lock(), lock_name);
 }
 
 void share_with_core(pybind11::module_& module) {
@@ -72,7 +72,7 @@ void share_with_core(pybind11::module_& module) {
   run_error = core.attr("RunError").ptr();
   pybind11::register_local_exception_translator(translate);
   const pybind11::capsule lock = core.attr("_solver_lock");
-  use_solver_lock(lock.get_pointer<std::timed_mutex>());
+  sim::SolverRandomNumbers::use_lock(*lock.get_pointer<std::mutex>());
   module.attr("_core") = core;
 }
 

@@ -196,7 +196,6 @@ py::dict simulate(sim::Scenario scenario, const std::vector<std::string>& keep,
   {
     const py::gil_scoped_release released;
     SignalWatch watch;
-    const EngineTurn turn(scenario, &watch);
     simulation =
         std::make_unique<sim::Simulation>(scenario, &losses);  // made before any file: it may refuse the scenario
     std::unique_ptr<sim::Recorder> recorder;

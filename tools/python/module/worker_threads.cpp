@@ -24,8 +24,7 @@ std::size_t part_size(const sim::Scenario& scenario, std::size_t count, std::siz
 }  // namespace
 
 WorkerThreads::WorkerThreads(const sim::Scenario& scenario, std::size_t count, std::size_t workers, Work work)
-    : scenario_(scenario),
-      count_(count),
+    : count_(count),
       part_(part_size(scenario, count, workers)),
       work_(std::move(work)),
       working_(std::min(workers, count)) {
@@ -56,7 +55,6 @@ void WorkerThreads::wait() {
 
 void WorkerThreads::work() {
   try {
-    const EngineTurn turn(scenario_, nullptr, &stop_);
     while (!stop_) {
       const std::size_t first = next_.fetch_add(part_);
       if (first >= count_) {

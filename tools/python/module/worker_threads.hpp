@@ -21,7 +21,7 @@ class WorkerThreads {
   /// Works from `first` to before `end`, and ends early when `stop` is true.
   using Work = std::function<void(std::size_t first, std::size_t end, const std::atomic<bool>& stop)>;
 
-  /// scenario: what is simulated; it decides how large a part is, and must outlive this. count: of all work, above 0.
+  /// scenario: what is simulated; it decides how large a part is. count: of all work, above 0.
   /// workers: threads, at least 1.
   WorkerThreads(const sim::Scenario& scenario, std::size_t count, std::size_t workers, Work work);
   ~WorkerThreads();  ///< stops them
@@ -35,7 +35,6 @@ class WorkerThreads {
  private:
   void work();
 
-  const sim::Scenario& scenario_;
   std::size_t count_;
   std::size_t part_;
   Work work_;

@@ -84,8 +84,6 @@ class Worlds {
     std::vector<std::uint8_t> done(scenarios_.size());
     {
       const py::gil_scoped_release released;
-      SignalWatch watch;
-      const EngineTurn turn(scenarios_.front(), &watch);
       worlds_->advance(wanted);
       read_angles();
       for (std::size_t i = 0; i < scenarios_.size(); ++i) {

@@ -1,6 +1,6 @@
 // Bundles the page, or its tests.
 //   node bundle.mjs page FOLDER      index.html, app.js with its chunks, the workers, style.css; the same of a class: class.html
-//                                    and so on; FOLDER_sizes.json
+//                                    and so on; notices.txt: the licences of the packages in them; FOLDER_sizes.json
 //   node bundle.mjs player FOLDER    player.html, into which proleg export --html writes a recording
 //   node bundle.mjs tests FOLDER     each *_test.ts of tests/host/page as one program for `node --test`
 //   node bundle.mjs figures FOLDER   the program of tools/page_figures
@@ -11,6 +11,7 @@ import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } f
 import { dirname, join, relative } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
+import { noticesOf } from './notices.mjs';
 import { unusedShaders } from './unused_shaders.mjs';
 
 const room = dirname(fileURLToPath(import.meta.url));
@@ -52,9 +53,10 @@ async function bundlePage(folder) {
   });
   // Workers are programs of their own: they share no chunk with the page. The warnings of three.js are for people who write
   // scenes; its errors stay.
-  await build({
+  const workers = await build({
     ...page,
     pure: ['console.warn'],
+    metafile: true,
     entryPoints: {
       connection_worker: 'source/wire/connection_worker.ts',
       scene_worker: 'source/scene/scene_worker.ts',
@@ -62,6 +64,7 @@ async function bundlePage(folder) {
     },
     format: 'iife',
   });
+  writeFileSync(join(folder, 'notices.txt'), noticesOf([result, ofClass, workers].map(({ metafile }) => metafile)));
   for (const html of ['index.html', 'class.html']) cpSync(join(room, 'source', html), join(folder, html));
   // What the first paint, the connection and STOP need.
   const first = [...filesOf(result.metafile, 'app.js', false), 'index.html', 'style.css', 'connection_worker.js'];
@@ -178,9 +181,11 @@ async function bundlePrograms(files, folder) {
 }
 
 async function bundlePlayer(folder) {
+  const metafiles = [];
   const entry = async (file, format) => {
-    const options = { ...common, minify: true, jsx: 'automatic', jsxImportSource: 'preact', write: false };
+    const options = { ...common, minify: true, jsx: 'automatic', jsxImportSource: 'preact', metafile: true, write: false };
     const result = await build({ ...options, entryPoints: [join(room, 'source', file)], ...(format ? { format } : {}) });
+    metafiles.push(result.metafile);
     return result.outputFiles[0].text.trim();
   };
   const style = await entry('style/player.css');
@@ -200,8 +205,14 @@ async function bundlePlayer(folder) {
       return false;
     }
   }
+  const notices = noticesOf(metafiles);
+  if (notices.includes('-->')) {
+    console.error('tools/page: found the end of a comment in the notices, expected a text without one');
+    return false;
+  }
+  parts.notices = `<!--\n${notices}-->`;
   const template = readFileSync(join(room, 'source/player/player.html'), 'utf8');
-  const page = template.replace(/<!-- (policy|icon|style|scene worker|player) -->/g, (_, name) => parts[name]);
+  const page = template.replace(/<!-- (policy|icon|style|scene worker|player|notices) -->/g, (_, name) => parts[name]);
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
   writeFileSync(join(folder, 'player.html'), page);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""The licences in the package name each function of newlib that is in an image of a module: its copyright holders must be named with the bytes.
+"""The licences in the package name the copyright holders of each function of newlib that is in an image of a module, and of each
+library whose headers bring code into the programs.
 
-usage: copyright_test.py COPYRIGHT_FILE IMAGE_FOLDER
+usage: copyright_test.py SOURCE_FOLDER IMAGE_FOLDER
 """
 
 import re
@@ -11,6 +12,12 @@ import unittest
 from pathlib import Path
 
 CPU = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=soft")
+
+# Folders of headers. The code of these is in the programs, by the names of the libraries in the file.
+CODE = {"CLI": "CLI11", "Eigen": "Eigen", "boost": "Boost", "ga": "GAlib", "nlohmann": "nlohmann-json", "pagmo": "pagmo", "pybind11": "pybind11"}
+# These only declare what is in libraries that have Debian packages of their own, or in the system.
+INTERFACES = {"arpa", "assimp", "console_bridge", "elfutils", "libevdev", "libqhull_r", "linux", "mujoco", "net", "netinet", "ode", "openssl",
+              "sodium", "sys", "urdf_model", "urdf_parser"}
 
 
 def output_of(*command):
@@ -35,7 +42,15 @@ class Copyright(unittest.TestCase):
         named = {name for names in re.findall(r"\(newlib: (.*)\)", COPYRIGHT.read_text()) for name in names.split(", ")}
         self.assertEqual(named, found)
 
+    def test_it_names_the_libraries_whose_headers_are_in_the_programs(self):
+        sources = [file for room in ("host", "shared", "sim", "tools") for file in (SOURCE / room).rglob("*.[ch]pp")]
+        folders = {folder for file in sources for folder in re.findall(r"(?m)^#include <(\w+)/", file.read_text())}
+        self.assertEqual(folders - INTERFACES, set(CODE))
+        for name in CODE.values():
+            self.assertRegex(COPYRIGHT.read_text(), rf"(?m)^(Copyright:| )  .*\({name}\)$")
+
 
 if __name__ == "__main__":
-    COPYRIGHT, IMAGES = map(Path, sys.argv[1:3])
+    SOURCE, IMAGES = map(Path, sys.argv[1:3])
+    COPYRIGHT = SOURCE / "tools/release.d/copyright.in"
     unittest.main(argv=sys.argv[:1])

@@ -4,7 +4,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:f
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import type { Browser } from 'playwright-core';
 import axe from 'axe-core';
 import { launchBrowser } from './support/browser.js';
@@ -191,6 +191,13 @@ describe('the page of a recording', () => {
     assert.deepEqual(outcome, { failed: true, wasRun: false });
     viewer.expected.push(/Content Security Policy/);
     await viewer.close();
+  });
+
+  it('has the notices of the packages in it, as the player has', () => {
+    const notices = (file: string) => /<!--\nContains code of these packages:\n.*preact [0-9.]+\n.*-->\n/s.exec(readFileSync(file, 'utf8'))?.[0];
+    const page = fileURLToPath(address);
+    assert.ok(notices(page) !== undefined);
+    assert.equal(notices(page), notices('build/player/player.html'));
   });
 
   it('says so if the file is cut', async () => {

@@ -7,7 +7,8 @@ import { flat, headingOf, lifted, outline, type Plane, type Point } from '../geo
 import { fromAxisAngle, multiply, poseFromArray, type Pose, type Vector } from '../geometry/quaternion.js';
 import { decimalsOf, formatNumber, roundStep } from '../state/parameter_values.js';
 import type { RobotDocument } from '../wire/messages.js';
-import { bodyOf, groundSize, startOfRobot, type MakeApp } from './make_app.js';
+import { fittedView, isGround, largestScale, seenPoints, showsAny, smallestScale, type View } from './fitted_view.js';
+import { bodyOf, startOfRobot, type MakeApp } from './make_app.js';
 
 const lineDistance = 70; // pixels between two lines of the grid, at least
 const labelHeight = 14; // pixels
@@ -18,11 +19,6 @@ const handleDistance = 46; // pixels
 const snap = 0.01; // metres; Alt: none
 const smallestDrag = 4; // pixels: a press with a trembling hand moves nothing
 const background = -2; // in the place of the number of an object
-
-interface View {
-  centre: Point; // metres
-  scale: number; // pixels in a metre
-}
 
 // What the pointer holds: where it was pressed in the world, and what it moves.
 interface Grip {
@@ -36,11 +32,6 @@ interface Grip {
 
 function pathOf(points: readonly Point[]): string {
   return points.map(([x, y]) => `${x.toFixed(5)},${y.toFixed(5)}`).join(' ');
-}
-
-function isGround(points: readonly Point[]): boolean {
-  const extent = (axis: 0 | 1) => Math.max(...points.map((p) => p[axis])) - Math.min(...points.map((p) => p[axis]));
-  return extent(0) > groundSize;
 }
 
 // Metres between two lines: 1, 2 or 5 times a power of ten.
@@ -85,31 +76,10 @@ function Grid({ view, size }: { view: View; size: Point }) {
   );
 }
 
-// The view that shows the robot and all objects that are no ground.
-function viewOfAll(app: MakeApp, plane: Plane, size: Point): View {
-  const draft = app.draft.peek();
-  const robot = app.page.state.draftRobot.peek();
-  const points: Point[] = draft === null ? [] : [flat(plane, poseFromArray(draft.head).position)];
-  if (draft !== null && robot !== null) {
-    for (const object of draft.world.objects) {
-      const pose = poseFromArray(object.pose);
-      const all = bodyOf(robot, object)?.shapes.flatMap((shape) => outline(plane, pose, shape)) ?? [];
-      if (all.length > 0 && !isGround(all)) points.push(...all);
-    }
-  }
-  const range = (axis: 0 | 1) => [Math.min(...points.map((p) => p[axis])), Math.max(...points.map((p) => p[axis]))] as const;
-  if (points.length === 0) return { centre: [0, 0], scale: 150 };
-  const [left, right] = range(0);
-  const [low, high] = range(1);
-  const margin = plane === 'top' ? 0.8 : 0.5;
-  const scale = Math.min(size[0] / (right - left + 2 * margin), size[1] / (high - low + 2 * margin));
-  return { centre: [(left + right) / 2, (low + high) / 2], scale: Math.min(600, Math.max(5, scale)) };
-}
-
 export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
   const holder = useRef<SVGSVGElement>(null);
-  const size = useSignal<Point>([1, 1]);
-  const view = useSignal<View | null>(null);
+  const size = useSignal<Point | null>(null); // not known before the first layout
+  const view = useSignal<View | null>(null); // null: robot and objects fill the drawing, until a person chooses another view
   const grip = useRef<Grip | null>(null);
   const pointers = useRef(new Map<number, Point>()).current;
 
@@ -118,15 +88,13 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     const observer = new ResizeObserver(([entry]) => {
       const { width, height } = (entry as ResizeObserverEntry).contentRect;
       size.value = [Math.max(1, width), Math.max(1, height)];
-      view.value ??= viewOfAll(app, plane, size.peek());
     });
     observer.observe(element);
     const zoom = (event: WheelEvent) => {
       event.preventDefault();
-      const now = view.peek();
-      if (now === null) return;
+      const now = present();
       const at = worldAt(event);
-      const scale = Math.min(5000, Math.max(0.5, now.scale * Math.exp(-event.deltaY * wheelFactor)));
+      const scale = Math.min(largestScale, Math.max(smallestScale, now.scale * Math.exp(-event.deltaY * wheelFactor)));
       const share = now.scale / scale;
       view.value = { scale, centre: [at[0] + (now.centre[0] - at[0]) * share, at[1] + (now.centre[1] - at[1]) * share] };
     };
@@ -136,11 +104,6 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
       element.removeEventListener('wheel', zoom);
     };
   }, []);
-
-  const refit = app.refit.value;
-  useEffect(() => {
-    if (refit > 0) view.value = viewOfAll(app, plane, size.peek());
-  }, [refit]);
 
   const draft = app.draft.value;
   const robot = app.page.state.draftRobot.value;
@@ -152,17 +115,30 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     const object = app.chosenObject.peek();
     const now = view.peek();
     if (object === null || now === null || drawn === null) return;
-    const place = flat(plane, poseFromArray(object.pose).position);
-    const isOutside = (axis: 0 | 1) => Math.abs(place[axis] - now.centre[axis]) * now.scale > size.peek()[axis] / 2;
-    if (isOutside(0) || isOutside(1)) view.value = viewOfAll(app, plane, size.peek());
+    if (!showsAny(now, sizeNow(), [flat(plane, poseFromArray(object.pose).position)])) view.value = null;
   }, [chosen, drawn]);
+  // Another scenario is seen anew; so is one of which nothing is in the view any more, for example after undo.
+  const [refit, file] = [app.refit.value, draft?.file ?? null];
+  useLayoutEffect(() => void (view.value = null), [refit, file]);
+  useLayoutEffect(() => {
+    const now = view.peek();
+    if (now !== null && grip.current === null && !showsAny(now, sizeNow(), seenPoints(plane, draft, robot))) view.value = null;
+  }, [draft, robot]);
 
-  const shown = view.value ?? { centre: [0, 0] as Point, scale: 100 };
+  const shown = view.value ?? fittedView(plane, size.value, seenPoints(plane, draft, robot));
   const obstacle = app.obstacle();
+
+  function sizeNow(): Point {
+    return size.peek() ?? [1, 1];
+  }
+
+  function present(): View {
+    return view.peek() ?? fittedView(plane, size.peek(), seenPoints(plane, app.draft.peek(), app.page.state.draftRobot.peek()));
+  }
 
   function worldAt(event: { clientX: number; clientY: number }): Point {
     const box = (holder.current as SVGSVGElement).getBoundingClientRect();
-    const now = view.peek() ?? shown;
+    const now = present();
     return [
       now.centre[0] + (event.clientX - box.left - box.width / 2) / now.scale,
       now.centre[1] - (event.clientY - box.top - box.height / 2) / now.scale,
@@ -176,7 +152,10 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     const isFixed = kind !== 'view' && (obstacle !== null || event.button !== 0 || event.shiftKey || pointers.size > 1);
     grip.current = { kind: isFixed ? 'view' : kind, number, at: worldAt(event), pose, isAlone: event.ctrlKey, hasMoved: false };
     if (kind === 'object' && !event.shiftKey) app.chooseObject(number);
-    if (grip.current.kind !== 'view') app.beginDrag();
+    if (grip.current.kind !== 'view') {
+      view.value = present(); // it stays where the pointer holds something
+      app.beginDrag();
+    }
   };
 
   const drag = (event: PointerEvent) => {
@@ -185,7 +164,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     if (held === null || before === undefined) return;
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
     const way: Point = [event.clientX - before[0], event.clientY - before[1]];
-    const now = view.peek() ?? shown;
+    const now = present();
     if (pointers.size === 2) {
       const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1] as Point;
       const distance = (a: Point) => Math.max(1, Math.hypot(a[0] - other[0], a[1] - other[1]));
@@ -224,7 +203,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     if (pointers.size === 0) {
       if (held?.kind === 'view' && !held.hasMoved && (held.number === background || event.shiftKey) && event.type === 'pointerup') {
         const at = worldAt(event);
-        if (Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * (view.peek() ?? shown).scale < smallestDrag) {
+        if (Math.hypot(at[0] - held.at[0], at[1] - held.at[1]) * present().scale < smallestDrag) {
           app.chooseObject(held.number >= 0 ? held.number : null, event.shiftKey);
         }
       }
@@ -240,10 +219,11 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
     const way = ways[event.key];
     const turn = turns[event.key];
     if (event.key === '+' || event.key === '-') {
-      const now = view.peek() ?? shown;
+      const now = present();
       view.value = { ...now, scale: now.scale * (event.key === '+' ? 1.2 : 1 / 1.2) };
     } else if ((way !== undefined || turn !== undefined) && number !== null && object?.editable === true && obstacle === null) {
       event.preventDefault();
+      view.value = present();
       const step = event.shiftKey ? keySteps.fine : keySteps.usual;
       const pose = app.poseOf(number, object);
       const [right, up] = flat(plane, pose.position);
@@ -256,12 +236,12 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
       app.endDrag();
     } else if (way !== undefined) {
       event.preventDefault();
-      const now = view.peek() ?? shown;
+      const now = present();
       view.value = { ...now, centre: [now.centre[0] + (way[0] * 40) / now.scale, now.centre[1] + (way[1] * 40) / now.scale] };
     }
   };
 
-  const [width, height] = size.value;
+  const [width, height] = size.value ?? [1, 1];
   const transform = `translate(${width / 2} ${height / 2}) scale(${shown.scale} ${-shown.scale}) translate(${-shown.centre[0]} ${-shown.centre[1]})`;
   const head = app.drag.value?.moved.get(startOfRobot) ?? (draft === null ? null : poseFromArray(draft.head));
   const title = plane === 'top' ? 'The world from above' : 'The world from the side';
@@ -285,7 +265,7 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
         onPointerCancel={release}
         onKeyDown={moveByKey}
       >
-        <Grid view={shown} size={size.value} />
+        <Grid view={shown} size={size.value ?? [1, 1]} />
         <g transform={transform}>
           {draft?.world.objects.map((object, number) => {
             const body = robot === null ? undefined : bodyOf(robot, object);
@@ -323,11 +303,11 @@ export function WorldMap({ app, plane }: { app: MakeApp; plane: Plane }) {
             </g>
           )}
         </g>
-        {plane === 'top' && chosen !== null && <TurnHandle app={app} number={chosen} view={shown} size={size.value} press={press} />}
+        {plane === 'top' && chosen !== null && <TurnHandle app={app} number={chosen} view={shown} size={size.value ?? [1, 1]} press={press} />}
       </svg>
       <div class="map-tools">
         <span class="hint">{plane === 'top' ? 'from above' : 'from the side'}</span>
-        <button type="button" onClick={() => (view.value = viewOfAll(app, plane, size.peek()))} title="Shows the robot and all objects">
+        <button type="button" onClick={() => (view.value = null)} title="Shows the robot and all objects">
           All
         </button>
       </div>

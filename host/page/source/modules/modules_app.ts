@@ -9,6 +9,7 @@ import { moduleRows, nodeList } from './module_rows.js';
 import { ModuleObjects } from './module_objects.js';
 import { PlaceAnswers } from './place_answers.js';
 import { QuestionAnswers } from './question_answers.js';
+import { touchSeen, type TouchWatch } from './touch_watch.js';
 
 export type ModulesStores = Stores<'actions' | 'modulesActions' | 'operations' | 'shownPage' | 'startSceneWorker' | 'state'>;
 
@@ -34,7 +35,7 @@ export class ModulesApp {
   readonly task = signal<TaskName>('module');
   readonly chosenNode = signal<number | null>(null);
   readonly checkedNodes = signal<ReadonlySet<number>>(new Set());
-  readonly seenTouch = signal<ReadonlyMap<number, number>>(new Map()); // by node ids: bits of sensors that were pressed in the test
+  readonly seenTouch = signal<ReadonlyMap<number, TouchWatch>>(new Map()); // by node ids
   readonly flashAdvance = signal<KnownAdvance | null>(null);
   private readonly earlierJobs = signal<ReadonlyMap<JobKind, ModuleJob>>(new Map()); // the last one of each kind on this bus
   readonly modules = computed(() => this.page.state.modules.value);
@@ -210,17 +211,15 @@ export class ModulesApp {
 
   private noteTouch(): void {
     const row = this.chosenRow.value;
-    if (row === null || row.touch === null || row.touch === 0) return;
+    if (row === null || row.touch === null || row.live?.silent === true) return;
     const { node, touch } = row;
-    untracked(() => {
-      const seen = this.seenTouch.peek().get(node) ?? 0;
-      if ((seen | touch) !== seen) this.seenTouch.value = new Map([...this.seenTouch.peek(), [node, seen | touch]]);
-    });
+    untracked(() => (this.seenTouch.value = new Map([...this.seenTouch.peek(), [node, touchSeen(this.seenTouch.peek().get(node) ?? null, touch)]])));
   }
 
   forgetTouch(node: number): void {
     const seen = new Map(this.seenTouch.peek());
     seen.delete(node);
     this.seenTouch.value = seen;
+    this.noteTouch();
   }
 }

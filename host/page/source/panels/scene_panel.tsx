@@ -89,7 +89,6 @@ export function ScenePanel({ app, problem = null }: { app: RobotView; problem?: 
     };
     const mover: RobotMover = {
       isActive: () => app.mover?.isActive.peek() ?? false,
-      step: (way, degrees) => void app.mover?.step(way, degrees),
     };
     const choose = app.choice === undefined ? null : (x: number, y: number, adds: boolean) => send({ kind: 'choose', x, y, adds });
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);

@@ -2,7 +2,6 @@
 //   click, touch: choose what is there, where that is possible; with Shift or Ctrl in addition
 //   drag, one finger: turn the view, or a joint of a robot that is held
 //   right or Shift and drag, two fingers: pan      wheel, pinch: zoom
-import type { Vector } from '../geometry/quaternion.js';
 import type { ToScene } from '../scene/scene_messages.js';
 import type { ScenePull } from './scene_pull.js';
 
@@ -12,17 +11,14 @@ interface Point {
 }
 
 const keyStep = 24; // pixels
-const moveStep = 0.01; // metres
-const turnStep = 5; // degrees
 const degreesPerPixel = 0.5;
 const smallestDrag = 4; // pixels: a click with a trembling hand turns nothing
 const wheelFactor = 0.0012; // change of the zoom for each pixel
 
-// Moves the robot with the same pointer and keys instead, while it is active.
-//   drag: in the plane of the ground     Shift and drag: height     Ctrl and drag: turn     arrows, Page Up, Page Down: steps
+// Moves the robot with the same pointer instead, while it is active.
+//   drag: in the plane of the ground     Shift and drag: height     Ctrl and drag: turn
 export interface RobotMover {
   isActive(): boolean;
-  step(offset: Vector, turn: number): void;
 }
 
 export function listenToPointer(
@@ -115,25 +111,8 @@ export function listenToPointer(
     },
     { ...options, passive: false },
   );
-  canvas.addEventListener('keydown', (event) => (mover.isActive() ? moveByKey(event, mover) : turnByKey(event, send)), options);
+  canvas.addEventListener('keydown', (event) => turnByKey(event, send), options);
   return () => abort.abort();
-}
-
-function moveByKey(event: KeyboardEvent, mover: RobotMover): void {
-  const height: Record<string, Vector> = { ArrowUp: [0, 0, moveStep], ArrowDown: [0, 0, -moveStep] };
-  const ground: Record<string, Vector> = {
-    ArrowLeft: [-moveStep, 0, 0],
-    ArrowRight: [moveStep, 0, 0],
-    ArrowUp: [0, moveStep, 0],
-    ArrowDown: [0, -moveStep, 0],
-  };
-  const turns: Record<string, number> = { PageUp: turnStep, PageDown: -turnStep };
-  const offset = (event.shiftKey ? height : ground)[event.key];
-  const turn = turns[event.key];
-  if (offset !== undefined || turn !== undefined) {
-    mover.step(offset ?? [0, 0, 0], turn ?? 0);
-    event.preventDefault();
-  }
 }
 
 function turnByKey(event: KeyboardEvent, send: (message: ToScene) => void): void {

@@ -1,5 +1,6 @@
 // The time window of strip and plots, the way back to live, markers and loop.
 import { useEffect } from 'preact/hooks';
+import { frozenText } from '../state/time_view.js';
 import { onFrame } from '../view/frame_clock.js';
 import type { Stores } from '../view/robot_view.js';
 import { closeIcon } from './icons.js';
@@ -87,7 +88,7 @@ export function TimeControls({ app }: { app: Stores<'marks' | 'newestTick' | 'st
       </button>
       {!isLive && (
         <span class="frozen" data-testid="frozen">
-          Frozen view; the robot goes on.
+          {frozenText(app.state.session.value?.state)}
         </span>
       )}
       <LoopControls app={app} />

@@ -12,6 +12,8 @@ export interface Action {
   isShown?: () => boolean;
   // Whether the key works in text fields, too: only for actions that must always work.
   isGlobal?: boolean;
+  // Whether the key comes before elements that use it themselves, such as sliders; not in text fields.
+  isBeforeElements?: boolean;
   // The key is only listed: the browser makes an event of it, which the page handles.
   isLeftToBrowser?: boolean;
   run(): void;
@@ -51,7 +53,8 @@ export class ActionList {
   add(...actions: Action[]): void {
     for (const action of actions) {
       for (const key of action.keys) {
-        const other = this.list.find((known) => known.keys.includes(key));
+        // Those that are not always shown may have a key in turn.
+        const other = this.list.find((known) => known.keys.includes(key) && (known.isShown === undefined || action.isShown === undefined));
         if (other !== undefined) {
           throw new Error(`key ${key}: found in ${other.id} and ${action.id}, expected one action`);
         }

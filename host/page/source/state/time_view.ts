@@ -40,6 +40,12 @@ export function shiftedTo(tick: number, { from, to }: TickRange): TickRange {
   return { from: from + shift, to: to + shift };
 }
 
+// What is said of a view that does not follow the robot. `state`: of the session.
+export function frozenText(state: string | undefined): string {
+  const goesOn = state === 'running' || state === 'starting' || state === 'stopping';
+  return goesOn ? 'Frozen view; the robot goes on.' : 'Frozen view; the robot stands still.';
+}
+
 export class TimeView implements ShownTime {
   readonly window = signal(1000); // length of the live window
   readonly detached = signal<TickRange | null>(null);

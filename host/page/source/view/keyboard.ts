@@ -45,15 +45,14 @@ export function listenToKeys(actions: Pick<ActionList, 'forKey'>, robotKeys: Rob
         event.stopPropagation();
         return;
       }
-      if (event.key.startsWith('Arrow') && usesArrows(event.target)) {
-        return;
-      }
-      if (/^[0-9.,+-]$/.test(event.key) && takesNumber(event.target)) {
-        return;
-      }
       const action = actions.forKey(event, isText);
+      const isOfElement = (event.key.startsWith('Arrow') && usesArrows(event.target)) || (/^[0-9.,+-]$/.test(event.key) && takesNumber(event.target));
+      if (isOfElement && action?.isBeforeElements !== true) {
+        return;
+      }
       if (action !== undefined) {
         event.preventDefault();
+        if (action.isBeforeElements === true) event.stopPropagation();
         action.run();
       }
     },

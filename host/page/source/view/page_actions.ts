@@ -2,6 +2,7 @@
 import { recordingName } from '../state/recording_name.js';
 import { toggleDialog } from './dialogs.js';
 import { pressEscape } from './front.js';
+import { moveActions } from './move_actions.js';
 import type { PageState } from '../state/page_state.js';
 import type { PageStores, Stores } from './robot_view.js';
 import { sharedActions } from './shared_actions.js';
@@ -24,12 +25,14 @@ export function addActions(app: PageStores): void {
   const isRunning = () => state.session.value?.state === 'running';
   const tell: typeof operations.tell = (name, parameters) => operations.tell(name, parameters);
 
+  const hasCursorKeys = () => !app.mover.isActive.value;
   const moveCursor = (ticks: number) => {
     marks.pause();
     time.moveCursor(ticks, app.newestTick);
   };
 
   app.actions.add(
+    ...moveActions(app),
     {
       id: 'stop',
       get title() {
@@ -122,6 +125,7 @@ export function addActions(app: PageStores): void {
       title: 'Time cursor: one tick back',
       group: 'View',
       keys: ['ArrowLeft'],
+      isShown: hasCursorKeys,
       run: () => moveCursor(-1),
     },
     {
@@ -129,6 +133,7 @@ export function addActions(app: PageStores): void {
       title: 'Time cursor: one tick on',
       group: 'View',
       keys: ['ArrowRight'],
+      isShown: hasCursorKeys,
       run: () => moveCursor(1),
     },
     {
@@ -136,6 +141,7 @@ export function addActions(app: PageStores): void {
       title: 'Time cursor: one second back',
       group: 'View',
       keys: ['Shift+ArrowLeft'],
+      isShown: hasCursorKeys,
       run: () => moveCursor(-app.tickRate),
     },
     {
@@ -143,6 +149,7 @@ export function addActions(app: PageStores): void {
       title: 'Time cursor: one second on',
       group: 'View',
       keys: ['Shift+ArrowRight'],
+      isShown: hasCursorKeys,
       run: () => moveCursor(app.tickRate),
     },
     { id: 'mark', title: 'Set a marker at the time cursor', group: 'View', keys: ['M'], run: () => marks.mark(app.newestTick) },

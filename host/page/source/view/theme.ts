@@ -1,8 +1,7 @@
 // The theme, light or dark: that of the system, or the one that was chosen here.
 import { computed, effect, signal } from '@preact/signals-core';
+import { otherTheme, type ThemeChoice } from './theme_choice.js';
 import { storeChoice, storedChoice } from './stored_choice.js';
-
-export type ThemeChoice = 'system' | 'light' | 'dark';
 
 const key = 'proleg.theme';
 const order: readonly ThemeChoice[] = ['system', 'light', 'dark'];
@@ -24,7 +23,7 @@ effect(() => {
 });
 
 export function nextTheme(): void {
-  const next = order[(order.indexOf(themeChoice.value) + 1) % order.length] as ThemeChoice;
+  const next = otherTheme(isDark.peek(), systemIsDark.peek());
   storeChoice(key, next);
   themeChoice.value = next;
 }

@@ -152,11 +152,13 @@ describe('a box of modules', () => {
     await page().getByLabel('find', { exact: true }).fill('');
   });
 
-  it('lights the touch sensors that are pressed, and ticks those that were', async () => {
+  it('lights the touch sensors that are pressed, and gives those that were never released no tick', async () => {
     // The robot lies on the ground.
     assert.ok(await waitUntil(async () => (await page().locator('.touch-dots .pressed').count()) > 0), 'a pressed sensor');
     const sensors = page().getByTestId('touch-test').locator('li');
     assert.ok((await sensors.count()) >= 2);
+    await page().getByTestId('touch-test').getByText('Pressed since the test began').waitFor();
+    assert.equal(await sensors.filter({ hasText: '✓' }).count(), 0);
     await modules.screenshot('module');
   });
 

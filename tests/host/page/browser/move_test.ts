@@ -119,11 +119,15 @@ describe('moving the robot', () => {
   it('goes by keys, each of which counts', async () => {
     const [x, y, z] = await headOfProgram();
     const { keyboard } = ui.viewer.page;
+    // Wherever the focus is: on the button that was pressed, on the view.
+    await ui.viewer.button('Move').focus();
+    for (const key of ['ArrowRight', 'ArrowRight']) await keyboard.press(key);
     await ui.viewer.page.getByTestId('scene').focus();
-    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowRight', 'ArrowUp', 'Shift+ArrowUp', 'Shift+ArrowUp']) await keyboard.press(key);
+    for (const key of ['ArrowRight', 'ArrowUp', 'Shift+ArrowUp', 'Shift+ArrowUp']) await keyboard.press(key);
     await waitForHead([x + 0.03, y + 0.01, z + 0.02]);
     await keyboard.press('ArrowLeft');
     await waitForHead([x + 0.02, y + 0.01, z + 0.02]);
+    assert.equal(await ui.viewer.page.getByTestId('frozen').count(), 0, 'the time cursor is not moved');
   });
 
   it('goes to a typed place, and refuses one without ground', async () => {

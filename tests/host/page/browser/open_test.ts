@@ -205,6 +205,22 @@ describe('a project', () => {
     });
   });
 
+  it('fills the drawings with the robot of the first scenario that is opened, in windows of every size', async () => {
+    await look([project], async ({ page }) => {
+      await page.keyboard.press('3');
+      await entriesIn(page, 'My project').first().click();
+      const share = async () => {
+        const [map, robot] = [await page.getByTestId('map-side').boundingBox(), await page.locator('[data-testid=map-side] .robot').boundingBox()];
+        return map === null || robot === null ? 0 : robot.width / map.width;
+      };
+      await page.getByTestId('map-top').waitFor();
+      for (const [width, height] of [[1366, 768], [1920, 1080], [390, 844]] as const) {
+        await page.setViewportSize({ width, height });
+        assert.ok(await waitUntil(async () => (await share()) > 0.03 && (await share()) <= 1), `${await share()} of the drawing at ${width} x ${height}`);
+      }
+    });
+  });
+
   it('is in the list of the next program, which was started without it', async () => {
     await look(['--paused', '--recordings', join(folder, 'empty')], async ({ page }) => {
       await page.getByRole('navigation').getByRole('button', { name: 'Make' }).click();

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { TimeView } from '../../../../host/page/source/state/time_view.js';
+import { frozenText, TimeView } from '../../../../host/page/source/state/time_view.js';
 
 describe('the view of time', () => {
   it('ends at the newest tick when live', () => {
@@ -76,5 +76,12 @@ describe('the view of time', () => {
     assert.equal(view.cursor.value, 0);
     view.moveCursor(5000, 1000);
     assert.equal(view.cursor.value, 1000);
+  });
+});
+
+describe('a frozen view', () => {
+  it('says whether the robot goes on', () => {
+    for (const state of ['running', 'starting', 'stopping']) assert.match(frozenText(state), /the robot goes on/);
+    for (const state of ['paused', 'stopped', 'failed', 'off', 'held', undefined]) assert.match(frozenText(state), /the robot stands still/);
   });
 });

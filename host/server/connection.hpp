@@ -38,6 +38,9 @@ class ConnectionServer {
   [[nodiscard]] virtual SeatVisitors& visitors() = 0;
   /// Adds a connection of this computer, which ends with this server.
   virtual void add(const std::shared_ptr<Connection>& connection, const std::string& address) = 0;
+  /// Takes note of a request that was refused because of the way on which it came. line: for the person who runs the
+  /// server.
+  virtual void report_refusal(const std::string& line) = 0;
   /// Sends the pending output and waits for the next deadline. To be called after each event.
   virtual void serve() = 0;
 };

@@ -70,8 +70,10 @@ class HttpConnection final : public Connection, public std::enable_shared_from_t
   void serve_file(std::string_view path, bool is_kept_alive);
   /// Sends a response. `body` must live as long as the server or this.
   void respond(unsigned status, std::string_view content_type, std::string_view body, bool is_kept_alive);
-  /// Sends an error, whose body is the text of its status or misdirected_text().
+  /// Sends an error, whose body is the text of its status.
   void respond_error(unsigned status, bool is_kept_alive);
+  /// Refuses a request, and says why if the way to the server is the cause.
+  void refuse(const RequestFields& asked, unsigned status, bool is_kept_alive);
   /// Reads and ignores bytes while the other end reads the response: closing a connection with unread bytes would
   /// discard the response.
   void drain();
@@ -148,7 +150,7 @@ void HttpConnection::handle_request(const error_code& error) {
   if (is_only_stop && decision.action != RequestAction::stop && decision.action != RequestAction::refuse) {
     respond_error(503, false);
   } else if (decision.action == RequestAction::refuse) {
-    respond_error(decision.status, is_kept_alive);
+    refuse(asked, decision.status, is_kept_alive);
   } else if (seat) {
     act_for_seat(request, decision.action, *path->seat, *seat, is_kept_alive);
   } else {
@@ -209,11 +211,19 @@ void HttpConnection::serve_file(std::string_view path, bool is_kept_alive) {
 }
 
 void HttpConnection::respond_error(unsigned status, bool is_kept_alive) {
+  respond(status, "text/plain; charset=utf-8", status_words(status), is_kept_alive);
+}
+
+void HttpConnection::refuse(const RequestFields& asked, unsigned status, bool is_kept_alive) {
+  constexpr unsigned forbidden = 403;
   constexpr unsigned misdirected = 421;
-  if (status == misdirected) {
-    body_ = misdirected_text(server_->address());
+  if (status != forbidden && status != misdirected) {
+    respond_error(status, is_kept_alive);
+    return;
   }
-  respond(status, "text/plain; charset=utf-8", status == misdirected ? body_ : status_words(status), is_kept_alive);
+  server_->report_refusal(refusal_line(asked, server_->address(), status));
+  body_ = refusal_text(asked, server_->address(), status);
+  respond(status, "text/plain; charset=utf-8", body_, is_kept_alive);
 }
 
 void HttpConnection::respond(unsigned status, std::string_view content_type, std::string_view body,

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::host {
 namespace {
@@ -24,9 +25,12 @@ void initialise_sodium() {
   }
 }
 
-constexpr std::string_view bearer = "Bearer ";
+constexpr std::string_view bearer = "bearer ";  // the word has no case (RFC 9110, section 11.1)
 constexpr std::array<std::string_view, 3> local_names{"127.0.0.1", "localhost", "[::1]"};
+constexpr std::uint16_t http_port = 80;
 constexpr std::uint16_t https_port = 443;
+
+constexpr unsigned forbidden = 403;
 
 constexpr std::array<std::pair<unsigned, std::string_view>, 13> statuses{{{200, "OK"},
                                                                           {400, "Bad Request"},
@@ -42,20 +46,71 @@ constexpr std::array<std::pair<unsigned, std::string_view>, 13> statuses{{{200, 
                                                                           {431, "Request Header Fields Too Large"},
                                                                           {503, "Service Unavailable"}}};
 
+std::uint16_t default_port(const ServerAddress& address) { return address.has_tls ? https_port : http_port; }
+
 /// The Host of a name. Browsers omit the default port.
 std::string host_of(const ServerAddress& address, std::string_view name) {
-  return std::string(name) + (address.has_tls && address.port == https_port ? "" : ":" + std::to_string(address.port));
+  return std::string(name) + (address.port == default_port(address) ? "" : ":" + std::to_string(address.port));
 }
+
+std::string_view scheme_of(const ServerAddress& address) { return address.has_tls ? "https://" : "http://"; }
 
 std::string origin_of(const ServerAddress& address, std::string_view host) {
-  return (address.has_tls ? "https://" : "http://") + std::string(host);
+  return std::string(scheme_of(address)) + std::string(host);
 }
 
-/// Whether a Host belongs to this server. A foreign name that resolves to this computer (DNS rebinding) does not.
-bool is_own_host(std::string_view host, const ServerAddress& address) {
-  const auto is_host = [&](std::string_view name) { return host == host_of(address, name); };
-  return std::any_of(local_names.begin(), local_names.end(), is_host) ||
-         std::any_of(address.names.begin(), address.names.end(), is_host);
+bool is_below(std::string_view name, std::string_view wildcard) {
+  const std::string_view rest = wildcard.substr(1);  // ".lab.example"
+  if (!name.ends_with(rest)) {
+    return false;
+  }
+  const std::string_view label = name.substr(0, name.size() - rest.size());
+  constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyz0123456789-_";
+  return !label.empty() && label.find_first_not_of(allowed) == std::string_view::npos;
+}
+
+/// A Host or the rest of an Origin: names have no case and may end in the dot of the root (RFC 3986, section 3.2.2),
+/// and the default port may be there or not.
+struct HostName {
+  std::string name;  ///< empty: it is not of this form
+  std::string port;
+};
+
+HostName read_host(std::string_view text, const ServerAddress& address) {
+  const std::size_t end = text.starts_with('[') ? text.find(']') : 0;
+  const std::size_t colon = end == std::string_view::npos ? end : text.find(':', end);
+  HostName host{lower_case(text.substr(0, colon)),
+                std::string(colon == std::string_view::npos ? "" : text.substr(colon + 1))};
+  if (colon == std::string_view::npos) {
+    host.port = std::to_string(default_port(address));
+  }
+  if (host.name.size() > 1 && host.name.ends_with('.')) {
+    host.name.pop_back();
+  }
+  return host;
+}
+
+/// Whether the name is one of this server. A foreign name that resolves to this computer (DNS rebinding) is not.
+bool is_own_name(const std::string& name, const ServerAddress& address) {
+  return std::ranges::find(local_names, name) != local_names.end() ||
+         std::ranges::find(address.names, name) != address.names.end() ||
+         std::ranges::any_of(address.wildcards, [&](const auto& wildcard) { return is_below(name, wildcard); });
+}
+
+bool is_own_host(std::string_view text, const ServerAddress& address) {
+  const HostName host = read_host(text, address);
+  return host.port == std::to_string(address.port) && is_own_name(host.name, address);
+}
+
+/// Whether an Origin is that of an accepted Host.
+bool is_origin_of(std::string_view origin, std::string_view host, const ServerAddress& address) {
+  const std::string_view scheme = scheme_of(address);
+  if (!origin.starts_with(scheme)) {
+    return false;
+  }
+  const HostName found = read_host(origin.substr(scheme.size()), address);
+  const HostName expected = read_host(host, address);
+  return found.name == expected.name && found.port == expected.port;
 }
 
 RequestDecision refuse(unsigned status) { return {RequestAction::refuse, status}; }
@@ -140,7 +195,7 @@ RequestDecision decide_request(const RequestFields& request, const ServerAddress
     return refuse(405);
   }
   if (request.origins.size() > 1 ||
-      (!request.origins.empty() && request.origins.front() != origin_of(address, request.hosts.front()))) {
+      (!request.origins.empty() && !is_origin_of(request.origins.front(), request.hosts.front(), address))) {
     return refuse(403);
   }
   const std::string_view path = path_of(request.target);
@@ -152,7 +207,8 @@ RequestDecision decide_request(const RequestFields& request, const ServerAddress
     return {RequestAction::join, 0};
   }
   if (is_post) {
-    const bool has_token = request.authorizations.size() == 1 && request.authorizations.front().starts_with(bearer) &&
+    const bool has_token = request.authorizations.size() == 1 &&
+                           lower_case(request.authorizations.front().substr(0, bearer.size())) == bearer &&
                            token.matches(request.authorizations.front().substr(bearer.size()));
     return has_token ? RequestDecision{RequestAction::stop, 0} : refuse(401);
   }
@@ -168,19 +224,38 @@ std::string_view status_words(unsigned status) {
   return found == statuses.end() ? std::string_view{} : found->second;
 }
 
-std::string misdirected_text(const ServerAddress& address) {
+std::string refusal_line(const RequestFields& request, const ServerAddress& address, unsigned status) {
+  const auto quoted = [](std::string_view text) { return in_quotes(one_line(shortened(std::string(text)))); };
+  if (status == forbidden) {
+    return "Origin: found " +
+           (request.origins.size() > 1 ? std::to_string(request.origins.size()) + " of them"
+                                       : quoted(request.origins.front())) +
+           ", expected that of the Host, " + quoted(origin_of(address, request.hosts.front()));
+  }
+  const std::string expected = host_of(address, address.names.empty() ? local_names.front() : address.names.front());
+  std::string found = request.hosts.empty() ? "none" : std::to_string(request.hosts.size()) + " of them";
+  if (request.hosts.size() == 1) {
+    // A browser has the wrong port from the address that the person has typed.
+    found = is_own_name(read_host(request.hosts.front(), address).name, address) ? "another port"
+                                                                                 : quoted(request.hosts.front());
+  }
+  return "Host: found " + found + ", expected a name and the port of this page, such as " + quoted(expected);
+}
+
+std::string refusal_text(const RequestFields& request, const ServerAddress& address, unsigned status) {
   std::string names;
-  for (const std::string_view name : local_names) {
+  const auto add = [&](std::string_view name) {
     names += (names.empty() ? "" : ", ") + origin_of(address, host_of(address, name));
-  }
-  for (const std::string& name : address.names) {
-    names += ", " + origin_of(address, host_of(address, name));
-  }
+  };
+  std::ranges::for_each(local_names, add);
+  std::ranges::for_each(address.names, add);
+  std::ranges::for_each(address.wildcards, add);
   const std::string port = std::to_string(address.port);
-  return "This page has only these addresses: " + names +
+  return refusal_line(request, address, status) + ".\n\nThis page has only these addresses: " + names +
          ".\n\nThrough a tunnel, use the same port on both sides: ssh -L " + port + ":127.0.0.1:" + port +
          " HOST. Each start chooses another port; 'proleg ui --port " + port +
-         "' keeps it.\nWithout a tunnel, from another computer: 'proleg ui --lan' with a certificate (docs/page.md).\n";
+         "' keeps it.\nBehind a reverse proxy, set Host and Origin there (docs/reverse-proxy.md)."
+         "\nWithout either, from another computer: 'proleg ui --lan' with a certificate (docs/page.md).\n";
 }
 
 std::string response_header(unsigned status, std::string_view content_type, std::size_t length,

@@ -41,7 +41,8 @@ void write_private_file(const std::filesystem::path& path, std::string_view text
 struct ServerAddress {
   std::uint16_t port = 0;
   bool has_tls = false;
-  std::vector<std::string> names;  ///< names beside those of this computer; written as in a URL
+  std::vector<std::string> names;        ///< names beside those of this computer; in small letters, as in a URL
+  std::vector<std::string> wildcards{};  ///< "*.lab.example": any one label before the rest
 };
 
 /// The origin of the first name, or of 127.0.0.1 if there is none: "https://robot.local:8123".
@@ -77,13 +78,17 @@ struct RequestDecision {
                                              const AccessToken& token);
 
 /// The start of a response, with the empty line. The page may connect to `socket_origin`, which is empty if the server
-/// did not accept the request's Host. The body of an error is the text of its status, but for 421.
+/// did not accept the request's Host. The body of an error is the text of its status, but for 403 and 421.
 [[nodiscard]] std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
                                           std::string_view socket_origin, bool is_kept_alive);
 
-/// The body for a Host that does not belong to the server (421): the names and the port that do, and what to do about a
-/// tunnel whose ends have different ports.
-[[nodiscard]] std::string misdirected_text(const ServerAddress& address);
+/// What a refusal (403, 421) found and expected, in one line for the person who sets up the way to the server. Texts of
+/// the request are shortened and printable.
+[[nodiscard]] std::string refusal_line(const RequestFields& request, const ServerAddress& address, unsigned status);
+
+/// The body of 403 and 421: refusal_line(), the names and the port of this server, and what to do about a tunnel whose
+/// ends have different ports, and about a reverse proxy.
+[[nodiscard]] std::string refusal_text(const RequestFields& request, const ServerAddress& address, unsigned status);
 
 /// The text of a status, such as "Not Found"; empty for a status that the server does not send.
 [[nodiscard]] std::string_view status_words(unsigned status);

@@ -29,11 +29,12 @@ constexpr std::chrono::milliseconds accept_pause{100};
 
 SocketServer::SocketServer(asio::io_context& context, std::uint16_t port,
                            std::shared_ptr<const ServerCertificate> certificate, SeatDirectory* seats,
-                           std::shared_ptr<SessionLink> link)
+                           std::shared_ptr<SessionLink> link, std::function<void(const std::string&)> refused)
     : context_(context),
       certificate_(std::move(certificate)),
       seats_(seats),
       link_(std::move(link)),
+      refused_(std::move(refused)),
       acceptor_(context),
       timer_(context),
       accept_timer_(context) {
@@ -64,7 +65,16 @@ void SocketServer::listen(std::uint16_t port) {
   acceptor_.bind(endpoint);
   acceptor_.listen();
   address_ = {acceptor_.local_endpoint().port(), certificate_ != nullptr,
-              certificate_ ? certificate_->names() : std::vector<std::string>()};
+              certificate_ ? certificate_->names() : std::vector<std::string>(),
+              certificate_ ? certificate_->wildcards() : std::vector<std::string>()};
+}
+
+void SocketServer::report_refusal(const std::string& line) {
+  constexpr std::chrono::seconds period{10};  // anybody can have a request refused
+  if (refused_ && server_now() >= next_refusal_) {
+    next_refusal_ = server_now() + period;
+    refused_(line);
+  }
 }
 
 void SocketServer::post_delivery() {
@@ -189,8 +199,8 @@ WebServer::WebServer(boost::asio::io_context& context, ServerOptions options, Ro
           ViewerHub::Options{std::move(options.program), std::move(options.free_operations),
                              first_control(options.certificate != nullptr, options.is_seat)},
           session)),
-      sockets_(
-          std::make_shared<SocketServer>(context, options.port, std::move(options.certificate), options.seats, link_)) {
+      sockets_(std::make_shared<SocketServer>(context, options.port, std::move(options.certificate), options.seats,
+                                              link_, std::move(options.refused))) {
   sockets_->accept();
 }
 

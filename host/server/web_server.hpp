@@ -29,7 +29,7 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
  public:
   SocketServer(boost::asio::io_context& context, std::uint16_t port,
                std::shared_ptr<const ServerCertificate> certificate, SeatDirectory* seats,
-               std::shared_ptr<SessionLink> link);
+               std::shared_ptr<SessionLink> link, std::function<void(const std::string&)> refused);
 
   void accept();
   /// Schedules the delivery of the session's output. May be called from any thread.
@@ -46,6 +46,7 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
   void add(const std::shared_ptr<Connection>& connection, const std::string& address) override {
     connections_.push_back({connection, address});
   }
+  void report_refusal(const std::string& line) override;
   void serve() override;
 
  private:
@@ -65,6 +66,8 @@ class SocketServer final : public ConnectionServer, public std::enable_shared_fr
   const std::shared_ptr<const ServerCertificate> certificate_;
   SeatDirectory* const seats_;
   const std::shared_ptr<SessionLink> link_;
+  const std::function<void(const std::string&)> refused_;
+  ServerTime next_refusal_{};  ///< none is reported before
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer accept_timer_;
@@ -91,6 +94,8 @@ struct ServerOptions {
   /// Programs behind this server, which must outlive the io_context; "/" is then class.html. Null: there are none.
   SeatDirectory* seats = nullptr;
   bool is_seat = false;  ///< this is such a program
+  /// Gets a line about a request that was refused for its Host or Origin: at most one in ten seconds. For the terminal.
+  std::function<void(const std::string& line)> refused{};
   DocumentFiles documents{};
 };
 

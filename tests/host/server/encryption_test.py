@@ -30,14 +30,14 @@ def other_versions(newest):
 
 
 def test_the_names_are_those_of_the_certificate_and_of_this_computer(server):
-    for name in ("robot.example", "192.0.2.7", "[2001:db8::7]", "localhost", "127.0.0.1", "[::1]"):
+    for name in ("robot.example", "ROBOT.example", "robot.example.", "a.wild.example", "192.0.2.7", "[2001:db8::7]", "localhost", "127.0.0.1", "[::1]"):
         host = f"{name}:{server.port}"
         first, fields, _ = request(server.port, host=host, fields=[f"Origin: https://{host}"])
         assert first == "HTTP/1.1 200 OK", (host, first)
         assert f"connect-src 'self' wss://{host};" in fields["content-security-policy"], fields
         for origin in (f"http://{host}", "https://evil.example", f"https://{name}", "null"):
             assert status(server.port, host=host, fields=[f"Origin: {origin}"]) == 403, origin
-    for name in ("evil.example", "test", "a.wild.example", "*.wild.example", "192.0.2.8", "robot.example.evil.example", "2001:db8::7"):
+    for name in ("evil.example", "test", "wild.example", "a.b.wild.example", "*.wild.example", "192.0.2.8", "robot.example.evil.example", "2001:db8::7"):
         assert status(server.port, host=f"{name}:{server.port}") == 421, name
     assert status(server.port, host="robot.example") == 421, "without the port"
 

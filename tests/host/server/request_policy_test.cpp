@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 namespace proleg::host {
 namespace {
 
@@ -38,8 +40,9 @@ TEST_F(RequestPolicy, AHostIsOneOfThreeNamesWithThePort) {
     EXPECT_EQ(action(request), RequestAction::serve_file) << host;
   }
   for (const std::string_view host :
-       {"", "localhost", "localhost:812", "localhost:81230", "localhost:08123", "LOCALHOST:8123", "localhost.:8123",
-        "127.0.0.1.evil.example:8123", "evil.example:8123", "localhost:8123 ", "::1:8123", "127.1:8123"}) {
+       {"", "localhost", "localhost:", "localhost:80", "localhost:812", "localhost:81230", "localhost:08123",
+        "localhost..:8123", ".:8123", ":8123", "[::1]", "[::1:8123", "127.0.0.1.evil.example:8123", "evil.example:8123",
+        "localhost:8123 ", "::1:8123", "127.1:8123"}) {
     request.hosts = {host};
     EXPECT_EQ(refusal(request), 421U) << host;
   }
@@ -94,6 +97,81 @@ TEST_F(RequestPolicy, BrowsersLeaveOutThePortOfHttps) {
   EXPECT_EQ(first_origin(https), "https://robot.local");
 }
 
+TEST_F(RequestPolicy, TheDefaultPortMayBeThereOrNot) {
+  for (const auto& [address, scheme, port] :
+       {std::tuple(ServerAddress{443, true, {"robot.local"}}, "https://", ":443"),
+        std::tuple(ServerAddress{80, false, {"robot.local"}}, "http://", ":80")}) {
+    for (const std::string host : {"robot.local", "localhost", "[::1]"}) {
+      const std::string plain = scheme + host;
+      const std::string full = plain + port;
+      const std::string host_with_port = host + port;
+      RequestFields request = get("/");
+      for (const std::string_view one : {std::string_view(host), std::string_view(host_with_port)}) {
+        request.hosts = {one};
+        for (const std::string& origin : {plain, full}) {
+          request.origins = {origin};
+          EXPECT_EQ(refusal(request, address), 0U) << one << " " << origin;
+        }
+      }
+      const std::string other = plain + ":444";
+      request.origins = {other};
+      EXPECT_EQ(refusal(request, address), 403U);
+      request.origins = {};
+      request.hosts = {std::string_view(other).substr(std::string_view(scheme).size())};
+      EXPECT_EQ(refusal(request, address), 421U);
+    }
+  }
+}
+
+TEST_F(RequestPolicy, NamesHaveNoCaseAndMayEndInTheDotOfTheRoot) {
+  RequestFields request = get("/");
+  for (const std::string_view host :
+       {"ROBOT.Local:8123", "robot.local.:8123", "LocalHost:8123", "[2001:DB8::7]:8123"}) {
+    const std::string origin = "https://" + std::string(host);
+    request.hosts = {host};
+    request.origins = {origin};
+    EXPECT_EQ(refusal(request, lan), 0U) << host;
+    request.origins = {"https://evil.example:8123"};
+    EXPECT_EQ(refusal(request, lan), 403U) << host;
+  }
+}
+
+TEST_F(RequestPolicy, AWildcardIsOneLabel) {
+  const ServerAddress wide{8123, true, {}, {"*.lab.example"}};
+  RequestFields request = get("/");
+  for (const std::string_view host : {"robot.lab.example:8123", "ROBOT-2.LAB.example.:8123"}) {
+    request.hosts = {host};
+    EXPECT_EQ(refusal(request, wide), 0U) << host;
+  }
+  for (const std::string_view host :
+       {"lab.example:8123", ".lab.example:8123", "a.b.lab.example:8123", "*.lab.example:8123", "xlab.example:8123",
+        "a lab.example:8123", "robot.lab.example.evil:8123", "robot.lab.example:8124", "a@b.lab.example:8123"}) {
+    request.hosts = {host};
+    EXPECT_EQ(refusal(request, wide), 421U) << host;
+  }
+}
+
+TEST_F(RequestPolicy, ARefusalSaysWhatWasFoundAndExpected) {
+  RequestFields request = get("/socket");
+  request.hosts = {"robot.example"};
+  EXPECT_EQ(refusal_line(request, local, 421),
+            "Host: found 'robot.example', expected a name and the port of this page, such as '127.0.0.1:8123'");
+  request.hosts = {};
+  EXPECT_NE(refusal_line(request, local, 421).find("found none"), std::string::npos);
+  request.hosts = {"localhost:8123"};
+  request.origins = {"https://robot.example"};
+  EXPECT_EQ(refusal_line(request, local, 403),
+            "Origin: found 'https://robot.example', expected that of the Host, 'http://localhost:8123'");
+  const std::string text = refusal_text(request, local, 403);
+  EXPECT_EQ(text.find(refusal_line(request, local, 403) + "."), 0U);
+  EXPECT_NE(text.find("http://127.0.0.1:8123, http://localhost:8123, http://[::1]:8123"), std::string::npos) << text;
+  const std::string hostile = "http://\x1b[2J\n" + std::string(5000, 'x');
+  request.origins = {hostile};
+  const std::string line = refusal_line(request, local, 403);
+  EXPECT_LT(line.size(), 300U);
+  EXPECT_EQ(line.find_first_of("\x1b\n"), std::string::npos) << line;
+}
+
 TEST(ServerAddress, TheFirstNameIsInTheAddressOfThePage) {
   EXPECT_EQ(first_origin(local), "http://127.0.0.1:8123");
   EXPECT_EQ(first_origin(lan), "https://robot.local:8123");
@@ -114,8 +192,8 @@ TEST_F(RequestPolicy, OnlyStopIsPosted) {
 
 TEST_F(RequestPolicy, StopNeedsTheTokenOnce) {
   RequestFields request = post();
-  for (const std::string& value :
-       {std::string(), std::string("Bearer"), "Bearer " + token.text() + " ", "bearer " + token.text(), token.text()}) {
+  for (const std::string& value : {std::string(), std::string("Bearer"), "Bearer " + token.text() + " ",
+                                   "Bearer  " + token.text(), "Basic " + token.text(), token.text()}) {
     request.authorizations = {value};
     EXPECT_EQ(refusal(request), 401U) << value;
   }
@@ -123,6 +201,15 @@ TEST_F(RequestPolicy, StopNeedsTheTokenOnce) {
   EXPECT_EQ(refusal(request), 401U);
   request.authorizations = {bearer, bearer};
   EXPECT_EQ(refusal(request), 401U);
+}
+
+TEST_F(RequestPolicy, TheWordBearerHasNoCase) {
+  RequestFields request = post();
+  for (const std::string word : {"bearer ", "BEARER ", "bEARER "}) {
+    const std::string value = word + token.text();
+    request.authorizations = {value};
+    EXPECT_EQ(action(request), RequestAction::stop) << word;
+  }
 }
 
 TEST_F(RequestPolicy, TheSocketIsForUpgrades) {

@@ -13,7 +13,7 @@
 // runs. So all code of firmware/module runs at one priority, one event after the other, as in the simulator. Data
 // passes from one priority to another in a ring, each of whose ends belongs to one priority (EventRing), or as a single
 // word (in Can) that one side writes at a time. A register that two priorities write is written as a whole or has bits
-// that only set or clear. The one exception is flash.hpp, which disables all interrupts.
+// that only set or clear. The exceptions are flash.hpp and servo.cpp, which disable all interrupts.
 //
 // ModuleTask feeds the watchdog after it has polled the module. So the watchdog resets the chip if PendSV stops coming
 // (TIM5 or the interrupts fail), if the program does not return, or if a higher priority takes all the time. No event

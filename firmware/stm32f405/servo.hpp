@@ -8,6 +8,11 @@ namespace proleg::stm32f405 {
 /// counter is below CCR1. A pulse begins when pulse() sets the counter to 0. If the program is late, the pulse is
 /// repeated when the counter wraps, a quarter later than the period.
 ///
+/// A pulse begins only after the output was low for 0.5 ms, whatever is requested when: two pulses that run together
+/// are one long pulse for a servo. A request during that pause is kept, and the timer begins its pulse at the end of
+/// the pause. A request while the output is high is kept until the next one, or until the timer repeats. The newest
+/// request counts.
+///
 /// A width of 0 means no pulse: off() requests it, so that the last pulse ends with its width. A shortened pulse is a
 /// command to another angle. After the first pulse the timer never stops.
 ///
@@ -26,15 +31,24 @@ class Servo final : public firmware::ServoPort {
   void finish_last_pulse() const;
 
  private:
-  void follow_timer();
+  /// A period of the counter, from an update event to the next one.
+  struct Period {
+    /// CCR1: the output is high below this count; 0: there is no pulse. It is volatile, because finish_last_pulse() may
+    /// interrupt the program anywhere.
+    volatile std::uint32_t width = 0;
+    std::uint32_t free_from = 0;  ///< from this count on the output has been low for the pause; at most `last` + 1
+    std::uint32_t last = 0;       ///< ARR: the last count
+  };
+
+  bool follow_timer();
+  [[nodiscard]] std::uint32_t settled_count();
+  void begin(const Period& period);
+  void request(const Period& period);
   [[nodiscard]] bool continue_with_internal_oscillator() const;
 
-  bool is_running_ = false;            ///< whether the timer runs: there was a pulse
-  std::uint32_t requested_width_ = 0;  ///< the value in CCR1
-  std::uint32_t last_count_ = 0;       ///< the value in ARR
-  /// The width with which the timer compares: CCR1 at the last update event. It is volatile, and written before an
-  /// event that the program causes, because finish_last_pulse() may run in between.
-  volatile std::uint32_t active_width_ = 0;
+  bool is_running_ = false;  ///< whether the timer runs: there was a pulse
+  Period running_;           ///< with which the timer compares; if UIF is set, it has begun next_ since
+  Period next_;              ///< what CCR1 and ARR hold: the timer begins it when the counter wraps
 };
 
 }  // namespace proleg::stm32f405

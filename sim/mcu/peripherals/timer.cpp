@@ -341,7 +341,7 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       }
       const unsigned channel = (offset - ccr1) / 4;
       channels_[channel].preload = value & max_count_;
-      channels_[channel].asked_in_time = reference(channel);
+      channels_[channel].asked_in_time = reference(channel) || channels_[channel].compare == 0;
       if (!preloads(channel)) {
         channels_[channel].compare = value & max_count_;
       }

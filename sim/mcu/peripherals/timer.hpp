@@ -49,7 +49,8 @@ class Timer final : public RegisterBlock {
   /// from the next update on). Nothing unless the counter runs, the channel is in a PWM mode and its output is enabled.
   [[nodiscard]] std::optional<std::uint32_t> pulse_width(unsigned channel) const;
   /// Time for which the output is high in each period, at ChipServices::now(): in the period that runs; or, if the
-  /// program wrote another width while the output was active, in the next one. Empty if pulse_width() is empty.
+  /// program wrote another width while the output was active, or in a period without a pulse, in the next one. Empty if
+  /// pulse_width() is empty.
   [[nodiscard]] std::optional<LocalTime> high_time(unsigned channel);
   struct Output {
     bool driven = false;  ///< CCxE
@@ -73,7 +74,8 @@ class Timer final : public RegisterBlock {
     std::uint32_t preload = 0;
     std::uint32_t compare = 0;   ///< the value that is in effect
     bool frozen_active = false;  ///< OCxREF in frozen mode
-    bool asked_in_time = true;   ///< `preload` was written while the output was active, so that the next period has it
+    /// `preload` was written while the output was active, or in a period without a pulse: the next period has it.
+    bool asked_in_time = true;
   };
 
   /// Period of the timer's clock.

@@ -249,9 +249,6 @@ json experiment_json(const ExperimentForm& form) {
 json search_methods_json() {
   json methods = json::array();
   for (const optimize::MethodDeclaration& method : optimize::methods()) {
-    if (method.has_map) {
-      continue;  // the page has no fields for its axes
-    }
     json settings = json::array();
     for (const optimize::MethodSetting& setting : method.settings) {
       settings.push_back(setting_json(setting));
@@ -264,6 +261,7 @@ json search_methods_json() {
                        {"title", method.title},
                        {"help", method.help},
                        {"objectives", objectives},
+                       {"has_map", method.has_map},
                        {"settings", std::move(settings)}});
   }
   json measures = json::array();
@@ -276,7 +274,8 @@ json search_methods_json() {
   }
   return {{"methods", std::move(methods)},
           {"measures", std::move(measures)},
-          {"most_objectives", optimize::max_objectives}};
+          {"most_objectives", optimize::max_objectives},
+          {"most_axes", optimize::max_map_axes}};
 }
 
 }  // namespace proleg::tools

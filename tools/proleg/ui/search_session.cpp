@@ -91,6 +91,26 @@ json names_of(const optimize::SearchSpace& space) {
   return names;
 }
 
+/// The engine of the search whose experiment file this is; nothing: it is no file of a search, or one without an
+/// engine.
+std::optional<std::string> engine_of_search(SearchResults& results, const fs::path& file) {
+  const fs::path search = file.parent_path();
+  std::error_code error;
+  if (!fs::exists(SearchFolder::store_of(search), error)) {
+    return std::nullopt;
+  }
+  try {
+    const auto engine = results.describe(search).at("engine").get<std::string>();
+    const bool is_known =
+        std::ranges::any_of(sim::physics_engines, [&](const auto& its) { return its.word == engine; });
+    return is_known ? std::optional(engine) : std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  } catch (const optimize::StoreError&) {
+    return std::nullopt;
+  }
+}
+
 /// Whether a search has left anything that is worth keeping.
 bool has_evaluations(const fs::path& search) {
   try {
@@ -385,7 +405,12 @@ json SearchSession::start(const host::OperationRequest& request) {
     form = form_in(arguments);
     static_cast<void>(required_experiment(form, *scenario));
   }
-  const std::vector<std::string> options = options_in(arguments);
+  std::vector<std::string> options = options_in(arguments);
+  if (file && !argument<std::string>(arguments, "engine", "the name of an engine, or null")) {
+    if (const auto engine = engine_of_search(results_, *file)) {  // it is started again
+      options.insert(options.end(), {"--engine", *engine});
+    }
+  }
   const fs::path folder = make_new_folder(parent, name);
   try {
     if (!file) {

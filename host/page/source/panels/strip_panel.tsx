@@ -203,29 +203,18 @@ export function StripPanel({ app }: { app: RobotView }) {
   return (
     <section class="panel strip-panel" aria-label="Strip: all joints over time">
       <div class="panel-head">
-        <label for="strip-signal">All joints over time</label>
-        <select
-          id="strip-signal"
-          value={app.selection.strip.value}
-          onChange={(event) => (app.selection.strip.value = event.currentTarget.value)}
-        >
-          {signals.map((signal) => (
-            <option key={signal.name} value={signal.name}>
-              {signalTitle(signal)}
-            </option>
-          ))}
-        </select>
+        <label>
+          All joints over time{' '}
+          <select value={app.selection.strip.value} onChange={(event) => (app.selection.strip.value = event.currentTarget.value)}>
+            {signals.map((signal) => (
+              <option key={signal.name} value={signal.name}>
+                {signalTitle(signal)}
+              </option>
+            ))}
+          </select>
+        </label>
         <span class="space" />
-        <svg class="scale-bar" viewBox="0 0 60 8" aria-hidden="true">
-          <defs>
-            <linearGradient id="strip-scale">
-              <stop offset="0" stop-color={theme.low} />
-              <stop offset="0.5" stop-color={theme.middle} />
-              <stop offset="1" stop-color={theme.high} />
-            </linearGradient>
-          </defs>
-          <rect width="60" height="8" fill="url(#strip-scale)" />
-        </svg>
+        <i class="scale-bar" aria-hidden="true" style={{ background: `linear-gradient(to right, ${theme.low}, ${theme.middle}, ${theme.high})` }} />
         <span ref={legend} class="hint" title="Ends of the colour scale" />
       </div>
       <canvas

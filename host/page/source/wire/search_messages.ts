@@ -48,6 +48,7 @@ export interface SearchMethod {
   title: string;
   help: string;
   objectives: 'one' | 'several' | 'any';
+  has_map: boolean; // whether it needs axes
   settings: MethodSetting[];
 }
 
@@ -64,6 +65,7 @@ export interface SearchMethodsDocument {
   methods: SearchMethod[];
   measures: Measure[];
   most_objectives: number;
+  most_axes: number;
 }
 
 // A parameter that the search chooses. Numbers are texts, as a person writes them; an empty one stands for the default.
@@ -92,6 +94,14 @@ export interface Objective {
   terms: ObjectiveTerm[];
 }
 
+// A measure that a map of gaits is divided by.
+export interface ExperimentAxis {
+  measure: string;
+  lowest: string;
+  highest: string;
+  cells: string; // empty in a map with centroids
+}
+
 export interface Trials {
   count: string;
   aggregate: '' | 'mean' | 'worst';
@@ -110,6 +120,7 @@ export interface Experiment {
   settings: Record<string, string>;
   parameters: ChosenParameter[];
   objectives: Objective[];
+  axes: ExperimentAxis[]; // only of a method with a map
   heading: string;
   evaluations: string;
   seed: string;

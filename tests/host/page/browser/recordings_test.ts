@@ -128,7 +128,7 @@ describe('recordings', () => {
     try {
       const viewer = await Viewer.open(browser, served.address);
       const { page } = viewer;
-      await page.locator('#strip-signal').selectOption('setpoint');
+      await page.locator('.strip-panel select:visible').selectOption('setpoint');
       // The part about 30 s.
       await new Recordings(viewer).press(0.25);
       const strip = await page.getByTestId('strip').boundingBox();

@@ -20,4 +20,13 @@ describe('the files of the page', () => {
   it('are layers: panels import no page of recordings', () => {
     assert.deepEqual(filesThatImport('/recordings/', 'panels'), []);
   });
+
+  it('name no element twice: hidden pages stay in the document, and the first element of a name counts', () => {
+    const pages = ['panels/live_page.tsx', 'recordings/recordings_page.tsx', 'make/make_page.tsx', 'modules/modules_page.tsx'];
+    const panels = pages.flatMap((page) => [...readFileSync(`${source}/${page}`, 'utf8').matchAll(/from '[^']*?(\w+)\.js'/g)].map(([, name]) => name as string));
+    const shared = new Set(panels.filter((name, place) => panels.indexOf(name) !== place));
+    assert.ok(shared.has('strip_panel') && shared.has('scene_panel'));
+    const files = readdirSync(`${source}/panels`, { recursive: true, encoding: 'utf8' }).filter((file) => shared.has(file.replace(/^.*\/|\.tsx?$/g, '')));
+    assert.deepEqual(files.filter((file) => / id=["'{]/.test(readFileSync(`${source}/panels/${file}`, 'utf8'))), []);
+  });
 });

@@ -60,12 +60,13 @@ const setting = (name: string, usual: string) => ({ name, kind: 'whole' as const
 
 export const methods: SearchMethodsDocument = {
   methods: [
-    { tag: 'geneticAlgorithm', algorithm: null, title: 'Genetic algorithm', help: 'GAlib', objectives: 'one', settings: [setting('popsize', '30'), setting('gamode', '1')] },
-    { tag: 'cmaEs', algorithm: null, title: 'CMA-ES', help: 'learns', objectives: 'one', settings: [setting('popsize', '20'), setting('generations', '1000'), setting('restartAfter', '0')] },
-    { tag: 'pagmo', algorithm: 'sade', title: 'SADE', help: 'adapts', objectives: 'one', settings: [setting('popsize', '20')] },
+    { tag: 'geneticAlgorithm', algorithm: null, title: 'Genetic algorithm', help: 'GAlib', objectives: 'one', has_map: false, settings: [setting('popsize', '30'), setting('gamode', '1')] },
+    { tag: 'cmaEs', algorithm: null, title: 'CMA-ES', help: 'learns', objectives: 'one', has_map: false, settings: [setting('popsize', '20'), setting('generations', '1000'), setting('restartAfter', '0')] },
+    { tag: 'pagmo', algorithm: 'sade', title: 'SADE', help: 'adapts', objectives: 'one', has_map: false, settings: [setting('popsize', '20')] },
   ],
   measures: [{ name: 'distance', unit: 'm', help: 'how far', higher_is_better: true, may_be_negative: false }],
   most_objectives: 8,
+  most_axes: 4,
 };
 
 export function entry(part: Partial<SearchEntry> = {}): SearchEntry {

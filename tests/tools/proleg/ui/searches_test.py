@@ -29,6 +29,7 @@ def simulate(file):
 def a_form_becomes_a_better_gait(program):
     methods = program.viewer.documents["search_methods"]["value"]
     assert {"cmaEs", "geneticAlgorithm", "greatDeluge", "nsga2"} <= {method["tag"] for method in methods["methods"]}
+    assert [method["tag"] for method in methods["methods"] if method["has_map"]] == ["mapElites"] and methods["most_axes"] == 4, methods
     assert any(measure["name"] == "distance" for measure in methods["measures"])
     form = experiment()
     checked = program.must("search.check", experiment=form)
@@ -90,6 +91,28 @@ def a_form_becomes_a_better_gait(program):
     assert result["measures"]["distance"] == search["score"], (result["measures"]["distance"], search["score"])
     program.must("draft.undo")
     program.must("draft.save")
+
+
+def a_map_of_gaits_is_searched_from_a_form(program):
+    file = str(SOURCE / "sim/scenarios/travelling_wave/gait_map.optimise.xml")
+    form = program.must("search.read", file=file)["experiment"]
+    methods = program.viewer.documents["search_methods"]["value"]["methods"]
+    assert any((method["tag"], method["algorithm"]) == (form["method"], form["algorithm"] or None) for method in methods), form
+    assert [axis["measure"] for axis in form["axes"]] == ["height", "duty_factor"], form
+    wrong = {**form, "axes": [{**form["axes"][0], "cells": "0"}]}
+    assert program.must("search.check", experiment=wrong)["problem"]["field"].startswith("axes.0")
+    form = {**form, "settings": {"popsize": "4", "first": "8"}, "evaluations": "12"}
+    name = program.must("search.start", name="map", experiment=form, engine="reduced", workers=2)["name"]
+    program.when(name, lambda found: found["state"] == "ended")
+    described = program.must("search.open", name=name)
+    assert [axis["cells"] for axis in described["axes"]] == [25, 20] and described["engine"] == "reduced", described
+
+    # Its file starts it again: with its engine, unless another one is named.
+    again = str(program.folder / name / "map.optimise.xml")
+    for engine, expected in ((None, "reduced"), ("ode", "ode")):
+        name = program.must("search.start", name=f"again_{expected}", file=again, engine=engine, workers=2)["name"]
+        program.when(name, lambda found: found["state"] == "ended")
+        assert program.must("search.open", name=name)["engine"] == expected, name
 
 
 def saved_files(folder):
@@ -330,6 +353,7 @@ def main():
             searches_of_others_are_found(program)
             files_of_experiments_are_offered(program)
             adaptations_are_found_with_their_map(program)
+            a_map_of_gaits_is_searched_from_a_form(program)
             program.process.send_signal(signal.SIGINT)
             assert program.process.wait() == 0
 

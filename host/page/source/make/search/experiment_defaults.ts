@@ -1,6 +1,6 @@
 // An experiment that a person begins with: good defaults, so that two or three clicks start a sensible search.
 import { formatNumber, formatRaw } from '../../state/parameter_values.js';
-import type { AlgorithmDocument, AlgorithmParameter, BehaviourModule, ChosenParameter, DraftDocument, Experiment, Objective, SearchMethod } from '../../wire/messages.js';
+import type { AlgorithmDocument, AlgorithmParameter, BehaviourModule, ChosenParameter, DraftDocument, Experiment, ExperimentAxis, Objective, SearchMethod } from '../../wire/messages.js';
 
 const fewestSteps = 240; // of a range, if it is not of whole numbers
 const usualMethod = 'cmaEs';
@@ -54,6 +54,23 @@ export function newObjective(measure: string): Objective {
   return { name: '', goal: '', failed: '', terms: [{ measure, weight: '' }] };
 }
 
+// The axes with which a map begins: how high the robot rises, and which share of the stride its links are on the ground.
+export const usualAxes: readonly ExperimentAxis[] = [
+  { measure: 'height', lowest: '0', highest: '0.05', cells: '25' },
+  { measure: 'duty_factor', lowest: '0.2', highest: '0.4', cells: '20' },
+];
+
+// What changes in an experiment that gets another method.
+export function withMethod(experiment: Experiment, method: SearchMethod): Partial<Experiment> {
+  const { settings, axes } = experiment;
+  return {
+    method: method.tag,
+    algorithm: method.algorithm ?? '',
+    settings: settingsFor(method, settings),
+    axes: method.has_map && axes.length === 0 ? [...usualAxes] : axes,
+  };
+}
+
 // The settings with which a method begins: those that were typed for another one, if it has them. A method that can restart
 // does: else it ends on the first summit that it finds.
 export function settingsFor(method: SearchMethod | undefined, typed: Record<string, string>): Record<string, string> {
@@ -70,6 +87,7 @@ export function newExperiment(draft: DraftDocument, algorithms: readonly Algorit
     settings: settingsFor(method, {}),
     parameters: firstParameter(draft, algorithms),
     objectives: [newObjective(usualMeasure)],
+    axes: [],
     heading: '',
     evaluations: usualEvaluations,
     seed: '1',

@@ -21,6 +21,7 @@ export function plainExperiment(experiment: Experiment): Experiment {
     settings: Object.fromEntries(Object.entries(plainTexts(settings)).filter(([, text]) => text !== '')),
     parameters: parameters.map(plainTexts),
     objectives: objectives.map((objective) => ({ ...plainTexts(objective), name: objective.name.trim(), terms: objective.terms.map(plainTexts) })),
+    axes: experiment.axes.map(plainTexts),
     heading: plainText(experiment.heading),
     evaluations: plainText(experiment.evaluations),
     seed: experiment.seed.trim(),

@@ -1,10 +1,11 @@
 // How the search chooses its candidates: the method, and its settings, which are folded away.
-import type { Experiment, MethodSetting, SearchMethod } from '../../wire/messages.js';
+import type { Experiment, ExperimentAxis, Measure, MethodSetting, SearchMethod } from '../../wire/messages.js';
 import { ChoiceField } from '../fields/choice_field.js';
 import type { FieldProblem } from '../fields/field_problem.js';
 import { FormField } from '../fields/form_field.js';
-import { settingsFor } from './experiment_defaults.js';
+import { usualAxes, withMethod } from './experiment_defaults.js';
 import { FieldAlert } from './field_alert.js';
+import { MeasureChoice } from './rating_fields.js';
 import { sentence } from './search_text.js';
 
 const keyOf = ({ tag, algorithm }: Pick<SearchMethod, 'tag' | 'algorithm'>) => `${tag}/${algorithm ?? ''}`;
@@ -47,8 +48,46 @@ function SettingField({ setting, value, problem, change }: { setting: MethodSett
   );
 }
 
-export function MethodFields({ experiment, methods, method, problem, change }: {
+// The axes of a map of gaits.
+function AxisFields({ axes, measures, most, problem, change }: {
+  axes: readonly ExperimentAxis[];
+  measures: readonly Measure[];
+  most: number;
+  problem: FieldProblem | null;
+  change(axes: ExperimentAxis[]): void;
+}) {
+  const set = (place: number, part: Partial<ExperimentAxis>) => change(axes.map((axis, i) => (i === place ? { ...axis, ...part } : axis)));
+  return (
+    <>
+      <p class="hint">Each cell of the map keeps the best gait whose measures are in it. Cells stay empty if there are centroids in the settings.</p>
+      {axes.map((axis, place) => (
+        <div class="fields" key={place} role="group" aria-label={`Axis ${place + 1}`}>
+          <MeasureChoice label="axis" measures={measures} value={axis.measure} change={(measure) => set(place, { measure })} />
+          {(['lowest', 'highest', 'cells'] as const).map((name) => (
+            <FormField key={name} name={`axes.${place}.${name}`} label={name} value={axis[name]} size={6} isNumeric problem={problem} change={(text) => set(place, { [name]: text })} />
+          ))}
+          {axes.length > 1 && (
+            <button type="button" onClick={() => change(axes.filter((_, i) => i !== place))}>
+              Remove the axis
+            </button>
+          )}
+        </div>
+      ))}
+      {axes.length < most && (
+        <div class="fields">
+          <button type="button" onClick={() => change([...axes, { ...(usualAxes[axes.length % usualAxes.length] as ExperimentAxis) }])}>
+            Add an axis
+          </button>
+        </div>
+      )}
+    </>
+  );
+}
+
+export function MethodFields({ experiment, measures, mostAxes, methods, method, problem, change }: {
   experiment: Experiment;
+  measures: readonly Measure[];
+  mostAxes: number;
   methods: readonly SearchMethod[];
   method: SearchMethod | undefined;
   problem: FieldProblem | null;
@@ -57,7 +96,7 @@ export function MethodFields({ experiment, methods, method, problem, change }: {
   const { settings } = experiment;
   const choose = (key: string) => {
     const next = methods.find((each) => keyOf(each) === key);
-    if (next !== undefined) change({ method: next.tag, algorithm: next.algorithm ?? '', settings: settingsFor(next, settings) });
+    if (next !== undefined) change(withMethod(experiment, next));
   };
   const typed = Object.values(settings).filter((text) => text !== '').length;
   const isOfSetting = problem?.field.startsWith('settings.') === true;
@@ -68,6 +107,7 @@ export function MethodFields({ experiment, methods, method, problem, change }: {
         <label class="number-field">
           <span>method</span>
           <select name="method" value={method === undefined ? '' : keyOf(method)} onChange={(event) => choose(event.currentTarget.value)}>
+            {method === undefined && <option value="">{experiment.method}</option>}
             {methods.map((each) => (
               <option key={keyOf(each)} value={keyOf(each)}>
                 {each.title}
@@ -82,6 +122,7 @@ export function MethodFields({ experiment, methods, method, problem, change }: {
         </p>
       )}
       <FieldAlert problem={problem} isAbout={(field) => field === 'method' || (field.startsWith('settings.') && method?.settings.every(({ name, kind }) => field !== `settings.${name}` || kind === 'choice') === true)} />
+      {method?.has_map === true && <AxisFields axes={experiment.axes} measures={measures} most={mostAxes} problem={problem} change={(axes) => change({ axes })} />}
       {method !== undefined && method.settings.length > 0 && (
         <details open={isOfSetting}>
           <summary>

@@ -8,10 +8,15 @@ import { newObjective } from './experiment_defaults.js';
 import { FieldAlert } from './field_alert.js';
 import { sentence } from './search_text.js';
 
-function MeasureChoice({ measures, value, change }: { measures: readonly Measure[]; value: string; change(measure: string): void }) {
+export function MeasureChoice({ label = 'measure', measures, value, change }: {
+  label?: string;
+  measures: readonly Measure[];
+  value: string;
+  change(measure: string): void;
+}) {
   return (
     <label class="number-field">
-      <span>measure</span>
+      <span>{label}</span>
       <select value={value} onChange={(event) => change(event.currentTarget.value)}>
         {measures.map(({ name, unit }) => (
           <option key={name} value={name}>

@@ -118,7 +118,7 @@ export function SearchForm({ app }: { app: SearchApp }) {
       <h2>New search</h2>
       <ParameterFields draft={draft} algorithms={algorithms.value} problem={problem} parameters={experiment.parameters} change={(parameters) => change({ parameters })} />
       <RatingFields experiment={experiment} measures={documents.measures} most={documents.most_objectives} problem={problem} change={change} />
-      <MethodFields experiment={experiment} methods={documents.methods} method={form.method.value} problem={problem} change={change} />
+      <MethodFields experiment={experiment} measures={documents.measures} mostAxes={documents.most_axes} methods={documents.methods} method={form.method.value} problem={problem} change={change} />
       <TimeFields app={app} form={form} />
       <TrialFields experiment={experiment} problem={problem} change={change} />
       {text !== null && (

@@ -108,6 +108,7 @@ export function SearchPart({ app: host }: { app: SearchHost }) {
             From a file …
           </button>
         </div>
+        {isShowingFiles.value && <p class="hint">Start takes a file as it is, with the engine that its scenario names; the file of a search, with the engine of that search.</p>}
         {isShowingFiles.value && (
           <ul class="objects" aria-label="Experiment files">
             {files.map((experiment) => (

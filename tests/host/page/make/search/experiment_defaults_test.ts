@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { defaultRange, fitToDraft, newExperiment, newObjective, newParameter, rangeStep, settingsFor } from '../../../../../host/page/source/make/search/experiment_defaults.js';
+import { defaultRange, fitToDraft, newExperiment, newObjective, newParameter, rangeStep, settingsFor, withMethod } from '../../../../../host/page/source/make/search/experiment_defaults.js';
 import type { AlgorithmDocument } from '../../../../../host/page/source/wire/messages.js';
 import { caterpillar, methods, parameter, sinusoidal } from '../../support/search_program.js';
 
@@ -87,5 +87,17 @@ describe('the experiment of the last search', () => {
     const fitting = fitToDraft({ ...before, parameters }, draft);
     assert.deepEqual(fitting.parameters.map(({ parameter: name, joints }) => [name, joints]), [['amplitude', [0]]]);
     assert.equal(fitting.objectives[0]?.terms[0]?.measure, 'speed');
+  });
+});
+
+describe('another method', () => {
+  const map = { ...methods.methods[1]!, tag: 'mapElites', title: 'MAP-Elites', has_map: true };
+  const experiment = newExperiment(caterpillar(), [sinusoidal], methods.methods);
+
+  it('gets axes if it fills a map, and keeps those that were typed', () => {
+    assert.deepEqual(withMethod(experiment, map).axes?.map(({ measure }) => measure), ['height', 'duty_factor']);
+    const typed = [{ measure: 'speed', lowest: '0', highest: '1', cells: '5' }];
+    assert.deepEqual(withMethod({ ...experiment, axes: typed }, map).axes, typed);
+    assert.deepEqual(withMethod(experiment, methods.methods[0]!).axes, []);
   });
 });

@@ -52,6 +52,18 @@ class Signatures(unittest.TestCase):
         self.assertEqual(os.stat(self.folder / "one.pem").st_mode & 0o777, 0o600)
         self.assertEqual(self.openssl("pkey", "-in", "one.pem", "-pubout", "-outform", "DER").stdout[-32:], public)
 
+    def test_a_private_key_that_others_can_read_is_a_warning(self):
+        self.key("one")
+        self.image()
+        self.sign()
+        for mode in (0o640, 0o604, 0o666):
+            (self.folder / "one.pem").chmod(mode)
+            sign = self.run_image("sign", "module.pimg", "--key", "one.pem", "--output", "signed.pimg")
+            make = self.make(key="one.pem")
+            for result in (sign, make):
+                self.assertEqual((result.returncode, result.stderr),
+                                 (0, "proleg image: warning: one.pem: others can read the key: 'chmod 600' prevents it\n"), oct(mode))
+
     def test_a_private_key_is_not_replaced_without_force(self):
         first = self.key("one")
         private = (self.folder / "one.pem").read_bytes()

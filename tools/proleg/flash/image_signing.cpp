@@ -8,6 +8,7 @@
 
 #include "host/flash/module_program.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/errors/secret_file.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/flash/image_actions.hpp"
@@ -117,6 +118,9 @@ Signing read_signing(const SigningOptions& options) {
     return signing;
   }
   signing.key = host::SigningKey::read(*options.key);
+  if (const std::optional<std::string> warning = warning_on_secret(*options.key)) {
+    print_warning("proleg image", *warning);
+  }
   if (options.minimum_version) {
     signing.minimum_version = parse_version("--minimum-version", *options.minimum_version);
   }

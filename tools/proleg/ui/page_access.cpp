@@ -139,4 +139,8 @@ std::shared_ptr<const host::ServerCertificate> open_certificate(const LanOptions
   return certificate;
 }
 
+void warn_of_refusal(const std::string& line) {
+  print_warning("proleg ui", "a request was refused: " + line + "; behind a reverse proxy see docs/reverse-proxy.md");
+}
+
 }  // namespace proleg::tools

@@ -52,4 +52,7 @@ void add_lan_options(CommandLine& command_line, LanOptions& options);
 [[nodiscard]] std::shared_ptr<const host::ServerCertificate> open_certificate(const LanOptions& options,
                                                                               const std::string& program);
 
+/// Says on the terminal that the server has refused a request for its Host or Origin.
+void warn_of_refusal(const std::string& line);
+
 }  // namespace proleg::tools

@@ -40,7 +40,8 @@ fs::path new_folder_in(const fs::path& parent, const std::string& name, const ch
   const fs::path folder(name);
   const bool is_plain = is_visible_line(name) && shortened(name) == name;
   if (name.empty() || folder.filename() != folder || name.front() == '.' || !is_plain) {
-    throw InputError(argument, 0, in_quotes(name), "1 to 60 characters that a person sees, without a path");
+    throw InputError(argument, 0, in_quotes(name),
+                     "a name of 1 to 60 characters, without '/', that does not begin with a dot");
   }
   return parent / folder;
 }

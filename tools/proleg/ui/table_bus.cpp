@@ -58,7 +58,13 @@ void TableBus::serve() {
     send_stops();
   }
   if (const std::optional<BusView> view = views_.due(BusViews::Clock::now())) {
-    output_.publish("bus", bus_document({}, *view));
+    nlohmann::json document = bus_document({}, *view);
+    if (has_job) {  // the program of the job may give servos power meanwhile
+      for (nlohmann::json& module : document["modules"]) {
+        module["drive"] = "not read";
+      }
+    }
+    output_.publish("bus", document);
   }
   host::BusConnection& bus = bus_.connection();
   bus.run_until(bus.now() + look_period_us, [this] { return ends_ || stops_; });

@@ -155,7 +155,7 @@ describe('a new robot', () => {
     await page.getByTestId('new-panel').getByRole('alert').filter({ hasText: 'a folder that exists' }).waitFor();
     await page.getByRole('textbox', { name: 'name of the robot and of its folder' }).fill('../out');
     await page.getByRole('button', { name: 'Create and start' }).click();
-    await page.getByTestId('new-panel').getByRole('alert').filter({ hasText: 'without a path' }).waitFor();
+    await page.getByTestId('new-panel').getByRole('alert').filter({ hasText: "without '/'" }).waitFor();
   });
 });
 

@@ -35,14 +35,26 @@ fs::path BegunPrograms::written_in(const fs::path& folder) const { return folder
 
 void BegunPrograms::begin(host::RequestId request, const std::string& name, const fs::path& folder, bool is_new,
                           const std::vector<std::string>& command, const fs::path& directory) {
-  beginnings_.push_back({request, name, folder, DetachedProgram(command, directory.string(), folder / kind_.log),
-                         Clock::now() + kind_.longest_start, is_new});
+  share_.claim(written_in(folder));
+  try {
+    beginnings_.push_back({request, name, folder, DetachedProgram(command, directory.string(), folder / kind_.log),
+                           Clock::now() + kind_.longest_start, is_new});
+  } catch (...) {
+    share_.release(written_in(folder));
+    throw;
+  }
 }
 
 bool BegunPrograms::look() {
   bool has_begun = false;
   beginnings_.remove_if([&](Beginning& beginning) { return look_at(beginning, has_begun); });
-  running_.remove_if([](DetachedProgram& program) { return program.status().has_value(); });
+  running_.remove_if([this](Running& running) {
+    const bool has_ended = running.program.status().has_value();
+    if (has_ended) {
+      share_.release(running.written);
+    }
+    return has_ended;
+  });
   return has_begun;
 }
 
@@ -60,7 +72,7 @@ bool BegunPrograms::look_at(Beginning& beginning, bool& has_begun) {
     if (!beginning.is_answered) {
       output_.answer(beginning.request, {{"name", beginning.name}});
     }
-    running_.push_back(std::move(beginning.program));
+    running_.push_back({std::move(beginning.program), written});
     return true;
   }
   if (!status) {
@@ -73,6 +85,7 @@ bool BegunPrograms::look_at(Beginning& beginning, bool& has_begun) {
   if (!beginning.is_answered) {
     output_.refuse(beginning.request, refusal_of(beginning.folder, *status));
   }
+  share_.release(written);
   if (beginning.is_new && !kind_.has_results(beginning.folder)) {
     fs::remove_all(beginning.folder, error);
   }
@@ -109,7 +122,7 @@ void BegunPrograms::refuse_all(const std::string& why) {
     if (!beginning.is_answered) {
       output_.refuse(beginning.request, why);
     }
-    running_.push_back(std::move(beginning.program));
+    running_.push_back({std::move(beginning.program), written_in(beginning.folder)});
   }
   beginnings_.clear();
 }

@@ -13,6 +13,7 @@
 
 #include "host/server/robot_session.hpp"
 #include "tools/proleg/common/detached_program.hpp"
+#include "tools/proleg/ui/seat_limits.hpp"
 
 namespace proleg::tools {
 
@@ -32,11 +33,13 @@ class BegunPrograms {
     std::chrono::seconds longest_start;
   };
 
-  /// output: must outlive this.
-  BegunPrograms(Kind kind, host::SessionOutput& output) : kind_(std::move(kind)), output_(output) {}
+  /// share, output: must outlive this.
+  BegunPrograms(Kind kind, ProgramShare& share, host::SessionOutput& output)
+      : kind_(std::move(kind)), share_(share), output_(output) {}
 
-  /// Starts a program. The request is answered with the name when it has begun, or refused. directory: in which it
-  /// runs. is_new: the folder is removed if it does not begin. Throws std::runtime_error.
+  /// Starts a program, if the share has room for it. The request is answered with the name when it has begun, or
+  /// refused. directory: in which it runs. is_new: the folder is removed if it does not begin. Throws
+  /// std::runtime_error.
   void begin(host::RequestId request, const std::string& name, const std::filesystem::path& folder, bool is_new,
              const std::vector<std::string>& command, const std::filesystem::path& directory);
   /// Answers those that have begun, or have failed to. Returns whether one has begun.
@@ -52,6 +55,7 @@ class BegunPrograms {
   /// Whether a request waits for its answer.
   [[nodiscard]] bool has_waiting() const;
   [[nodiscard]] bool is_empty() const { return beginnings_.empty() && running_.empty(); }
+  [[nodiscard]] const ProgramShare& share() const { return share_; }
 
  private:
   struct Beginning {
@@ -65,6 +69,11 @@ class BegunPrograms {
     bool is_answered = false;  ///< it is late: the request was refused
   };
 
+  struct Running {
+    DetachedProgram program;
+    std::filesystem::path written;
+  };
+
   [[nodiscard]] std::filesystem::path written_in(const std::filesystem::path& folder) const;
   /// Whether it has begun, or has failed to.
   bool look_at(Beginning& beginning, bool& has_begun);
@@ -72,9 +81,10 @@ class BegunPrograms {
   [[nodiscard]] std::string refusal_of(const std::filesystem::path& folder, int status) const;
 
   Kind kind_;
+  ProgramShare& share_;
   host::SessionOutput& output_;
   std::list<Beginning> beginnings_;
-  std::list<DetachedProgram> running_;  ///< whose end must be taken note of
+  std::list<Running> running_;  ///< whose end must be taken note of
 };
 
 /// Makes a new folder in the folder `parent` of a project, which is made if there is none. Throws InputError for

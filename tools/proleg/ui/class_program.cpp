@@ -12,6 +12,7 @@
 #include "host/transport/open_transport.hpp"
 #include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/errors/secret_file.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -36,10 +37,21 @@ unsigned robots_in(const std::string& word) {
   return *count;
 }
 
+std::size_t seats_per_address_in(const std::string& word) {
+  const std::optional<std::size_t> count = parse_whole<std::size_t>(word);
+  if (!count || *count == 0 || *count > ClassRegister::most_learners) {
+    throw InputError("--seats-per-address", 0, in_quotes(word),
+                     "a number of names, 1 to " + std::to_string(ClassRegister::most_learners));
+  }
+  return *count;
+}
+
 ClassRoomOptions room_options(const ClassOptions& options) {
   ClassRoomOptions room;
   room.most_robots = robots_in(options.learners);
   room.folder = options.folder;
+  room.limits = limits_of_learner(room.most_robots, parse_workers(std::nullopt));
+  room.most_seats_of_address = seats_per_address_in(options.seats_per_address);
   room.command = {(program_folder() / "proleg-ui").string(), "--seat", "--no-browser", "--recordings", "."};
   for (const std::string& library : loaded_libraries()) {
     room.command.insert(room.command.end(), {"--algorithms", std::filesystem::absolute(library).string()});
@@ -61,6 +73,9 @@ std::filesystem::path teacher_folder(const ClassRoom& room) { return room.folder
 int serve_class(const ClassOptions& options) {
   std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
   host::PageFiles page_files(options.page);
+  if (const auto warning = warning_on_secret(options.folder / ClassRegister::file_name)) {
+    print_warning("proleg ui", *warning);
+  }
   ClassRoom room(room_options(options));  // before the context, whose connections use it until they end
   catch_interrupts();
   boost::asio::io_context context{1};
@@ -71,6 +86,7 @@ int serve_class(const ClassOptions& options) {
   host::ServerOptions server{token, std::move(page_files), std::string("proleg ") + build_id, {}, options.port};
   server.certificate = std::move(certificate);
   server.seats = &room;
+  server.refused = warn_of_refusal;
   server.documents = served_documentation();
   for (const std::vector<std::string>& operations : {ClassFiles::operations(), ClassSession::operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());

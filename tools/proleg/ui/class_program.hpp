@@ -11,6 +11,7 @@ namespace proleg::tools {
 
 /// `proleg ui --class`: one address, at which each learner of a class gets a robot, and a teacher sees all.
 struct ClassOptions {
+  std::string seats_per_address;        ///< of the command line
   std::string learners;                 ///< the greatest number of robots that run at a time; of the command line
   std::optional<std::string> scenario;  ///< with which all begin
   std::filesystem::path folder;         ///< of the class; made if there is none

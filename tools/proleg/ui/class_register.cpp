@@ -24,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* register_name = "class.json";
 constexpr const char* lock_name = ".class.lock";
 constexpr int register_version = 1;
 constexpr unsigned code_digits = 6;
@@ -110,15 +109,19 @@ bool WrongCodes::may_try(const std::string& computer, Time now) {
     wrong_.pop_front();
   }
   const auto of_computer = std::ranges::count(wrong_, computer, &Attempt::computer);
-  return static_cast<std::size_t>(of_computer) < most_of_computer && wrong_.size() < most_of_all;
+  return of_computer == 0 || (static_cast<std::size_t>(of_computer) < most_of_computer && wrong_.size() < most_of_all);
 }
 
-ClassRegister::ClassRegister(fs::path folder) : folder_(std::move(folder)) {
+ClassRegister::ClassRegister(fs::path folder, std::size_t most_of_address)
+    : folder_(std::move(folder)), most_of_address_(most_of_address) {
   std::error_code error;
   fs::create_directories(folder_, error);
-  folder_ = fs::canonical(folder_, error);
-  if (error) {
-    throw FileError(folder_, error.message());
+  if (const fs::path real = fs::canonical(folder_, error); !error && fs::is_directory(real, error)) {
+    folder_ = real;
+  } else {
+    fs::create_directories(folder_, error);  // says why there is none
+    throw InputError(folder_.string(), 0, error ? error.message() : "a file",
+                     "a folder for the class, or a place where one can be made");
   }
   lock_ = open((folder_ / lock_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
@@ -131,7 +134,7 @@ ClassRegister::ClassRegister(fs::path folder) : folder_(std::move(folder)) {
     }
     throw FileError(folder_ / lock_name, std::generic_category().message(reason));
   }
-  const fs::path path = folder_ / register_name;
+  const fs::path path = folder_ / file_name;
   if (fs::exists(path, error)) {
     sim::DiskFiles disk;
     read(disk.read(path).value_or("").str());
@@ -146,7 +149,7 @@ ClassRegister::ClassRegister(fs::path folder) : folder_(std::move(folder)) {
 ClassRegister::~ClassRegister() { close(lock_); }
 
 void ClassRegister::read(const std::string& text) {
-  const std::string path = (folder_ / register_name).string();
+  const std::string path = (folder_ / file_name).string();
   const auto fail = [&path](const std::string& found) {
     throw InputError(path, 0, found, "a file of 'proleg ui --class'; move it away to begin a new class");
   };
@@ -198,7 +201,7 @@ void ClassRegister::save() const {
   }
   const json file{
       {"version", register_version}, {"code", code_}, {"is_locked", is_locked_}, {"learners", std::move(learners)}};
-  host::write_private_file(folder_ / register_name, file.dump(2) + "\n");
+  host::write_private_file(folder_ / file_name, file.dump(2) + "\n");
 }
 
 const Learner* ClassRegister::find(host::SeatNumber seat) const {
@@ -286,8 +289,22 @@ const Learner& ClassRegister::join(const JoinWish& wish, const std::string& comp
   if (seat > most_learners) {
     throw JoinRefusal(503, "found " + std::to_string(most_learners) + " names, expected fewer; ask your teacher");
   }
+  require_seat_for(computer);
   require_room(nullptr);
-  return add(seat, wish.name, wish.key);
+  const Learner& learner = add(seat, wish.name, wish.key);
+  addresses_[seat] = computer;
+  return learner;
+}
+
+void ClassRegister::require_seat_for(const std::string& address) const {
+  const bool is_this_computer = address == "127.0.0.1" || address == "::1" || address == "::ffff:127.0.0.1";
+  const auto has = std::ranges::count_if(addresses_, [&](const auto& entry) { return entry.second == address; });
+  if (!is_this_computer && static_cast<std::size_t>(has) >= most_of_address_) {
+    throw JoinRefusal(503, "found " + std::to_string(has) +
+                               " names from the address of this computer, expected at most " +
+                               std::to_string(most_of_address_) +
+                               ": go on with one of them, or ask your teacher (option --seats-per-address)");
+  }
 }
 
 void ClassRegister::lock(bool is_locked) {
@@ -312,6 +329,7 @@ void ClassRegister::let_in(host::SeatNumber seat) {
 void ClassRegister::remove(host::SeatNumber seat) {
   static_cast<void>(required(seat));
   change([this, seat] { learners_.erase(seat); });
+  addresses_.erase(seat);
 }
 
 }  // namespace proleg::tools

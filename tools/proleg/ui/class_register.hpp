@@ -41,7 +41,7 @@ struct JoinWish {
   [[nodiscard]] static JoinWish parse(const std::string& body);
 };
 
-/// Limits the attempts to guess a code. The time is an argument.
+/// Limits the attempts to guess a code. Who has tried no wrong one is not affected by others. The time is an argument.
 class WrongCodes {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -74,10 +74,14 @@ class ClassRegister {
  public:
   static constexpr host::SeatNumber teacher = 0;
   static constexpr std::size_t most_learners = 1000;
+  /// Has the tokens and keys of all learners.
+  static constexpr const char* file_name = "class.json";
 
   /// Reads class.json of the folder, or begins a class there. No other program can have the same class as long as this
   /// object exists. Throws InputError and FileError.
-  explicit ClassRegister(std::filesystem::path folder);
+  /// most_of_address: new names that computers with one address may have; this computer has no limit, because a proxy
+  /// or a tunnel here gives all learners its address.
+  explicit ClassRegister(std::filesystem::path folder, std::size_t most_of_address = most_learners);
   ~ClassRegister();
   ClassRegister(const ClassRegister&) = delete;
   ClassRegister& operator=(const ClassRegister&) = delete;
@@ -107,6 +111,8 @@ class ClassRegister {
  private:
   void read(const std::string& text);
   void save() const;
+  /// Throws JoinRefusal if computers with this address have as many names as they may have.
+  void require_seat_for(const std::string& address) const;
   /// Changes the learners and the file, or neither of them. Throws FileError.
   void change(const std::function<void()>& make);
   [[nodiscard]] Learner* with_name(const std::string& name);
@@ -118,6 +124,8 @@ class ClassRegister {
   std::string code_;
   bool is_locked_ = false;
   std::map<host::SeatNumber, Learner> learners_;
+  const std::size_t most_of_address_;
+  std::map<host::SeatNumber, std::string> addresses_;  ///< of those who have got a new name since this program started
   WrongCodes wrong_codes_;
 };
 

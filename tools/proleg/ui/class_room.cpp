@@ -35,7 +35,8 @@ bool runs(const std::unique_ptr<SeatProgram>& program) {
 
 }  // namespace
 
-ClassRoom::ClassRoom(ClassRoomOptions options) : options_(std::move(options)), register_(options_.folder) {
+ClassRoom::ClassRoom(ClassRoomOptions options)
+    : options_(std::move(options)), register_(options_.folder, options_.most_seats_of_address) {
   start_place(ClassRegister::teacher);
 }
 
@@ -209,6 +210,7 @@ void ClassRoom::start_program(const Learner& learner, Place& place, bool is_paus
                       {"is_teacher", is_teacher},
                       {"may_write_code", is_teacher ? options_.may_teacher_write_code : options_.may_write_code},
                       {"is_open_to_network", options_.is_open_to_network},
+                      {"limits", is_teacher ? json() : limits_json(options_.limits)},
                       {"page_program", options_.page_program}};
   place.program = std::make_unique<SeatProgram>(command, folder, settings, Clock::now());
 }

@@ -21,6 +21,7 @@
 #include "host/server/seats.hpp"
 #include "tools/proleg/ui/class_register.hpp"
 #include "tools/proleg/ui/hand_out.hpp"
+#include "tools/proleg/ui/seat_limits.hpp"
 #include "tools/proleg/ui/seat_program.hpp"
 
 namespace proleg::tools {
@@ -34,6 +35,8 @@ struct ClassRoomOptions {
   std::string page_program;               ///< build id of the program that serves the page
   bool may_teacher_write_code = true;
   bool is_open_to_network = false;
+  SeatLimits limits{};  ///< of each learner
+  std::size_t most_seats_of_address = ClassRegister::most_learners;
 };
 
 /// All functions may be called from any thread; none of them waits.

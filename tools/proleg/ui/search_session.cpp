@@ -68,21 +68,6 @@ Experiment required_experiment(const optimize::ExperimentForm& form, const sim::
   return std::move(std::get<Experiment>(judged));
 }
 
-/// The options of `proleg optimise` that a start and an estimate have.
-std::vector<std::string> options_in(const json& arguments) {
-  std::vector<std::string> options;
-  if (const auto engine = argument<std::string>(arguments, "engine", "the name of an engine, or null")) {
-    options.insert(options.end(), {"--engine", *engine});
-  }
-  if (const auto workers = argument<std::uint32_t>(arguments, "workers", "a number of workers, or null")) {
-    if (*workers == 0 || *workers > max_workers) {
-      throw InputError("workers", 0, std::to_string(*workers), "1 to " + std::to_string(max_workers));
-    }
-    options.insert(options.end(), {"--workers", std::to_string(*workers)});
-  }
-  return options;
-}
-
 json names_of(const optimize::SearchSpace& space) {
   json names = json::array();
   for (const optimize::Dimension& dimension : space.dimensions) {
@@ -133,8 +118,8 @@ json refusal_of_reduced(Experiment experiment) {
 
 }  // namespace
 
-SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& files, const PresentDraft& draft,
-                             SessionRequests& requests, host::SessionOutput& output)
+SearchSession::SearchSession(SearchSessionOptions options, ProgramShare& share, const ProjectFiles& files,
+                             const PresentDraft& draft, SessionRequests& requests, host::SessionOutput& output)
     : SessionThread(requests, output),
       options_(std::move(options)),
       files_(files),
@@ -142,7 +127,7 @@ SearchSession::SearchSession(SearchSessionOptions options, const ProjectFiles& f
       folder_(options_.folder),
       begun_({"search", SearchFolder::store_of({}).string(), SearchFolder::log_of({}).string(),
               SearchFolder::failure_of, has_evaluations, options_.longest_start},
-             output) {
+             share, output) {
   if (options_.programs.empty()) {
     options_.programs = program_folder();
   }
@@ -220,7 +205,7 @@ void SearchSession::publish_searches() {
   for (const ProjectFile& file : files_.experiments()) {
     experiments.push_back({{"file", file.file}, {"title", file.title}, {"is_shipped", file.is_shipped}});
   }
-  publish("searches", {{"processors", parse_workers(std::nullopt)},
+  publish("searches", {{"processors", begun_.share().processors()},
                        {"experiments", std::move(experiments)},
                        {"searches", folder_.list()}});
 }
@@ -301,6 +286,17 @@ std::vector<std::string> SearchSession::command(const std::string& program,
     command.insert(command.end(), {"--algorithms", library});
   }
   return command;
+}
+
+std::vector<std::string> SearchSession::options_in(const json& arguments) const {
+  std::vector<std::string> options;
+  if (const auto engine = argument<std::string>(arguments, "engine", "the name of an engine, or null")) {
+    options.insert(options.end(), {"--engine", *engine});
+  }
+  const std::uint32_t workers =
+      begun_.share().workers(argument<std::uint32_t>(arguments, "workers", "a number of workers, or null"));
+  options.insert(options.end(), {"--workers", std::to_string(workers)});
+  return options;
 }
 
 json SearchSession::estimate(const host::OperationRequest& request) {

@@ -33,8 +33,8 @@ struct SearchSessionOptions {
 
 class SearchSession final : private SessionThread {
  public:
-  /// files, draft, requests, output: must outlive the session.
-  SearchSession(SearchSessionOptions options, const ProjectFiles& files, const PresentDraft& draft,
+  /// share, files, draft, requests, output: must outlive the session.
+  SearchSession(SearchSessionOptions options, ProgramShare& share, const ProjectFiles& files, const PresentDraft& draft,
                 SessionRequests& requests, host::SessionOutput& output);
   ~SearchSession() override;
 
@@ -74,6 +74,8 @@ class SearchSession final : private SessionThread {
   nlohmann::json resume(const host::OperationRequest& request);
 
   void publish(const std::string& name, nlohmann::json document);
+  /// The options of `proleg optimise` that a start and an estimate have.
+  [[nodiscard]] std::vector<std::string> options_in(const nlohmann::json& arguments) const;
   void read_searches();
   void publish_searches();
   [[nodiscard]] std::shared_ptr<const sim::Scenario> draft() const;

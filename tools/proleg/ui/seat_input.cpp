@@ -65,6 +65,7 @@ SeatSettings read_seat_settings(InputLines& lines) {
           line.value("is_teacher", false),
           line.value("may_write_code", false),
           line.value("is_open_to_network", false),
+          limits_in(line.value("limits", json())),
           line.value("page_program", "")};
 }
 

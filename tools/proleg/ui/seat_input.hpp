@@ -11,6 +11,7 @@
 
 #include "host/server/request_policy.hpp"
 #include "host/server/web_server.hpp"
+#include "tools/proleg/ui/seat_limits.hpp"
 
 namespace proleg::tools {
 
@@ -20,7 +21,8 @@ struct SeatSettings {
   bool is_teacher = false;
   bool may_write_code = false;
   bool is_open_to_network = false;
-  std::string page_program;  ///< build id of the class, which serves the page
+  std::optional<SeatLimits> limits;  ///< nothing: of the teacher
+  std::string page_program;          ///< build id of the class, which serves the page
 };
 
 /// Lines of standard input. A wait for one ends.

@@ -16,7 +16,7 @@
 namespace proleg::tools {
 
 /// To a program of a seat: first its settings, {"token": ..., "name": ..., "is_teacher": ..., "may_write_code": ...,
-/// "is_open_to_network": ..., "page_program": build id of the class}, then
+/// "is_open_to_network": ..., "limits": limits_json() or null, "page_program": build id of the class}, then
 /// {"do": "stop", "number": 3}, {"do": "notice", "text": ...}, {"do": "hand_out", "file": ..., "title": ...}. From it:
 /// {"port": 40123} when it is ready, and {"stopped": 3, "confirmed": 1, "of": 1}.
 class SeatProgram {

@@ -49,11 +49,7 @@ std::uint64_t cell_in(const json& arguments) {
 }
 
 std::optional<std::uint32_t> workers_in(const json& arguments) {
-  const auto workers = argument<std::uint32_t>(arguments, "workers", "a number of workers, or null");
-  if (workers && (*workers == 0 || *workers > max_workers)) {
-    throw InputError("workers", 0, std::to_string(*workers), "1 to " + std::to_string(max_workers));
-  }
-  return workers;
+  return argument<std::uint32_t>(arguments, "workers", "a number of workers, or null");
 }
 
 SweepForm form_in(const json& arguments) {
@@ -134,15 +130,15 @@ bool has_equal_seeds(const Sweep& sweep) {
 
 }  // namespace
 
-SweepSession::SweepSession(SweepSessionOptions options, const PresentDraft& draft, SessionRequests& requests,
-                           host::SessionOutput& output)
+SweepSession::SweepSession(SweepSessionOptions options, ProgramShare& share, const PresentDraft& draft,
+                           SessionRequests& requests, host::SessionOutput& output)
     : SessionThread(requests, output),
       options_(std::move(options)),
       draft_(draft),
       folder_(options_.folder),
       begun_({"sweep", optimize::sweep_table_name, SweepFolder::log_of({}).string(), SweepFolder::failure_of, has_runs,
               options_.longest_start},
-             output) {
+             share, output) {
   if (options_.programs.empty()) {
     options_.programs = program_folder();
   }
@@ -205,7 +201,7 @@ std::vector<std::string> SweepSession::command(const std::string& program,
 }
 
 json SweepSession::refresh(const host::OperationRequest& /*request*/) {
-  json document{{"processors", parse_workers(std::nullopt)}, {"sweeps", folder_.list()}};
+  json document{{"processors", begun_.share().processors()}, {"sweeps", folder_.list()}};
   if (document != published_) {
     published_ = document;
     output_.publish("sweeps", std::move(document));
@@ -269,8 +265,7 @@ json SweepSession::estimate(const host::OperationRequest& request) {
     words.insert(words.end(), {"--engine", *form.engine});
   }
   program->start(command("simulate", words), options_.longest_estimate);
-  estimate_.emplace(
-      Estimate{request.request, std::move(program), runs, form.workers.value_or(parse_workers(std::nullopt))});
+  estimate_.emplace(Estimate{request.request, std::move(program), runs, begun_.share().workers(form.workers)});
   return answered_later();
 }
 
@@ -306,6 +301,7 @@ json SweepSession::start(const host::OperationRequest& request) {
   const std::shared_ptr<const sim::Scenario> scenario = draft();
   const SweepForm form = form_in(request.arguments);
   static_cast<void>(required_sweep(form, *scenario));
+  const std::string workers = std::to_string(begun_.share().workers(form.workers));
   const fs::path folder = make_new_folder(parent, name);
   try {
     const std::string top = scenario->sources.front().path;
@@ -318,9 +314,7 @@ json SweepSession::start(const host::OperationRequest& request) {
     if (form.engine) {
       words.insert(words.end(), {"--engine", *form.engine});
     }
-    if (form.workers) {
-      words.insert(words.end(), {"--workers", std::to_string(*form.workers)});
-    }
+    words.insert(words.end(), {"--workers", workers});
     begun_.begin(request.request, std::string(sweeps_folder) + "/" + name, folder, true, command("sweep", words),
                  folder);
   } catch (...) {
@@ -355,9 +349,7 @@ json SweepSession::resume(const host::OperationRequest& request) {
   std::vector<std::string> words = optimize::words_of(note.request);
   // One that was killed before its first run has nothing that could be resumed.
   words.insert(words.end(), {has_runs(folder) ? "--resume" : "--out", folder.string()});
-  if (const std::optional<std::uint32_t> workers = workers_in(request.arguments)) {
-    words.insert(words.end(), {"--workers", std::to_string(*workers)});
-  }
+  words.insert(words.end(), {"--workers", std::to_string(begun_.share().workers(workers_in(request.arguments)))});
   begun_.begin(request.request, name, folder, false, command("sweep", words), directory);
   return answered_later();
 }

@@ -32,7 +32,7 @@ struct SweepSessionOptions {
 class SweepSession final : private SessionThread {
  public:
   /// draft, requests, output: must outlive the session.
-  SweepSession(SweepSessionOptions options, const PresentDraft& draft, SessionRequests& requests,
+  SweepSession(SweepSessionOptions options, ProgramShare& share, const PresentDraft& draft, SessionRequests& requests,
                host::SessionOutput& output);
   ~SweepSession() override;
 

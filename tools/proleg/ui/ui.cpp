@@ -52,6 +52,7 @@
 #include "tools/proleg/ui/remote_session.hpp"
 #include "tools/proleg/ui/search_session.hpp"
 #include "tools/proleg/ui/seat_input.hpp"
+#include "tools/proleg/ui/seat_limits.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 #include "tools/proleg/ui/sweep_session.hpp"
 
@@ -76,7 +77,8 @@ struct UiOptions {
   bool allow_code = false;
   bool is_desktop = false;
   std::optional<std::string> learners;  ///< of a class
-  bool is_seat = false;                 ///< started by a class
+  std::string seats_per_address = "3";
+  bool is_seat = false;  ///< started by a class
   std::optional<SeatSettings> seat;
 };
 
@@ -288,13 +290,31 @@ void refuse_options_with_class(const UiOptions& options) {
   }
 }
 
+/// Whether FILE is the folder of a new class: neither is there anything with this name, nor is it that of a scenario or
+/// a recording, or similar to one that ships.
+bool is_new_class_folder(const std::string& file) {
+  std::error_code error;
+  if (file.empty() || std::filesystem::exists(std::filesystem::symlink_status(file, error))) {
+    return false;
+  }
+  std::vector<std::string> known;
+  for (const ShippedScenario& scenario : shipped_scenarios()) {
+    known.emplace_back(scenario.name);
+    known.emplace_back(scenario.file);
+    known.push_back(known.back() + scenario_extension);
+  }
+  return !file.ends_with(".xml") && !file.ends_with(recording_extension) &&
+         std::ranges::find(known, file) == known.end() &&
+         (file.find('/') != std::string::npos || !most_similar(file, known));
+}
+
 /// FILE is a scenario with which all begin, or the folder of the class.
 int serve_class(const UiOptions& options) {
   refuse_options_with_class(options);
   ClassOptions of_class;
   const std::string& file = options.scenario.file;
   std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
+  if (std::filesystem::is_directory(file, error) || is_new_class_folder(file)) {
     of_class.folder = file;
   } else {
     of_class.folder = options.recordings == default_recordings ? default_class_folder : options.recordings;
@@ -303,6 +323,7 @@ int serve_class(const UiOptions& options) {
     }
   }
   of_class.learners = *options.learners;
+  of_class.seats_per_address = options.seats_per_address;
   of_class.page = page_folder(options);
   of_class.port = parse_port(options.port);
   of_class.lan = options.lan;
@@ -393,6 +414,7 @@ int serve(UiOptions& options) {
                              port};
   server.certificate = std::move(certificate);
   server.is_seat = options.is_seat;
+  server.refused = warn_of_refusal;
   if (!options.seat) {
     server.documents = served_documentation();
   }
@@ -422,9 +444,13 @@ int serve(UiOptions& options) {
   RemoteSession remote(
       requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
       options.seat && !options.seat->is_teacher ? RemoteSession::no_devices : RemoteSession::kernel_devices);
+  const std::optional<SeatLimits> limits = options.seat ? options.seat->limits : std::nullopt;
+  ProgramShare share(recordings.folder, limits);
   SessionRouter router(recording_requests, draft_requests, mesh_requests, gallery_requests, algorithm_requests,
                        search_requests, sweep_requests, module_requests, remote, requests);
-  host::WebServer page(context, std::move(server), router);
+  DiskGuard guard(recordings.folder, limits, router);
+  host::WebServer page(context, std::move(server), guard);
+  const DiskWatch disk(guard, page);
   const RecordedSession recorded(recordings, recording_requests, page);
   const RecentFiles recent(options.seat ? std::nullopt : recent_list_path());
   const ProjectFiles project_files(recordings.folder, shipped_folder(), recent);
@@ -439,8 +465,8 @@ int serve(UiOptions& options) {
        [&recent](const std::string& file) { note_as_recent(recent, file); }, &sent_meshes, missing},
       draft_requests, present_draft, page);
   const AlgorithmSession algorithms(code_options(options, recordings.folder, draft_requests), algorithm_requests, page);
-  const SearchSession searches({recordings.folder}, project_files, present_draft, search_requests, page);
-  const SweepSession sweeps({recordings.folder}, present_draft, sweep_requests, page);
+  const SearchSession searches({recordings.folder}, share, project_files, present_draft, search_requests, page);
+  const SweepSession sweeps({recordings.folder}, share, present_draft, sweep_requests, page);
   const RemoteThread remote_thread(remote, page);
   BusSharing sharing;
   std::optional<RobotBus> robot_bus;
@@ -513,6 +539,11 @@ int main(int argc, char** argv) {
       "Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
   UiOptions options;
   add_scenario(command_line, options.scenario.file, "a recording, the folder of a project, or a scenario");
+  command_line.prepare_with([&options] {
+    if (!options.learners || !is_new_class_folder(options.scenario.file)) {
+      options.scenario.file = scenario_file(options.scenario.file);
+    }
+  });
   add_override_options(command_line, options.scenario);
   add_move_option(command_line, options.scenario);
   command_line
@@ -534,8 +565,14 @@ int main(int argc, char** argv) {
   command_line
       .add_option("--class", options.learners,
                   "serve a class: a robot for each learner, at most this many at a time; FILE is a scenario with "
-                  "which all begin, or the folder of the class, by default ./class")
+                  "which all begin, or the folder of the class, which is made if there is none; by default ./class")
       .value_name("LEARNERS");
+  command_line
+      .add_option("--seats-per-address", options.seats_per_address,
+                  "with --class: learners that may get a name from one address; more where a router gives all of them "
+                  "the same one (NAT)")
+      .value_name("COUNT")
+      .shows_default();
   command_line.add_flag("--seat", options.is_seat, "for 'proleg ui --class': the robot of one learner");
   command_line.add_flag("--paused", options.paused, "begin at tick 0, paused");
   command_line.add_algorithms_option();

@@ -15,6 +15,7 @@ import threading
 import time
 
 from class_program import (LONGEST, ClassProgram, Closed, SeatPage, a_class, copy_of_scenario, encrypted, live, run_tests, runs, school, wait_until)
+from search_program import experiment
 from web_client import TEXT, Viewer, connect, frame, read_all, request
 
 SEED = random.randrange(2**32)
@@ -195,6 +196,56 @@ def test_wrong_codes_of_one_computer_lock_out_no_other():
         assert program.join("Anna", code="", key=anna.key, source=ATTACKER).seat == 1, "a key is not guessed"
         assert program.join("Bob", source=OTHER).seat == 2
         program.not_joined(403, "Carla", code=wrong, source=OTHER)
+
+
+def test_one_address_has_so_many_names():
+    for most, options in ((3, ()), (5, ("--seats-per-address", "5"))):
+        with a_class(8, options) as program:
+            learners = [program.join(f"L{number}", source=ATTACKER) for number in range(most)]
+            error = program.not_joined(503, "Eve", source=ATTACKER)
+            assert f"found {most} names" in error and f"expected at most {most}" in error, error
+            assert program.join("L0", code="", key=learners[0].key, source=ATTACKER).seat == learners[0].seat
+            assert program.join("Bob", source=OTHER).name == "Bob"
+            with program.teacher() as teacher:
+                teacher.must("remove", seat=learners[0].seat)
+            assert program.join("Carla", source=ATTACKER).name == "Carla"
+
+
+def test_a_learner_has_a_share_of_the_processors():
+    """The teacher has none of these limits."""
+    with a_class(4) as program:
+        anna = program.join("Anna")
+        with anna.page() as page:
+            wanted = {"experiment": experiment(evaluations="1000000"), "engine": None}
+            sweep = {"over": ["amplitude=10:50:0.01"], "measure": "distance", "engine": None, "workers": 1}
+            page.must("draft.run", name="duration", value=1)
+            page.must("search.refresh")
+            page.viewer.until(lambda: "searches" in page.viewer.documents)
+            share = max(1, os.cpu_count() // 4)
+            assert page.document("searches")["processors"] == share
+            error = page.refused("search.start", name="many", workers=1024, **wanted)
+            assert f"found 1024, expected 1 to {share}" in error, error
+            assert f"expected 1 to {share}" in page.refused("search.estimate", workers=1024, **wanted)
+            assert f"expected 1 to {share}" in page.refused("sweep.start", name="many", **{**sweep, "workers": 1024})
+            assert not (program.folder / "Anna/searches/many").exists() and not (program.folder / "Anna/sweeps/many").exists()
+            page.must("search.start", name="one", workers=None, **wanted)
+            for number in range(20):
+                error = page.refused("search.start", name=f"more {number}", workers=1, **wanted)
+                assert "found 1 searches and sweeps that go on (one), expected fewer than 1" in error, error
+            assert "expected fewer than 1" in page.refused("sweep.start", name="more", **sweep)
+            assert sorted(path.name for path in (program.folder / "Anna/searches").iterdir()) == ["one"]
+            with program.teacher() as teacher:
+                teacher.must("restart", seat=anna.seat)
+        with anna.page() as page:  # the search goes on without the program that has begun it
+            page.must("draft.run", name="duration", value=1)
+            assert "(one)" in page.refused("sweep.start", name="more", **sweep)
+            page.must("search.stop", name="searches/one")
+            wait_until(lambda: page.ask("sweep.start", name="more", **sweep)["ok"], "the sweep does not start after the search")
+            page.must("sweep.stop", name="sweeps/more")
+        with program.teachers_robot().page() as page:
+            page.must("search.refresh")
+            page.viewer.until(lambda: "searches" in page.viewer.documents)
+            assert page.document("searches")["processors"] == os.cpu_count()
 
 
 # 2. At the same time

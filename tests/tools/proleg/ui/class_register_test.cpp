@@ -124,6 +124,44 @@ TEST_F(ClassRegisterTest, ACodeCannotBeGuessed) {
   EXPECT_EQ(status({"Bob", class_->code(), ""}, desk, first_moment + WrongCodes::period), 200U);
 }
 
+TEST_F(ClassRegisterTest, WrongCodesOfManyComputersLockOutNoOther) {
+  for (std::size_t i = 0; i < WrongCodes::most_of_all; ++i) {
+    const std::string computer = "198.51.100." + std::to_string(i);
+    EXPECT_EQ(status({"Eve", "000", ""}, computer.c_str()), 403U);
+  }
+  EXPECT_EQ(status({"Eve", class_->code(), ""}, "198.51.100.7"), 429U) << "it guesses, too";
+  EXPECT_EQ(status({"Anna", class_->code(), ""}), 200U);
+  EXPECT_EQ(status({"Bob", "000", ""}, "192.0.2.9"), 403U);
+  EXPECT_EQ(status({"Bob", class_->code(), ""}, "192.0.2.9"), 429U);
+}
+
+TEST_F(ClassRegisterTest, OneAddressHasSoManyNewNames) {
+  class_.reset();
+  class_.emplace(folder_.path(), 3);
+  EXPECT_EQ(status({"A", class_->code(), ""}), 200U);
+  EXPECT_EQ(status({"B", class_->code(), ""}), 200U);
+  const Learner third = join("C");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(status({"D", class_->code(), ""}), 503U);
+  }
+  try {
+    join("D");
+    ADD_FAILURE();
+  } catch (const JoinRefusal& refusal) {
+    EXPECT_EQ(std::string(refusal.what()).find("found 3 names from the address of this computer, expected at most 3"),
+              0U)
+        << refusal.what();
+  }
+  EXPECT_EQ(class_->find("D"), nullptr);
+  EXPECT_EQ(status({"C", "", third.key}), 200U) << "who is in may come back";
+  EXPECT_EQ(status({"D", class_->code(), ""}, "192.0.2.2"), 200U) << "others are not affected";
+  class_->remove(third.seat);
+  EXPECT_EQ(status({"E", class_->code(), ""}), 200U);
+  for (const std::string name : {"F", "G", "H", "I", "J"}) {
+    EXPECT_EQ(status({name, class_->code(), ""}, "127.0.0.1"), 200U) << "a proxy here gives all its address";
+  }
+}
+
 TEST_F(ClassRegisterTest, NobodyNewJoinsALockedClass) {
   const Learner anna = join("Anna");
   class_->lock(true);

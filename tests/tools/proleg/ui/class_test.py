@@ -15,7 +15,7 @@ from pathlib import Path
 
 from class_program import (LONGEST, PROGRAMS, SCENARIO, SOURCE, TITLES, ClassProgram, Closed, Learner, a_class, copy_of_scenario, live, run_tests,
                            runs, school, wait_until)
-from web_client import Viewer
+from web_client import Viewer, request
 
 HIDDEN_CHARACTERS = ("\0", "a\0b", "a\x1b[2J", "a\x08b", "\x7f", "\u202eevil", "a\u200eb", "\u200b", "\u2066x\u2069", "\ufeff", "a\u2028b")
 
@@ -169,6 +169,47 @@ def test_a_full_class_takes_no_name():
         assert carla.name == "Carla"
         with carla.page() as page:
             page.until_state("running")
+
+
+def test_a_request_for_another_name_is_said_on_the_terminal_once_in_ten_seconds():
+    with a_class() as program:
+        for number in range(5):
+            assert request(program.port, host=f"robot{number}.example")[0].split()[1] == "421"
+            assert program.status("/", fields=["Origin: https://robot.example"]) == 403
+        program.end()
+        lines = [line for line in (program.folder.parent / "errors.txt").read_text().splitlines() if "refused" in line]
+        assert lines == [f"proleg ui: warning: a request was refused: Host: found 'robot0.example', expected a name and the port of this page, such as "
+                         f"'127.0.0.1:{program.port}'; behind a reverse proxy see docs/reverse-proxy.md"], lines
+
+
+def test_the_folder_of_a_new_class_is_made():
+    with school() as folder:
+        page = folder / "page"
+        page.mkdir()
+        for name, text in TITLES.items():
+            (page / name).write_text(text)
+        (folder / "taken").write_text("no scenario")
+        (folder / "link").symlink_to("nowhere")
+
+        def start(word):
+            return subprocess.Popen([PROGRAMS / "proleg", "ui", word, "--class", "2", "--no-browser", "--page", page], cwd=folder, text=True,
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+        for word in ("friday", "a/b/friday", "monday/", "our friday", "./tuesday", str(folder / "absolute"), "friday", "class 7.b", "Łódź"):
+            process = start(word)
+            assert process.stdout.readline().startswith("teacher: "), (word, process.communicate())
+            process.stdout.readline()
+            assert process.stdout.readline() == f"folder: {(folder / word).resolve()}\n", word
+            assert (folder / word / "class.json").is_file() and (folder / word / "Teacher").is_dir(), word
+            process.send_signal(signal.SIGINT)
+            assert process.wait() == 0
+        before = sorted(path.name for path in folder.iterdir())
+        for word, text in (("taken", "taken"), ("taken/friday", "taken"), ("link", "link"), ("caterpilar", "did you mean caterpillar?"),
+                           ("missing.simulation.xml", "missing.simulation.xml"), ("missing.proleg", "missing.proleg")):
+            process = start(word)
+            _, errors = process.communicate()
+            assert process.returncode == 2 and text in errors and errors.count("\n") == 1, (word, process.returncode, errors)
+        assert sorted(path.name for path in folder.iterdir()) == before
 
 
 def test_a_locked_class_takes_nobody_new():

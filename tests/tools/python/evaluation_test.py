@@ -1,6 +1,9 @@
 """evaluate() gives each candidate the score of its own run, whatever is computed beside it."""
 
+import copy
+import json
 import os
+import pickle
 import random
 import resource
 import threading
@@ -71,6 +74,45 @@ class Scores(unittest.TestCase):
         self.assertEqual(proleg.evaluate(scenario, NAMES, random_candidates(2), seconds=0.1).shape, (2,))
         self.assertEqual(proleg.evaluate(scenario, NAMES, random_candidates(2), ["speed"], seconds=0.1).shape, (2, 1))
 
+    def test_have_the_reasons_of_their_rows(self):
+        scores = proleg.evaluate("caterpillar", ["amplitude"], [[10], [20], [30]], ["distance", "speed"], seconds=0.05, engine="reduced")
+        scores.failures = ["bad A", "", "bad C"]
+        scores[0] = scores[2] = np.nan
+        failed = np.isnan(scores[:, 0])
+        for part, reasons in ((scores[failed], ["bad A", "bad C"]), (scores[::-1], ["bad C", "", "bad A"]), (scores[1:, 0], ["", "bad C"]),
+                              (scores[[2, 2, 1]], ["bad C", "bad C", ""]), (scores[:, None], ["bad A", "", "bad C"]),
+                              (scores.copy(), ["bad A", "", "bad C"]), (copy.deepcopy(scores), ["bad A", "", "bad C"]),
+                              (pickle.loads(pickle.dumps(scores)), ["bad A", "", "bad C"]), (pickle.loads(pickle.dumps(scores, 0)), ["bad A", "", "bad C"]),
+                              (scores[failed][1:], ["bad C"]), (scores.reshape(-1), []), (scores[None], []), (scores.T, []), (scores[3:], [])):
+            self.assertEqual(part.failures, reasons)
+        for change in (lambda it: it.sort(), lambda it: it.sort(axis=0), lambda it: it.partition(1), lambda it: np.random.shuffle(it),
+                       lambda it: it.__setitem__(slice(None), it[::-1])):
+            changed = scores.copy()
+            change(changed)
+            self.assertEqual(changed.failures, [])
+
+    def test_give_numbers_when_they_are_reduced(self):
+        scores = proleg.evaluate("caterpillar", ["amplitude"], [[10], [20], [30]], seconds=0.05, engine="reduced")
+        for reduced in (scores.max(), scores.sum(), scores.mean(), np.mean(scores), np.nanmax(scores), np.median(scores), scores[0],
+                        np.percentile(scores, 50), scores.min(), scores.std(), scores[0] + scores[1], scores.max(axis=0)):
+            self.assertIsInstance(reduced, float)
+            self.assertEqual(json.loads(json.dumps(reduced)), round(reduced, 30))
+        scores[1] = np.nan
+        self.assertTrue(np.isnan(scores.mean()))
+        self.assertEqual(np.nanargmax(scores), int(np.nanargmax(np.asarray(scores))))
+        for plain in (scores * 2, -scores, np.isnan(scores)):
+            self.assertIs(type(plain), np.ndarray)
+
+    def test_of_values_near_zero_are_those_of_zero(self):
+        scenario = proleg.Scenario("caterpillar", engine="reduced")
+        for value in (1e-300, 5e-324, -0.0, 1e-61, np.longdouble("1e-4000")):
+            with self.subTest(value):
+                np.testing.assert_array_equal(proleg.evaluate(scenario, ["phase"], [[value]], seconds=0.1),
+                                              proleg.evaluate(scenario, ["phase"], [[0.0]], seconds=0.1))
+                other = scenario.copy()
+                other["phase"] = value
+                self.assertEqual(other["phase", "J1"], 0)
+
     def test_in_threads_are_the_same(self):
         scenario = proleg.Scenario("caterpillar", engine="reduced")
         candidates = random_candidates(30)
@@ -102,10 +144,40 @@ class Scores(unittest.TestCase):
             "an unknown name": (["amplitud"], [[30]]),
             "a name that is none": ([3], [[30]]),
             "a measure": (["amplitude"], [[30]], "distanz"),
+            "names without an order": ({"amplitude", "phase"}, [[30, 40]]),
+            "frozen names": (frozenset(["amplitude", "phase"]), [[30, 40]]),
+            "common keys": ({"amplitude": 1, "phase": 2}.keys() & {"amplitude", "phase"}, [[30, 40]]),
+            "measures without an order": (["amplitude"], [[30]], {"speed", "distance"}),
+            "a measure twice": (["amplitude"], [[30]], ["speed", "speed"]),
+            "a name twice": (["amplitude", "phase", "amplitude"], [[30, 40, 50]]),
+            "a parameter by two names": (["amplitude", "1.amplitude"], [[30, 40]]),
+            "a joint before all": (["amplitude:J1", "amplitude"], [[30, 40]]),
+            "a mask": (["amplitude"], np.ma.array([[30.0], [40.0]], mask=[[False], [True]])),
+            "a masked number": (["amplitude"], [[30.0], [np.ma.masked]]),
+            "rows with a mask": (["amplitude", "phase"], list(np.ma.array([[30.0, 1.0], [40.0, 2.0]], mask=[[False, True], [False, False]]))),
+            "a date": (["amplitude"], np.array([["2026-01-01"]], dtype="datetime64[s]")),
+            "a time": (["amplitude"], np.array([[3]], dtype="timedelta64[s]")),
+            "half of nan": (["amplitude"], np.array([["nan"]], dtype=np.float16)),
+            "a long number": (["amplitude"], np.array([["1e400"]], dtype=np.longdouble)),
+            "a set of rows": (["amplitude"], {(30,), (40,)}),
+            "rows that are used up": (["amplitude"], iter([[30]])),
         }.items():
             with self.subTest(what), self.assertRaises(proleg.InputError) as caught:
                 proleg.evaluate(scenario, *arguments)
             self.assertIn("found", str(caught.exception))
+        class Table:  # as pandas makes it of its nullable types
+            def __array__(self, dtype=None):
+                return np.array([[30]], dtype=object)
+
+            def to_numpy(self, dtype):
+                return np.array([[30.0]])
+
+        with self.assertRaisesRegex(proleg.InputError, r"to_numpy\(float\)"):
+            proleg.evaluate(scenario, ["amplitude"], Table())
+        in_order = {"amplitude": 30, "amplitude:J1": 20}
+        expected = proleg.evaluate(scenario, list(in_order), [[30, 20]], seconds=0.1)
+        for names in (in_order, in_order.keys(), iter(in_order), np.array(list(in_order))):
+            np.testing.assert_array_equal(proleg.evaluate(scenario, names, np.ma.array([[30, 20]]), seconds=0.1), expected)
         for workers in (0, -1, 65, 1.5, "2"):
             with self.subTest(workers), self.assertRaises(proleg.InputError):
                 proleg.evaluate(scenario, ["amplitude"], [[30]], workers=workers)

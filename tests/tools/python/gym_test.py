@@ -4,6 +4,7 @@ Debian 12 has no gymnasium. Where it is installed, its own checker runs, too.
 """
 
 import inspect
+import os
 import unittest
 
 import numpy as np
@@ -150,6 +151,34 @@ class Worlds(unittest.TestCase):
             vector.reset(options={"reset_mask": np.array([True, False, True])})
 
 
+class AChildOfFork(unittest.TestCase):
+    def drawn(self, prepare):
+        """What the parent and two children draw next, after a reset and for an action."""
+        env = Env("caterpillar", seconds=0.1)
+        prepare(env)
+        found = []
+        for _ in range(2):
+            end, begin = os.pipe()
+            child = os.fork()
+            if child == 0:
+                env.reset()
+                os.write(begin, np.concatenate([[env._episodes._chance.integers(2**52)], env.action_space.sample()]).astype(np.float64).tobytes())
+                os._exit(0)
+            os.waitpid(child, 0)
+            found.append(os.read(end, 1000))
+        return found
+
+    def test_has_random_numbers_of_its_own(self):
+        one, other = self.drawn(lambda env: env.reset())
+        self.assertNotEqual(one[:8], other[:8])
+        if proleg.gym._Space is proleg.gym._Box:
+            self.assertNotEqual(one[8:], other[8:])
+
+    def test_goes_on_with_a_seed(self):
+        one, other = self.drawn(lambda env: (env.reset(seed=3), env.action_space.seed(4)))
+        self.assertEqual(one, other)
+
+
 class Failures(unittest.TestCase):
     def test_terminate_an_episode(self):
         """Of one world: the others go on. The worlds are stand-ins, because no robot of these falls apart."""
@@ -183,6 +212,11 @@ class WhatCannotBeUsed(unittest.TestCase):
             "a seed": lambda: env.reset(seed=-1),
             "a seed that is no number": lambda: env.reset(seed="1"),
             "an option": lambda: env.reset(options={"velocity": 3}),
+            "options that are none": lambda: env.reset(options=3),
+            "options of many kinds": lambda: env.reset(options={1: 2, "a": 3}),
+            "a seed that is a time": lambda: env.reset(seed=np.timedelta64(1, "s")),
+            "a mask": lambda: env.step(np.ma.array(wave(0), mask=[0, 1, 0, 0, 0])),
+            "a set": lambda: env.step({1, 2, 3, 4, 5}),
             "a start": lambda: env.reset(options={"setpoints": np.zeros(3)}),
             "a scenario": lambda: Env("nothing"),
             "no worlds": lambda: VectorEnv("caterpillar", 0),

@@ -69,6 +69,15 @@ class ARun(unittest.TestCase):
                 for name, value in printed["measures"].items():
                     self.assertEqual(None if np.isnan(run.measures[name]) else run.measures[name], value, name)
 
+    def test_is_a_key_of_a_dict(self):
+        """And so are a recording and what else has arrays; two of them are the same only if they are one object."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "one.proleg"
+            one, other = (proleg.simulate("caterpillar", 0.05, engine="reduced", record=file) for _ in range(2))
+            self.assertEqual(({one: 1, other: 2}[other], len({one, other, one}), one == other), (2, 2, False))
+            recording = proleg.open(file)
+            self.assertEqual(len({recording, recording, proleg.open(file)}), 2)
+
     def test_has_a_row_for_each_tick(self):
         run = proleg.simulate("caterpillar", 0.5, engine="reduced")
         self.assertEqual(run.times.shape, (50,))

@@ -36,6 +36,8 @@ class ValuesOfAScenario(unittest.TestCase):
         self.assertEqual(list(self.scenario), ["amplitude", "frequency", "phase_difference", "phase", "offset"])
         self.assertIn("amplitude", self.scenario)
         self.assertNotIn("amplitud", self.scenario)
+        self.assertEqual((self.scenario.get("amplitud", 5), self.scenario.get("amplitud"), self.scenario.get(3, 4)), (5, None, 4))
+        self.assertEqual(self.scenario.get("amplitude").tolist(), [40.0] * 5)
         self.assertEqual({parameter.unit for parameter in self.scenario.parameters}, {"deg", "Hz"})
 
     def test_are_rounded_to_the_numbers_of_the_core(self):
@@ -144,6 +146,17 @@ class AScenario(unittest.TestCase):
             "a truth value": lambda: assign("amplitude", True),
             "a complex number": lambda: assign("amplitude", 1j),
             "a huge number": lambda: assign("amplitude", 10**400),
+            "a mask": lambda: assign("amplitude", np.ma.array([1, 2, 3, 4, 5], mask=[0, 0, 1, 0, 0])),
+            "a masked number": lambda: assign("amplitude", np.ma.masked),
+            "a time for a number": lambda: assign("amplitude", np.timedelta64(3, "s")),
+            "rows of different lengths": lambda: assign("amplitude", [[1], [2, 3]]),
+            "values without an order": lambda: assign("amplitude", {1, 2, 3, 4, 5}),
+            "a place without an order": lambda: proleg.Scenario("caterpillar", at={1, 2}),
+            "a time as a duration": lambda: scenario.replace(seconds=np.timedelta64(1, "s")),
+            "a time as a seed": lambda: proleg.Scenario("caterpillar", seed=np.timedelta64(1, "s")),
+            "half a character": lambda: proleg.Scenario("\ud800"),
+            "half a character in a place": lambda: scenario.save("\ud800.simulation.xml"),
+            "half a character in a name": lambda: assign("\ud800", 1),
             "None": lambda: assign("amplitude", None),
             "too few values": lambda: assign("amplitude", [1, 2]),
             "a table": lambda: assign("amplitude", np.ones((5, 5))),

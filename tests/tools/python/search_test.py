@@ -1,6 +1,6 @@
 """A search by ask and tell is the search of `proleg optimise`: its candidates, its scores, its store, its errors.
 
-    search_test.py PROLEG
+    search_test.py PROLEG SCENARIO_FOLDER
 """
 
 import json
@@ -19,6 +19,7 @@ import numpy as np
 import proleg
 
 PROLEG = sys.argv.pop(1)
+SHIPPED = sorted(Path(sys.argv.pop(1)).rglob("*.optimise.xml"))
 
 METHODS = {
     "great-deluge": "<greatDeluge>{0}<properties><waterLevel>0.001</waterLevel><rain>0.001</rain><chains>3</chains>{1}</properties>{2}"
@@ -38,6 +39,9 @@ REST = """<genome><genomeConfig number="0" allJoints="1" genomeType="1" valueTyp
 </genomeConfig></genome>
 <fitness><objective measure="distance"/>{objectives}</fitness>
 <evaluation><evaluations>{evaluations}</evaluations><seed>{seed}</seed>{evaluation}</evaluation>"""
+
+
+MAP = next(file for file in SHIPPED if file.name == "gait_map.optimise.xml")
 
 
 class InAFolder(unittest.TestCase):
@@ -98,6 +102,26 @@ class History(InAFolder):
                     self.assertEqual(search.ending, "all 30 evaluations made")
                     if at_once == 1:
                         self.assertEqual(asked, sum(not row["reused"] for row in rows(search.folder, "* FROM evaluation")))
+
+    def test_of_a_map_of_gaits_is_that_of_the_command_line(self):
+        optimise(str(MAP), "--simulation", "short.simulation.xml", "--evaluations", "300", "--workers", "2", "--out", "map.cli")
+        with proleg.Search(MAP, "map.python", simulation="short.simulation.xml", evaluations=300) as search:
+            self.assertEqual(search.method, "map-elites")
+            while not search.done:
+                rate(search)
+        self.assertEqual(history("map.cli"), history("map.python"))
+
+    def test_of_every_shipped_experiment_begins(self):
+        self.assertGreaterEqual(len(SHIPPED), 9)
+        for number, file in enumerate(SHIPPED):
+            with self.subTest(file), proleg.Search(file, f"shipped{number}") as search:
+                self.assertEqual(search.ask(1).shape, (1, len(search.names)))
+            for method in ("great-deluge", "genetic", "cmaes", "de", "nsga2", "pso"):
+                with self.subTest(file, method=method):
+                    try:
+                        proleg.Search(file, f"shipped{number}.{method}", method).close()
+                    except proleg.InputError as error:  # a method for another number of objectives
+                        self.assertRegex(str(error), "objective|map")
 
     def test_is_whole_with_the_worlds_of_the_search(self):
         """Several trials, racing and a heading: simulate() knows them; every number of the store is that of the command line."""
@@ -208,6 +232,25 @@ class Store(InAFolder):
         self.assertGreaterEqual(result["failed"], 2)
         self.assertEqual([row[2] for row in history("python")[:3]], [0.5, -7, -7])
 
+    def test_has_no_reason_of_another_row(self):
+        with proleg.Search(self.experiment(), "python") as search:
+            search.tell(np.zeros(len(search.ask())))
+            rows = len(search.ask())
+            scores = np.arange(rows, dtype=float)
+            scores[0] = np.nan
+            scores = scores.view(proleg.Scores)
+            scores.failures = ["broke"] + [""] * (rows - 1)
+            search.tell(scores[::-1])
+            table = search.table()
+            self.assertEqual([reason for score, reason in zip(table["distance"], table["failure"]) if np.isnan(score)], ["broke"])
+            self.assertEqual(sum(reason != "" for reason in table["failure"]), 1)
+            rows = len(search.ask())
+            scores = np.arange(rows, dtype=float).view(proleg.Scores)
+            scores.failures = ["broke"] + [""] * (rows - 1)
+            scores[1] = np.nan  # another than evaluate() has found
+            search.tell(scores)
+            self.assertEqual(sum(reason != "" for reason in search.table()["failure"]), 1)
+
     def test_is_locked(self):
         file = self.experiment()
         with proleg.Search(file, "python"):
@@ -269,6 +312,13 @@ class WhatCannotBeUsed(InAFolder):
                 "complex numbers": lambda: search.tell(np.zeros(n, complex)),
                 "an unknown measure": lambda: search.tell(np.zeros(n), "distanz"),
                 "a measure that is not needed": lambda: search.tell(np.zeros(n), "speed"),
+                "a mask": lambda: search.tell(np.ma.array(np.zeros(n), mask=np.arange(n) == 0)),
+                "masked numbers": lambda: search.tell([np.ma.masked] * n),
+                "times": lambda: search.tell(np.zeros(n, "timedelta64[s]")),
+                "a set": lambda: search.tell(set(range(n))),
+                "measures without an order": lambda: search.tell(np.zeros((n, 2)), {"distance", "speed"}),
+                "a measure twice": lambda: search.tell(np.zeros((n, 2)), ["distance", "distance"]),
+                "reasons without an order": lambda: search.tell(np.zeros(n), failures={"a", "b"}),
                 "too many reasons": lambda: search.tell(np.zeros(n), failures=["x"] * (n + 1)),
                 "reasons that are none": lambda: search.tell(np.zeros(n), failures=[1] * n),
                 "no rows": lambda: search.ask(0),
@@ -303,6 +353,10 @@ class WhatCannotBeUsed(InAFolder):
             "a seed": {"experiment": file, "seed": 2**64},
             "at once": {"experiment": file, "at_once": 0},
             "a store that is none": {"store": "nowhere"},
+            "a store with a long name": {"experiment": file, "store": "x" * 300},
+            "a file with a long name": {"experiment": "x" * 5000 + ".optimise.xml"},
+            "half a character": {"experiment": file, "store": "\ud800"},
+            "a seed that is a time": {"experiment": file, "seed": np.timedelta64(1, "s")},
             "a store over a file of the experiment": {"experiment": file, "store": b"x"},
         }.items():
             with self.subTest(what), self.assertRaises(proleg.InputError) as caught:

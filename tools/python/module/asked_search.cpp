@@ -25,6 +25,9 @@ std::uint32_t generation_of(const optimize::MethodSettings& method) {
   if (const auto* const genetic = std::get_if<optimize::GeneticSettings>(&method)) {
     return genetic->population;
   }
+  if (const auto* const map = std::get_if<optimize::MapElitesSettings>(&method)) {
+    return map->population;
+  }
   return std::get<optimize::PagmoSettings>(method).population;
 }
 

@@ -1,5 +1,9 @@
 #include <exception>
+#include <filesystem>
 #include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <variant>
 
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -19,6 +23,11 @@ PyObject* file_error = nullptr;
 PyObject* run_error = nullptr;
 
 constexpr const char* lock_name = "proleg._core._solver_lock";
+constexpr const char* calls_name = "proleg._core._long_calls";
+
+void refuse_fault() {
+  PyErr_SetString(run_error, "found a fault in Proleg itself, expected none: please report the call that did this");
+}
 
 PyObject* add(pybind11::module_& module, const char* name, const char* text, const pybind11::tuple& bases) {
   const std::string full_name = std::string("proleg.") + name;
@@ -47,6 +56,23 @@ void translate(std::exception_ptr thrown) {
     PyErr_SetString(run_error, error.what());
   } catch (const AlgorithmFailure& error) {
     PyErr_SetString(run_error, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    PyErr_SetString(input_error,
+                    InputError(error.path1().string(), 0,
+                               "a path that cannot be looked at (" + error.code().message() + ")", "another one")
+                        .what());
+  } catch (const std::bad_alloc&) {
+    PyErr_SetString(PyExc_MemoryError, "found too little memory, expected more, or a shorter or smaller call");
+  } catch (const std::logic_error&) {
+    refuse_fault();
+  } catch (const std::bad_variant_access&) {
+    refuse_fault();
+  } catch (const std::bad_optional_access&) {
+    refuse_fault();
+  } catch (const pybind11::builtin_exception&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    PyErr_SetString(run_error, error.what());
   }
 }
 
@@ -63,6 +89,9 @@ void add_errors(pybind11::module_& module) {
                   with(PyExc_RuntimeError));
   pybind11::register_local_exception_translator(translate);
   module.attr("_solver_lock") = pybind11::capsule(&sim::SolverRandomNumbers::lock(), lock_name);
+  module.attr("_long_calls") = pybind11::capsule(&long_calls(), calls_name);
+  module.def("end_long_calls", &end_long_calls);
+  module.def("forget_long_calls", &forget_long_calls);
 }
 
 void share_with_core(pybind11::module_& module) {
@@ -73,6 +102,8 @@ void share_with_core(pybind11::module_& module) {
   pybind11::register_local_exception_translator(translate);
   const pybind11::capsule lock = core.attr("_solver_lock");
   sim::SolverRandomNumbers::use_lock(*lock.get_pointer<std::mutex>());
+  const pybind11::capsule calls = core.attr("_long_calls");
+  share_long_calls(*calls.get_pointer<LongCalls>());
   module.attr("_core") = core;
 }
 

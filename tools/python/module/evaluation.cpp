@@ -18,6 +18,7 @@
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/python/module/conversions.hpp"
+#include "tools/python/module/long_call.hpp"
 #include "tools/python/module/parts.hpp"
 #include "tools/python/module/worker_threads.hpp"
 
@@ -94,6 +95,21 @@ class Evaluation {
   std::vector<std::string> failures_;
 };
 
+/// Throws InputError if a parameter has no effect, because a later one of the row takes its place.
+void require_effect(const sim::Scenario& scenario, const std::vector<std::string>& names) {
+  std::vector<sim::SettingTarget> targets;
+  for (const std::string& name : names) {
+    const sim::SettingTarget target = sim::find_named_target(scenario, name);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      if (targets[i].same_value(target) && (targets[i].joints & target.joints) == targets[i].joints) {
+        throw InputError("names", 0, in_quotes(names[i]) + " and " + in_quotes(name) + " for the same joints",
+                         "each parameter once; one of a single joint after that of all");
+      }
+    }
+    targets.push_back(target);
+  }
+}
+
 sim::Measure measure_named(const std::string& name) {
   const std::optional<sim::Measure> measure = sim::find_measure(name);
   if (!measure) {
@@ -109,6 +125,7 @@ py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names
       measure_names.empty() || workers == 0) {
     throw InputError("evaluate", 0, "arguments of other shapes", "those that the package gives");
   }
+  require_effect(scenario, names);
   static_cast<void>(tools::run_ticks(scenario));  // refuses changes after the end
   std::vector<sim::Measure> measures;
   std::ranges::transform(measure_names, std::back_inserter(measures), measure_named);
@@ -117,7 +134,7 @@ py::tuple evaluate(sim::Scenario scenario, const std::vector<std::string>& names
                         measures);
   evaluation.check();
   if (count > 0) {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     WorkerThreads threads(
         scenario, count, workers,
         [&](std::size_t first, std::size_t end, const std::atomic<bool>& stop) { evaluation.run(first, end, stop); });

@@ -20,13 +20,13 @@ namespace {
 
 /// What `proleg plot` draws of a recording, as SVG.
 std::string picture(const std::string& recording) {
-  const py::gil_scoped_release released;
+  const Unlocked unlocked;
   return sim::draw_figure(sim::Recording(recording), {});
 }
 
 /// What `proleg export --html` makes of a recording. player: player.html of tools/page.
 std::string page(const std::string& path, const std::string& player) {
-  const py::gil_scoped_release released;
+  const Unlocked unlocked;
   SignalWatch watch;
   const sim::Recording recording(path);
   std::string text;

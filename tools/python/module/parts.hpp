@@ -7,6 +7,18 @@
 
 #include <stdexcept>
 
+// In an interpreter that is not the main one, pybind11 waits for ever for a lock. So its first step is preceded by a
+// check.
+#undef PYBIND11_ENSURE_INTERNALS_READY
+#define PYBIND11_ENSURE_INTERNALS_READY                                                          \
+  if (PyInterpreterState_Get() != PyInterpreterState_Main()) {                                   \
+    PyErr_SetString(PyExc_ImportError,                                                           \
+                    "proleg: found a sub-interpreter, expected the main interpreter or another " \
+                    "process; mod_wsgi: WSGIApplicationGroup %{GLOBAL}");                        \
+    return nullptr;                                                                              \
+  }                                                                                              \
+  pybind11::detail::get_internals();
+
 namespace proleg::python {
 
 /// Becomes a RunError, of a robot that does not move as it should.

@@ -39,7 +39,7 @@ py::dict read_recording(const std::string& path) {
   std::vector<std::pair<std::string, std::string>> results;
   bool finished = false;
   {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     SignalWatch watch;
     const sim::Recording recording(path);
     finished = recording.finished();

@@ -194,7 +194,7 @@ py::dict simulate(sim::Scenario scenario, const std::vector<std::string>& keep,
   std::unique_ptr<sim::Simulation> simulation;
   std::uint64_t lost_frames = 0;
   {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     SignalWatch watch;
     simulation =
         std::make_unique<sim::Simulation>(scenario, &losses);  // made before any file: it may refuse the scenario

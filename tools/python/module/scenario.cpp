@@ -282,7 +282,12 @@ void add_scenario(py::module_& module) {
       .def("with_overrides", &with_overrides, py::arg("overrides"))
       .def("save", &save, py::arg("file"), py::arg("replace"))
       .def("copy", [](const Scenario& scenario) { return scenario; })
-      .def(py::pickle(&state_of, &scenario_of));
+      .def(py::pickle(&state_of, &scenario_of))
+      // Python's own way of protocols 0 and 1 makes an object of pybind11's base class, which ends the process.
+      .def("__reduce__", [](const py::object& scenario) {
+        return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(py::type::of(scenario)),
+                              scenario.attr("__getstate__")());
+      });
   module.def("make", &make, py::arg("kind"), py::arg("joints"), py::arg("axes"));
   module.def(
       "shipped_file",

@@ -58,22 +58,20 @@ tools::OptimiseOptions options_of(const Words& words) {
 
 /// The section of an experiment file, and in it the algorithm, of a method by its short name.
 std::pair<std::string, std::string> section_of(const std::string& method) {
+  std::map<std::string, std::string> sections{{"great-deluge", "greatDeluge"}, {"genetic", "geneticAlgorithm"}};
   std::vector<std::string> names{"great-deluge", "genetic"};
   for (const optimize::PagmoDeclaration& pagmo : optimize::pagmo_declarations()) {
     names.emplace_back(pagmo.name);
+    sections.emplace(pagmo.name, "pagmo");
   }
-  const auto found = std::ranges::find(names, method);
-  if (found == names.end()) {
+  sections.insert_or_assign("cmaes", "cmaEs");
+  sections.insert_or_assign("de", "differentialEvolution");
+  sections.insert_or_assign("nsga2", "nsga2");
+  const auto found = sections.find(method);
+  if (found == sections.end()) {
     throw InputError("method", 0, in_quotes(method), "one of " + listed(names));
   }
-  switch (found - names.begin()) {
-    case 0:
-      return {"greatDeluge", ""};
-    case 1:
-      return {"geneticAlgorithm", ""};
-    default:
-      return {"pagmo", method};
-  }
+  return {found->second, found->second == "pagmo" ? method : ""};
 }
 
 /// The experiment with another method: its file is written anew, as the page does it, so that its store has all that is
@@ -148,7 +146,8 @@ class Search {
 
   /// The rows that are to be rated: values, numbers of their evaluations, and trials.
   py::tuple ask(std::size_t most) {
-    const Use use(*this);
+    require_process();
+    const OneThread use(is_used_, "Search");
     wait();
     asked_ = search_->tasks(most);
     asked_at_ = std::chrono::steady_clock::now();
@@ -171,7 +170,8 @@ class Search {
   /// The measures of the rows of the last ask(). failures: by row why there are none, or empty.
   void tell(const py::array_t<double, py::array::c_style | py::array::forcecast>& values,
             const std::vector<std::string>& names, const std::vector<std::string>& failures) {
-    const Use use(*this);
+    require_process();
+    const OneThread use(is_used_, "Search");
     std::vector<sim::Measure> measures;
     for (const std::string& name : names) {
       const auto measure = sim::find_measure(name);
@@ -205,7 +205,8 @@ class Search {
 
   /// Rates what is asked for as `proleg optimise` does. Returns the number of runs.
   std::size_t simulate(std::size_t most, std::size_t workers) {
-    const Use use(*this);
+    require_process();
+    const OneThread use(is_used_, "Search");
     wait();
     asked_ = search_->tasks(most);
     if (asked_.empty()) {
@@ -213,7 +214,7 @@ class Search {
     }
     std::vector<optimize::TrialResult> results(asked_.size());
     {
-      const py::gil_scoped_release released;
+      const Unlocked unlocked;
       WorkerThreads threads(experiment().scenario, asked_.size(), workers,
                             [&](std::size_t first, std::size_t end, const std::atomic<bool>& /*stop*/) {
                               std::vector<optimize::TrialResult> some =
@@ -230,8 +231,8 @@ class Search {
 
   void close() {
     if (getpid() == process_) {
-      const Use use(*this);
-      const py::gil_scoped_release released;
+      const OneThread use(is_used_, "Search");
+      const Unlocked unlocked;
       search_->close();
     }
   }
@@ -330,30 +331,15 @@ class Search {
   [[nodiscard]] std::string folder() const { return folder_.string(); }
 
  private:
-  /// A search belongs to the process that opened it, and to one thread at a time. Made while the thread has the lock of
-  /// the interpreter. Throws InputError.
-  class Use {
-   public:
-    explicit Use(Search& search) : search_(search) {
-      if (getpid() != search.process_) {
-        throw InputError("Search", 0, "a call in a process that was forked", "the process that opened the search");
-      }
-      if (search.is_used_) {
-        throw InputError("Search", 0, "a call while another thread makes one", "one thread at a time");
-      }
-      search.is_used_ = true;
+  void require_process() const {
+    if (getpid() != process_) {
+      throw InputError("Search", 0, "a call in a process that was forked", "the process that opened the search");
     }
-    ~Use() { search_.is_used_ = false; }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-
-   private:
-    Search& search_;
-  };
+  }
 
   /// Until the method asks for something or has ended.
   void wait() {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     SignalWatch watch;
     while (!search_->wait_until_asked(std::chrono::milliseconds(50))) {
       watch.check();
@@ -387,6 +373,11 @@ class Search {
 }  // namespace
 }  // namespace proleg::python
 
+namespace pybind11::detail {
+template <>
+class type_caster<proleg::python::Search> : public caster_of_made<proleg::python::Search> {};
+}  // namespace pybind11::detail
+
 PYBIND11_MODULE(_search, module) {
   using proleg::python::Search;
   proleg::python::share_with_core(module);
@@ -410,4 +401,5 @@ PYBIND11_MODULE(_search, module) {
       .def_property_readonly("seed", [](const Search& search) { return search.experiment().seed; })
       .def_property_readonly("evaluations", [](const Search& search) { return search.experiment().evaluations; })
       .def_property_readonly("scenario", [](const Search& search) { return search.experiment().scenario; });
+  proleg::python::refuse_copies(module.attr("Search"));
 }

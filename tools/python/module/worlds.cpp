@@ -55,9 +55,9 @@ class Worlds {
   /// All robots stand at their start. World i has the seed of the call plus i. start: degrees, (worlds, joints).
   py::array_t<double> reset(std::uint64_t seed, const py::array_t<double>& start) {
     const std::vector<std::int32_t> setpoints = setpoints_of(start);
-    const Use use(*this);
+    const OneThread use(is_used_, "Worlds");
     {
-      const py::gil_scoped_release released;
+      const Unlocked unlocked;
       std::vector<const sim::Scenario*> pointers;
       for (std::size_t i = 0; i < scenarios_.size(); ++i) {
         scenarios_[i].kernel.seed = seed + i;
@@ -78,12 +78,12 @@ class Worlds {
       throw InputError("step", 0, "a step before reset()", "reset() first");
     }
     const std::vector<std::int32_t> wanted = setpoints_of(setpoints);
-    const Use use(*this);
+    const OneThread use(is_used_, "Worlds");
     const std::vector<double> before = angles_;
     std::vector<double> reward(scenarios_.size());
     std::vector<std::uint8_t> done(scenarios_.size());
     {
-      const py::gil_scoped_release released;
+      const Unlocked unlocked;
       worlds_->advance(wanted);
       read_angles();
       for (std::size_t i = 0; i < scenarios_.size(); ++i) {
@@ -101,7 +101,7 @@ class Worlds {
   }
 
   [[nodiscard]] std::vector<std::string> failures() {
-    const Use use(*this);
+    const OneThread use(is_used_, "Worlds");
     std::vector<std::string> failures(scenarios_.size());
     for (std::size_t i = 0; worlds_ && i < failures.size(); ++i) {
       failures[i] = worlds_->failure(i);
@@ -110,7 +110,7 @@ class Worlds {
   }
   /// (worlds, links, 3) m.
   [[nodiscard]] py::array_t<double> positions() {
-    const Use use(*this);
+    const OneThread use(is_used_, "Worlds");
     std::vector<double> numbers;
     for (std::size_t i = 0; worlds_ && i < scenarios_.size(); ++i) {
       for (const sim::Pose& pose : worlds_->plant(i).link_poses()) {
@@ -121,7 +121,7 @@ class Worlds {
   }
   /// Of each world, m: how far the centre of mass is from its start.
   [[nodiscard]] py::array_t<double> displacements() {
-    const Use use(*this);
+    const OneThread use(is_used_, "Worlds");
     std::vector<double> numbers(scenarios_.size());
     for (std::size_t i = 0; worlds_ && i < numbers.size(); ++i) {
       numbers[i] = worlds_->plant(i).displacement();
@@ -133,24 +133,6 @@ class Worlds {
   [[nodiscard]] std::size_t joints() const { return robot().joints.size(); }
 
  private:
-  /// The worlds belong to one thread at a time. Made while the thread has the lock of the interpreter, which steps
-  /// release. Throws InputError if another thread uses them.
-  class Use {
-   public:
-    explicit Use(Worlds& worlds) : worlds_(worlds) {
-      if (worlds_.is_used_) {
-        throw InputError("Worlds", 0, "a call while another thread makes one", "one thread at a time");
-      }
-      worlds_.is_used_ = true;
-    }
-    ~Use() { worlds_.is_used_ = false; }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-
-   private:
-    Worlds& worlds_;
-  };
-
   [[nodiscard]] const sim::RobotModel& robot() const { return scenarios_.front().robot; }
 
   [[nodiscard]] std::vector<std::int32_t> setpoints_of(const py::array_t<double>& angles) const {
@@ -216,6 +198,14 @@ class Worlds {
 };
 
 }  // namespace
+}  // namespace proleg::python
+
+namespace pybind11::detail {
+template <>
+class type_caster<proleg::python::Worlds> : public caster_of_made<proleg::python::Worlds> {};
+}  // namespace pybind11::detail
+
+namespace proleg::python {
 
 void add_worlds(py::module_& module) {
   py::class_<Worlds>(module, "Worlds")
@@ -226,6 +216,7 @@ void add_worlds(py::module_& module) {
       .def_property_readonly("failures", &Worlds::failures)
       .def_property_readonly("positions", &Worlds::positions)
       .def_property_readonly("displacements", &Worlds::displacements);
+  refuse_copies(module.attr("Worlds"));
 }
 
 }  // namespace proleg::python

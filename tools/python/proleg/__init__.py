@@ -13,8 +13,12 @@ A name that `proleg scenarios` lists stands for a shipped scenario. Angles are d
 cannot be used raises InputError with the line that the command line prints.
 """
 
+import atexit
+import os
+import weakref
 from typing import TYPE_CHECKING
 
+from proleg import _core
 from proleg._core import Error, FileError, InputError, RunError, build_id
 from proleg.evaluation import Scores, evaluate
 from proleg.player import Player
@@ -26,6 +30,11 @@ from proleg.worlds import Worlds
 if TYPE_CHECKING:
     from proleg.robot import Robot
     from proleg.search import Search
+
+# At the end of Python, calls of daemon threads end first: before what weakref.finalize() closes, so it is set up before them.
+weakref.finalize(_core, str)
+atexit.register(_core.end_long_calls)
+os.register_at_fork(after_in_child=_core.forget_long_calls)
 
 __version__ = build_id.split("-")[0]
 

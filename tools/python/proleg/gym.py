@@ -14,11 +14,24 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from proleg import _core
+from proleg._checks import Unique, whole
 from proleg.scenario import Scenario
 from proleg.worlds import Worlds
 
 
-class _Box:
+class _Chance:
+    """Random numbers. Without a seed they are other ones in a process that was forked."""
+
+    def _seed(self, seed: int | None) -> None:
+        self._process = None if seed is not None else os.getpid()
+        self._chance = np.random.default_rng(seed)
+
+    def _renew(self) -> None:
+        if self._process not in (None, os.getpid()):
+            self._seed(None)
+
+
+class _Box(_Chance):
     """A box of numbers, as gymnasium.spaces.Box: every number has its own bounds, which may be infinite."""
 
     def __init__(self, low: NDArray[Any], high: NDArray[Any], dtype: Any = np.float32, seed: int | None = None) -> None:
@@ -26,14 +39,15 @@ class _Box:
         self.high = np.asarray(high, dtype=dtype)
         self.shape = self.low.shape
         self.dtype = np.dtype(dtype)
-        self._chance = np.random.default_rng(seed)
+        self._seed(seed)
 
     def seed(self, seed: int | None = None) -> int | None:
-        self._chance = np.random.default_rng(seed)
+        self._seed(seed)
         return seed
 
     def sample(self) -> NDArray[Any]:
         """Uniform between two bounds, exponential from one, normal without bounds."""
+        self._renew()
         low, high = self.low.astype(np.float64), self.high.astype(np.float64)
         below, above = np.isfinite(low), np.isfinite(high)
         far = self._chance.exponential(size=self.shape)
@@ -115,26 +129,29 @@ def _spaces(worlds: Worlds, n: int | None) -> tuple[_Space, _Space]:
     return _Space(low, high, dtype=np.float64), _Space(-angle, angle, dtype=np.float32)
 
 
-class _Episodes:
+class _Episodes(_Chance):
     """Seeds of episodes, and what reset() and step() check."""
 
     def __init__(self, worlds: Worlds) -> None:
         self.worlds = worlds
-        self._chance = np.random.default_rng()
+        self._seed(None)
         self.goes_on = False
 
     def reset(self, seed: int | None, options: Mapping[str, Any] | None) -> NDArray[np.float64]:
+        if options is not None and not isinstance(options, Mapping):
+            raise _core.InputError(f'options: found {options!r}, expected a dict such as {{"setpoints": angles}}')
         given = dict(options or {})
         setpoints = given.pop("setpoints", None)
         mask = given.pop("reset_mask", None)
         if given:
-            raise _core.InputError(f'options: found {sorted(given)}, expected none but "setpoints"')
+            raise _core.InputError(f'options: found {list(given)}, expected none but "setpoints"')
         if mask is not None and not np.all(mask):
             raise _core.InputError("reset_mask: found worlds that go on, expected all of them: they begin together")
         if seed is not None:
-            if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
+            if whole("seed", seed) < 0:
                 raise _core.InputError(f"seed: found {seed!r}, expected a whole number from 0")
-            self._chance = np.random.default_rng(seed)
+            self._seed(int(seed))
+        self._renew()
         observation = self.worlds.reset(int(self._chance.integers(2**62)), setpoints)
         self.goes_on = True
         return observation
@@ -147,7 +164,7 @@ class _Episodes:
         return observation, reward, done, info.get("failures", [""] * self.worlds.n)
 
 
-class Env(_EnvBase):
+class Env(Unique, _EnvBase):
     """One robot in a world, whose set-points an agent gives at every tick.
 
         env = proleg.gym.Env("caterpillar", seconds=10)
@@ -187,7 +204,7 @@ class Env(_EnvBase):
                 {"failure": failures[0]} if failed else {})
 
 
-class VectorEnv(_VectorBase):
+class VectorEnv(Unique, _VectorBase):
     """Many robots, each in its own world, which make their steps together. All begin with reset(): Gymnasium's
     AutoresetMode.DISABLED. A world that has ended stays as it is, with the reward 0.
 

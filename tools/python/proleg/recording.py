@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import pandas  # type: ignore[import]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Recording(Shown):
     """A recording as it was when it was opened (docs/recordings.md).
 

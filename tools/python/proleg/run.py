@@ -34,7 +34,7 @@ class Measure(NamedTuple):
 MEASURES: Mapping[str, Measure] = {measure[0]: Measure(*measure) for measure in _core.measures}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run(Shown):
     """The result of simulate(). Arrays have a row for each tick; joints and links count from the head.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any, Union, overload
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from proleg import _core
-from proleg._checks import number, path, text, whole
+from proleg._checks import array, number, path, text, whole
 from proleg._places import shipped_folder
 
 Name = Union[str, "tuple[str, str]"]
@@ -33,9 +33,9 @@ class Parameter:
 
 def _setting_name(key: Name) -> str:
     if isinstance(key, str):
-        return key
+        return text("name", key)
     if isinstance(key, tuple) and len(key) == 2 and all(isinstance(part, str) for part in key):
-        return f"{key[0]}:{key[1]}"
+        return text("name", f"{key[0]}:{key[1]}")
     raise _core.InputError(f'found {key!r}, expected the name of a parameter such as "amplitude", or a name and a joint '
                            'such as "amplitude", "J3"')
 
@@ -108,6 +108,10 @@ class Scenario(Mapping[str, "NDArray[np.float64]"]):
             return False
         return True
 
+    def get(self, key: Any, default: Any = None) -> Any:
+        """As self[key]; the default if there is no such parameter."""
+        return self[key] if key in self else default
+
     def __iter__(self) -> Iterator[str]:
         """The names of the parameters; "2.amplitude" where several algorithms have one of that name."""
         names = [parameter.name for parameter in self.parameters]
@@ -119,17 +123,21 @@ class Scenario(Mapping[str, "NDArray[np.float64]"]):
 
     def _set(self, key: Name, value: ArrayLike, time: float | None) -> None:
         name = _setting_name(key)
-        values = np.asarray(value)
-        if values.ndim == 0:
+        try:
+            is_number = np.shape(value) == ()
+        except (TypeError, ValueError):  # rows of different lengths
+            is_number = False
+        if is_number:
             self._state.set(name, number(name, value), time)
             return
         joints, _ = self._state.values(name)
+        expected = f"a number, or an array of shape {(len(joints),)}: one for each joint, from the head"
+        values = array(name, value, expected)
         if values.shape != (len(joints),) or ":" in name:
-            raise _core.InputError(f"{name}: found an array of shape {values.shape}, expected a number, or an array of shape "
-                                   f"{(len(joints),)}: one for each joint, from the head")
+            raise _core.InputError(f"{name}: found an array of shape {values.shape}, expected {expected}")
         changed = self._state.copy()
         for joint, one in zip(joints, values):
-            changed.set(f"{name}:{joint}", number(name, one), time)
+            changed.set(f"{name}:{joint}", float(one), time)
         self._state = changed  # all, or none if one of them cannot be used
 
     def at(self, seconds: float) -> _Later:
@@ -276,7 +284,7 @@ def _overrides(engine: str | None, seed: int | None, friction: float | None, at:
 
 
 def _coordinates(at: object) -> Iterable[float]:
-    if isinstance(at, Iterable) and not isinstance(at, (str, bytes)) and getattr(at, "ndim", 1) > 0:
+    if isinstance(at, Iterable) and not isinstance(at, (str, bytes, Set)) and getattr(at, "ndim", 1) > 0:
         return at
     raise _core.InputError(f"at: found {at!r}, expected (x, y) or (x, y, z)")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from proleg import _core
-from proleg._checks import path, text, texts, whole
+from proleg._checks import Unique, array, columns, path, text, texts, whole
 from proleg._search import Search as _Search
+from proleg.evaluation import Scores
 from proleg.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Objective(NamedTuple):
     higher_is_better: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Found:
     """An evaluation of a search."""
 
@@ -47,7 +48,7 @@ class Found:
     scores: Mapping[str, float]  #: by the names of the objectives
 
 
-class Search:
+class Search(Unique):
     """A search as `proleg optimise` makes it. It asks for the scores of candidates, and a program tells them.
 
         search = proleg.Search("gait.optimise.xml", store="found")
@@ -119,27 +120,25 @@ class Search:
         scores: (n, len(measures)), or (n) for one measure. measures: names of the columns; by default those that the search
         needs, `measures`. With more of them the tables and pictures of `proleg optimise` are complete. nan: the run failed or does not
         define the measure; the score is then what `<objective failed>` says, as in `proleg optimise`. failures: by row the
-        reason why it failed, or ""; by default those of an array of evaluate().
+        reason why it failed, or ""; by default those of an array that evaluate() has returned, if its numbers and rows are unchanged.
 
         Raises InputError for another shape, without an ask() before it, or if the search has ended; nothing is taken then.
         FileError: the store cannot be written.
         """
-        names = list(self.measures) if measures is None else texts("measures", measures)
-        try:
-            array = np.asarray(scores)
-        except (TypeError, ValueError):  # rows of different lengths
-            array = np.empty(0, dtype=object)
-        reasons = getattr(scores, "failures", []) if failures is None else texts("failures", failures)
+        names = list(self.measures) if measures is None else columns("measures", measures)
+        reasons = (scores._reasons() if isinstance(scores, Scores) else []) if failures is None else _reasons(failures)
+        values = np.empty((0, 0))
         if self._rows:
             shape = (self._rows, len(names))
-            if array.dtype.kind not in "iuf" or array.shape not in ((shape, shape[:1]) if len(names) == 1 else (shape,)):
-                raise _core.InputError(f"scores: found an array of shape {array.shape} of {array.dtype}, expected {shape} numbers: a "
-                                       "row for each of ask()")
-            reasons = list(reasons) or [""] * self._rows
+            expected = f"{shape} numbers: a row for each of ask()"
+            values = array("scores", scores, expected)
+            if values.shape not in ((shape, shape[:1]) if len(names) == 1 else (shape,)):
+                raise _core.InputError(f"scores: found an array of shape {values.shape}, expected {expected}")
+            reasons = reasons or [""] * self._rows
             if len(reasons) != self._rows:
                 raise _core.InputError(f"failures: found {len(reasons)}, expected {self._rows}: one for each row of ask()")
-        values = np.ascontiguousarray(array, dtype=np.float64) if self._rows else np.empty((0, 0))
-        self._search.tell(values.reshape(self._rows, -1) if self._rows else values, names, list(reasons))
+            values = np.ascontiguousarray(values.reshape(shape))
+        self._search.tell(values, names, reasons)
         self._rows = 0
 
     def simulate(self, most: int | None = None, *, workers: int | None = None) -> int:
@@ -256,6 +255,12 @@ class Search:
 
     def __repr__(self) -> str:
         return f"<proleg.Search in {self.folder}: {self.method}, {len(self.dimensions)} dimensions>"
+
+
+def _reasons(failures: Sequence[str]) -> list[str]:
+    if isinstance(failures, Set):
+        raise _core.InputError(f"failures: found a {type(failures).__name__}, expected texts in an order")
+    return texts("failures", failures)
 
 
 def _count(name: str, value: int | None) -> int:

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from proleg import _core
-from proleg._checks import whole
+from proleg._checks import Unique, array, whole
 from proleg.run import _scenario
 from proleg.scenario import Scenario
 
 
-class Worlds:
+class Worlds(Unique):
     """Robots that are alike, each in a world of its own, moved by set-points that the caller gives at each tick.
 
     Robot and world are those of a scenario; its gait does not run. From a set-point on, everything is as in simulate():
@@ -106,14 +106,9 @@ class Worlds:
         return observation, reward, done, {"failures": self._worlds.failures} if done.any() else {}
 
     def _array(self, given: ArrayLike) -> NDArray[np.float64]:
-        try:
-            array = np.asarray(given)
-        except (TypeError, ValueError):
-            array = np.empty(0, dtype=object)
-        if array.dtype.kind in "iuf":
-            if array.shape == (self._n, self._joints):
-                return np.asarray(array, dtype=np.float64)
-            if array.ndim == 0 or array.shape == (self._joints,):
-                return np.broadcast_to(np.asarray(array, dtype=np.float64), (self._n, self._joints))
-        raise _core.InputError(f"setpoints: found an array of shape {array.shape} of {array.dtype}, expected "
-                               f"({self._n}, {self._joints}) numbers")
+        values = array("setpoints", given, f"({self._n}, {self._joints}) numbers")
+        if values.shape == (self._n, self._joints):
+            return values
+        if values.ndim == 0 or values.shape == (self._joints,):
+            return np.broadcast_to(values, (self._n, self._joints))
+        raise _core.InputError(f"setpoints: found an array of shape {values.shape}, expected ({self._n}, {self._joints}) numbers")

@@ -3,13 +3,16 @@
     robot_test.py PROGRAM_FOLDER
 """
 
+import copy
 import os
+import pickle
 import re
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -183,6 +186,97 @@ class ThePower(unittest.TestCase):
             bus.wait_for_power([])
 
 
+class AnIdleProgram(unittest.TestCase):
+    """It leaves no robot moving: its servos lose their power without a call of the program."""
+
+    def test_that_waits_or_computes_loses_its_robot(self):
+        hogging = "import ctypes; ctypes.PyDLL(None).sleep(10)"  # it keeps the lock of the interpreter
+        for what, hang in {"waits": lambda bus: bus.wait_for_power([]), "keeps the interpreter": lambda bus: exec(hogging)}.items():
+            with self.subTest(what), Bus() as bus, proleg.Robot(bus.address, "caterpillar") as robot:
+                robot.run(0.5)
+                self.assertEqual(bus.powered(), ALL)
+                hang(bus)
+                bus.wait_for_power([])
+                with self.assertRaisesRegex(proleg.RunError, "idle: found no call of the program for 0.5 s.*idle=SECONDS"):
+                    robot.run(0.1)
+                with self.assertRaisesRegex(proleg.RunError, "idle"):
+                    robot["amplitude"] = 3
+
+    def test_after_an_interrupted_run_too(self):
+        with Bus() as bus, proleg.Robot(bus.address, "caterpillar") as robot:
+            robot.run(0.5)
+            threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
+            with self.assertRaises(KeyboardInterrupt):
+                robot.run(1000)
+            bus.wait_for_power([])
+
+    def test_that_thinks_between_its_calls_keeps_it(self):
+        """No tick is left out, and calls of any kind count."""
+        with Bus() as bus, proleg.Robot(bus.address, "caterpillar") as robot:
+            motions = []
+            for _ in range(8):
+                motions.append(robot.run(0.1))
+                time.sleep(0.3)
+                robot["amplitude"] = 20
+                time.sleep(0.3)
+            self.assertEqual(bus.powered(), ALL)
+            np.testing.assert_allclose(np.concatenate([motion.times for motion in motions]), np.arange(1, 81) / 100)
+
+    def test_has_the_limit_that_it_sets(self):
+        for idle in (3, None):
+            with self.subTest(idle), Bus() as bus, proleg.Robot(bus.address, "caterpillar", idle=idle) as robot:
+                robot.run(0.5)
+                time.sleep(2.5)
+                self.assertEqual(robot.run(2).missing, 0)
+                self.assertEqual(bus.powered(), ALL)
+        for idle in (0, 0.05, 1e9, float("nan"), "1", True, np.timedelta64(1, "s")):
+            with self.subTest(idle), self.assertRaisesRegex(proleg.InputError, "idle: found"):
+                proleg.Robot("tcp:127.0.0.1:1", "caterpillar", idle=idle)
+
+
+class AnotherThread(unittest.TestCase):
+    def test_gets_an_input_error_meanwhile(self):
+        with Bus() as bus, proleg.Robot(bus.address, "caterpillar") as robot:
+            outcomes = []
+            first = threading.Thread(target=lambda: outcomes.append(robot.run(3)))
+            robot.run(0.5)
+            first.start()
+            time.sleep(0.5)
+            for action in (lambda: robot.run(1), lambda: robot.__setitem__("amplitude", 20), lambda: robot.modules):
+                with self.assertRaisesRegex(proleg.InputError, "Robot: found a call while another thread makes one, expected one thread at a time"):
+                    action()
+            first.join()
+            self.assertEqual(len(outcomes[0].times), 300)
+            self.assertEqual(robot["amplitude", "J1"], 40)
+            robot.run(0.1)
+
+    def test_may_stop_it(self):
+        with Bus() as bus:
+            robot = proleg.Robot(bus.address, "caterpillar")
+            robot.run(0.5)
+            stopper = threading.Timer(0.5, robot.stop)
+            stopper.start()
+            with self.assertRaisesRegex(proleg.RunError, "does not move any more"):
+                robot.run(1000)
+            stopper.join()
+            bus.wait_for_power([])
+
+    def test_of_a_program_that_ends_does_not_keep_its_power(self):
+        with Bus() as bus:
+            program = (f"import threading, time, proleg\nrobot = proleg.Robot({bus.address!r}, 'caterpillar')\nrobot.run(0.5)\n"
+                       "threading.Thread(target=robot.run, args=[1000], daemon=True).start()\ntime.sleep(0.5)")
+            done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=LONGEST)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            bus.wait_for_power([])
+
+    def test_is_no_copy(self):
+        with Bus() as bus, proleg.Robot(bus.address, "caterpillar") as robot:
+            for given in (robot, robot._robot):
+                for action in (copy.copy, copy.deepcopy, pickle.dumps, lambda it: pickle.dumps(it, 0)):
+                    with self.assertRaisesRegex(TypeError, "expected a new"):
+                        action(given)
+
+
 class WhatCannotBeDriven(unittest.TestCase):
     def test_is_a_robot_of_another_scenario(self):
         with Bus() as bus, proleg.Robot(bus.address, proleg.snake(8)) as robot:
@@ -224,6 +318,7 @@ class WhatCannotBeDriven(unittest.TestCase):
             "another friction": ("tcp:127.0.0.1:1", scenario.replace(friction=0.1)),
             "a move": ("tcp:127.0.0.1:1", moved),
             "no scenario": ("tcp:127.0.0.1:1", "nothing"),
+            "a file with a long name": ("sim:" + "x" * 300, scenario),
         }.items():
             with self.subTest(what), self.assertRaises(proleg.InputError):
                 proleg.Robot(*arguments)

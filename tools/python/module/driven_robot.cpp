@@ -1,5 +1,6 @@
 #include "tools/python/module/driven_robot.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -25,12 +26,17 @@ std::uint32_t ticks_of(const sim::Scenario& scenario, std::uint32_t seconds) {
 
 }  // namespace
 
-DrivenRobot::DrivenRobot(const tools::BusOptions& bus, sim::Scenario scenario, const std::optional<std::string>& record)
-    : scenario_(std::move(scenario)), record_(record), bus_(std::make_unique<tools::BusAccess>(bus)) {}
+DrivenRobot::DrivenRobot(const tools::BusOptions& bus, sim::Scenario scenario, const std::optional<std::string>& record,
+                         std::optional<double> idle_s)
+    : scenario_(std::move(scenario)), record_(record), idle_s_(idle_s), bus_(std::make_unique<tools::BusAccess>(bus)) {}
 
 DrivenRobot::~DrivenRobot() { static_cast<void>(stop()); }
 
 std::vector<host::ScannedNode> DrivenRobot::scan() {
+  const std::lock_guard lock(scan_mutex_);
+  if (!bus_) {
+    throw std::runtime_error("the robot was stopped");
+  }
   host::BusScan all(bus_->connection());
   tools::scan(*bus_, all);
   return all.nodes();
@@ -48,10 +54,12 @@ void DrivenRobot::start() {
 void DrivenRobot::change(const std::string& word) {
   const std::lock_guard lock(mutex_);
   word_ = word;
+  asked_ = std::max(asked_, made());
 }
 
 bool DrivenRobot::is_changed(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
+  asked_ = std::max(asked_, made());
   if (!changed_.wait_for(lock, timeout, [this] { return !word_ || !moves_; })) {
     return false;
   }
@@ -62,6 +70,28 @@ bool DrivenRobot::is_changed(std::chrono::milliseconds timeout) {
     std::rethrow_exception(refusal);
   }
   return true;
+}
+
+void DrivenRobot::begin_call(std::uint32_t count) {
+  const std::lock_guard lock(mutex_);
+  if (failure_) {
+    std::rethrow_exception(failure_);
+  }
+  asked_ = std::max(first_ + count, made());
+}
+
+void DrivenRobot::end_call() {
+  const std::lock_guard lock(mutex_);
+  asked_ = made();
+}
+
+/// Throws std::runtime_error if the program has made no call for too long.
+void DrivenRobot::require_call() {
+  const std::lock_guard lock(mutex_);
+  if (idle_s_ && (made() - std::min(made(), asked_)) * (scenario_.kernel.tick_period_us * 1e-6) > *idle_s_) {
+    throw std::runtime_error("idle: found no call of the program for " + number_text(*idle_s_) +
+                             " s, so the robot has stopped; expected run() sooner, or Robot(..., idle=SECONDS)");
+  }
 }
 
 bool DrivenRobot::wait_for(std::uint32_t count, std::chrono::milliseconds timeout) {
@@ -98,7 +128,10 @@ std::string DrivenRobot::stop() {
   if (thread_.joinable()) {
     thread_.join();
   }
-  bus_.reset();
+  {
+    const std::lock_guard lock(scan_mutex_);
+    bus_.reset();
+  }
   recorder_.reset();
   const std::lock_guard lock(mutex_);
   moves_ = false;
@@ -133,6 +166,7 @@ void DrivenRobot::drive(tools::GaitRun& gait, host::BusConnection& bus) {
       bus.run_until(bus.now() + look_period_us, [&] { return gait.has_ended() || stops_; });
       report(gait);
       take_ticks(gait, false);
+      require_call();
       take_changes(gait);
       gait.release_changes();
       if (gait.has_ended()) {

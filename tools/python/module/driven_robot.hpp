@@ -38,9 +38,11 @@ struct RobotTicks {
 /// this object: the joints ramp down, and the servos lose their power.
 class DrivenRobot {
  public:
-  /// Opens the bus; nothing is sent. record: file of a recording; check_outputs() has accepted it. Throws InputError,
-  /// TransportError.
-  DrivenRobot(const tools::BusOptions& bus, sim::Scenario scenario, const std::optional<std::string>& record);
+  /// Opens the bus; nothing is sent. record: file of a recording; check_outputs() has accepted it. idle_s: how long the
+  /// robot moves on after the last call, or after the ticks that it asked for; nothing: without limit. Throws
+  /// InputError, TransportError.
+  DrivenRobot(const tools::BusOptions& bus, sim::Scenario scenario, const std::optional<std::string>& record,
+              std::optional<double> idle_s);
   ~DrivenRobot();  ///< as stop()
   DrivenRobot(const DrivenRobot&) = delete;
   DrivenRobot& operator=(const DrivenRobot&) = delete;
@@ -58,6 +60,10 @@ class DrivenRobot {
   void change(const std::string& word);
   /// Whether the change was accepted, within the time. Throws InputError for a word that cannot be used.
   [[nodiscard]] bool is_changed(std::chrono::milliseconds timeout);
+  /// Begins a call for the next `count` ticks, until which the robot moves. Throws what has ended the motion.
+  void begin_call(std::uint32_t count);
+  /// From now on the program is idle.
+  void end_call();
   /// Whether the robot has made the next `count` ticks, or does not move any more, within the time.
   [[nodiscard]] bool wait_for(std::uint32_t count, std::chrono::milliseconds timeout);
   /// These ticks. Throws what ended the motion before them.
@@ -88,9 +94,14 @@ class DrivenRobot {
   void take_changes(tools::GaitRun& gait);
   void report(tools::GaitRun& gait);
   void note(const host::Measurement& measured);
+  void require_call();
+  /// Ticks that the robot has made.
+  [[nodiscard]] std::uint32_t made() const { return first_ + static_cast<std::uint32_t>(ticks_.size()); }
 
   sim::Scenario scenario_;
   std::optional<std::string> record_;
+  std::optional<double> idle_s_;
+  std::mutex scan_mutex_;  ///< while it is locked, the bus is not closed
   std::unique_ptr<tools::BusAccess> bus_;
   std::unique_ptr<sim::Recorder> recorder_;
   std::atomic<bool> stops_ = false;
@@ -99,6 +110,7 @@ class DrivenRobot {
   std::condition_variable changed_;
   std::deque<Tick> ticks_;   ///< that were not taken
   std::uint32_t first_ = 0;  ///< number of the first of them
+  std::uint32_t asked_ = 0;  ///< ticks that calls have asked for, and all that were made until the last call
   std::uint64_t differences_ = 0;
   std::uint64_t missing_ = 0;
   bool moves_ = true;  ///< or will

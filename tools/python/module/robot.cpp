@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +54,8 @@ auto guarded(const Action& action) {
     throw;
   } catch (const FileError&) {
     throw;
+  } catch (const std::filesystem::filesystem_error&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw RunFailure(error.what());
   }
@@ -60,17 +63,17 @@ auto guarded(const Action& action) {
 
 class Robot {
  public:
-  Robot(const std::optional<std::string>& bus, const sim::Scenario& scenario,
-        const std::optional<std::string>& record) {
+  Robot(const std::optional<std::string>& bus, const sim::Scenario& scenario, const std::optional<std::string>& record,
+        const std::optional<double>& idle_s) {
     check(scenario, record);
-    const py::gil_scoped_release released;
-    robot_ = guarded([&] { return std::make_unique<DrivenRobot>(tools::BusOptions{bus}, scenario, record); });
+    const Unlocked unlocked;
+    robot_ = guarded([&] { return std::make_unique<DrivenRobot>(tools::BusOptions{bus}, scenario, record, idle_s); });
   }
   ~Robot() {
     if (getpid() != process_) {
       static_cast<void>(robot_.release());  // the thread and the bus are the parent's
     } else {
-      const py::gil_scoped_release released;
+      const Unlocked unlocked;
       robot_.reset();
     }
   }
@@ -80,6 +83,7 @@ class Robot {
   /// node, serial number, joint or None, name, state of the drive, of each joint module.
   py::list modules() {
     require_open();
+    const OneThread use(is_used_, "Robot");
     if (robot_->has_started()) {
       throw InputError("modules", 0, "a robot that moves", "a look at its modules before run()");
     }
@@ -95,9 +99,12 @@ class Robot {
 
   py::dict run(std::uint32_t ticks) {
     require_open();
+    const OneThread use(is_used_, "Robot");
     if (!robot_->has_started()) {
       guarded([&] { robot_->start(); });
     }
+    guarded([&] { robot_->begin_call(ticks); });
+    const EndOfCall end{*robot_};
     wait([&](std::chrono::milliseconds time) { return robot_->wait_for(ticks, time); });
     RobotTicks taken = guarded([&] { return robot_->take(ticks); });
     const std::size_t joints = robot_->scenario().robot.joints.size();
@@ -115,6 +122,7 @@ class Robot {
   /// Before the robot moves, the start value changes.
   void change(const std::string& word) {
     require_open();
+    const OneThread use(is_used_, "Robot");
     if (!robot_->has_started()) {
       robot_->set(word);
       return;
@@ -126,7 +134,8 @@ class Robot {
   [[nodiscard]] bool has_started() const { return getpid() == process_ && robot_->has_started(); }
   [[nodiscard]] std::vector<std::string> reports() { return robot_->take_reports(); }
 
-  /// A Ctrl-C does not break it off. Throws RunFailure if a servo may still have power.
+  /// A Ctrl-C does not break it off. Any thread may call it, also while another one makes a call, which then ends.
+  /// Throws RunFailure if a servo may still have power.
   void stop() {
     if (getpid() != process_ || is_stopped_) {
       return;
@@ -134,7 +143,7 @@ class Robot {
     is_stopped_ = true;
     std::string not_off;
     {
-      const py::gil_scoped_release released;
+      const Unlocked unlocked;
       not_off = robot_->stop();
     }
     if (!not_off.empty()) {
@@ -143,6 +152,11 @@ class Robot {
   }
 
  private:
+  struct EndOfCall {
+    DrivenRobot& robot;
+    ~EndOfCall() { robot.end_call(); }
+  };
+
   void require_open() const {
     if (getpid() != process_) {
       throw InputError("Robot", 0, "a call in a process that was forked", "the process that drives the robot");
@@ -153,13 +167,13 @@ class Robot {
   }
 
   std::vector<host::ScannedNode> scan() {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return guarded([&] { return robot_->scan(); });
   }
 
   template <typename IsDone>
   static void wait(const IsDone& is_done) {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     SignalWatch watch;
     while (!is_done(std::chrono::milliseconds(50))) {
       watch.check();
@@ -168,24 +182,31 @@ class Robot {
 
   const pid_t process_ = getpid();
   bool is_stopped_ = false;
+  bool is_used_ = false;
   std::unique_ptr<DrivenRobot> robot_;
 };
 
 }  // namespace
 }  // namespace proleg::python
 
+namespace pybind11::detail {
+template <>
+class type_caster<proleg::python::Robot> : public caster_of_made<proleg::python::Robot> {};
+}  // namespace pybind11::detail
+
 PYBIND11_MODULE(_robot, module) {
   using proleg::python::Robot;
   proleg::python::share_with_core(module);
   module.def("use_programs_of", &proleg::host::use_programs_of, py::arg("folder"));
   py::class_<Robot>(module, "Robot")
-      .def(py::init<const std::optional<std::string>&, const proleg::sim::Scenario&,
-                    const std::optional<std::string>&>(),
-           py::arg("bus"), py::arg("scenario"), py::arg("record"))
+      .def(py::init<const std::optional<std::string>&, const proleg::sim::Scenario&, const std::optional<std::string>&,
+                    const std::optional<double>&>(),
+           py::arg("bus"), py::arg("scenario"), py::arg("record"), py::arg("idle"))
       .def("modules", &Robot::modules)
       .def("run", &Robot::run, py::arg("ticks"))
       .def("change", &Robot::change, py::arg("word"))
       .def("stop", &Robot::stop)
       .def("reports", &Robot::reports)
       .def_property_readonly("has_started", &Robot::has_started);
+  proleg::python::refuse_copies(module.attr("Robot"));
 }

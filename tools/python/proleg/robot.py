@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from proleg import _core, _robot
-from proleg._checks import number, path, text
+from proleg._checks import Unique, number, path, text
 from proleg._places import bus_program
 from proleg.run import _scenario
 from proleg.scenario import Name, Scenario, _setting_name
@@ -33,7 +33,7 @@ class Module(NamedTuple):
     software: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """What a robot did in a run(). Arrays have a row for each tick; joints count from the head."""
 
@@ -51,7 +51,7 @@ class Motion:
         return self.raw_setpoints * (90.0 / 2**30)
 
 
-class Robot:
+class Robot(Unique):
     """A robot of modules on a bus, which moves as its scenario says.
 
         with proleg.Robot("can0", "gait.simulation.xml") as robot:
@@ -61,26 +61,33 @@ class Robot:
             then = robot.run(5)
 
     It does what `proleg drive` does, with the same checks and messages. The first run() sets the modules up, gives the servos
-    power and starts the gait. From then on the robot moves, also between two calls. At the end of the block the joints ramp down and the
+    power and starts the gait. From then on the robot moves, also between two calls; but not longer than `idle` seconds, so that a
+    program that hangs leaves no robot moving. At the end of the block the joints ramp down and the
     servos lose their power: after an exception, Ctrl-C and the end of Python, too. A process that is killed sends nothing
     more: modules without a host stop by themselves within 1.5 s, and hold their joints (docs/safety.md).
 
-    It belongs to one thread at a time, and to the process that opened it: a child of fork() cannot use it.
+    It belongs to one thread at a time, and to the process that opened it: a child of fork() cannot use it. Only stop() may come from
+    another thread at any moment; a run() of the first one then raises RunError.
     """
 
     def __init__(self, bus: str | None, scenario: Scenario | str | os.PathLike[str], *,
-                 record: str | os.PathLike[str] | None = None) -> None:
+                 record: str | os.PathLike[str] | None = None, idle: float | None = 0.5) -> None:
         """Opens the bus; nothing is sent and nothing moves.
 
         bus: as `--bus` of `proleg drive`: "can0", "serial:/dev/ttyACM0", "tcp:HOST:PORT", "sim:FILE" for simulated modules,
         and others; None: $PROLEG_BUS, or the only adapter with modules behind it. scenario: as in simulate(); its changes (`at()`) are made, its place in the world has no effect.
         record: a file into which a recording is written.
+        idle: s, 0.1 to 3600: how long the robot moves on after the end of a run() or another call. Then it stops as at the end of the
+        block, and the next call raises RunError. None: without limit.
 
         Raises InputError for a scenario or an address that cannot be used, and RunError for a bus that cannot be opened.
         """
+        limit = None if idle is None else number("idle", idle)
+        if limit is not None and not 0.1 <= limit <= 3600:
+            raise _core.InputError(f"idle: found {limit}, expected 0.1 to 3600 seconds, or None")
         self._scenario = _scenario(scenario).copy()
         self._robot = _robot.Robot(None if bus is None else text("bus", bus), self._scenario._state,
-                             None if record is None else path("record", record))
+                             None if record is None else path("record", record), limit)
         self._modules: list[Module] | None = None
         self._end = weakref.finalize(self, self._robot.stop)  # also at the end of Python
 

@@ -197,7 +197,7 @@ class AnIdleProgram(unittest.TestCase):
                 self.assertEqual(bus.powered(), ALL)
                 hang(bus)
                 bus.wait_for_power([])
-                with self.assertRaisesRegex(proleg.RunError, "idle: found no call of the program for 0.5 s.*idle=SECONDS"):
+                with self.assertRaisesRegex(proleg.RunError, "idle: found no call of the program for 0.4 s.*idle=SECONDS"):
                     robot.run(0.1)
                 with self.assertRaisesRegex(proleg.RunError, "idle"):
                     robot["amplitude"] = 3

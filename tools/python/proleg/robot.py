@@ -71,7 +71,7 @@ class Robot(Unique):
     """
 
     def __init__(self, bus: str | None, scenario: Scenario | str | os.PathLike[str], *,
-                 record: str | os.PathLike[str] | None = None, idle: float | None = 0.5) -> None:
+                 record: str | os.PathLike[str] | None = None, idle: float | None = 0.4) -> None:
         """Opens the bus; nothing is sent and nothing moves.
 
         bus: as `--bus` of `proleg drive`: "can0", "serial:/dev/ttyACM0", "tcp:HOST:PORT", "sim:FILE" for simulated modules,

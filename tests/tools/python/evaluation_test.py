@@ -102,6 +102,9 @@ class Scores(unittest.TestCase):
         self.assertEqual(np.nanargmax(scores), int(np.nanargmax(np.asarray(scores))))
         for plain in (scores * 2, -scores, np.isnan(scores)):
             self.assertIs(type(plain), np.ndarray)
+        same = scores
+        scores += 1
+        self.assertIs(scores, same)
 
     def test_of_values_near_zero_are_those_of_zero(self):
         scenario = proleg.Scenario("caterpillar", engine="reduced")

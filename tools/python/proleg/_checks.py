@@ -46,8 +46,8 @@ def array(name: str, given: ArrayLike, expected: str) -> NDArray[np.float64]:
         numbers_ = np.asarray(given)
     except (TypeError, ValueError):  # rows of different lengths
         raise _core.InputError(f"{name}: found rows of different lengths, expected {expected}") from None
-    if numbers_.size == 0 and numbers_.dtype.kind != "O":
-        numbers_ = numbers_.astype(np.float64)
+    if numbers_.size == 0:
+        return np.empty(numbers_.shape)
     if numbers_.dtype.kind not in "iuf":
         hint = "; of a pandas table: .to_numpy(float)" if hasattr(given, "to_numpy") else ""
         raise _core.InputError(f"{name}: found an array of shape {numbers_.shape} of {numbers_.dtype}, expected {expected}{hint}")

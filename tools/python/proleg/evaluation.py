@@ -30,7 +30,7 @@ class Scores(np.ndarray[Any, np.dtype[np.float64]]):
         self._failures, self._rated = [], None
 
     def __array_wrap__(self, array: NDArray[Any], context: object = None) -> Any:
-        return np.asarray(array)[()]
+        return self if array is self else np.asarray(array)[()]
 
     @property
     def failures(self) -> list[str]:

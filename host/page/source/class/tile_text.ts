@@ -25,7 +25,8 @@ export function tileState({ seat, state, connections }: ClassSeat, session: Tile
   const robot = session === null ? null : robotStates[session.state];
   // The teacher's own page is open only now and then.
   if (connections === 0 && seat !== 0) {
-    return robot?.kind === 'running' ? { text: `not there, robot ${robot.text}`, kind: 'running' } : { text: 'not there', kind: 'absent' };
+    const isTold = robot?.kind === 'running' || robot?.kind === 'stopped'; // after a STOP the teacher sees that it has reached all
+    return isTold ? { text: `not there, robot ${robot.text}`, kind: robot.kind } : { text: 'not there', kind: 'absent' };
   }
   return robot ?? { text: 'connecting', kind: 'starting' };
 }

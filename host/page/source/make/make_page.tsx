@@ -3,6 +3,8 @@
 import { useLayoutEffect } from 'preact/hooks';
 import { LaterView, loadLater, loadWhenIdle } from '../panels/later_view.js';
 import { ScenePanel } from '../panels/scene_panel.js';
+import { namedJoints } from '../state/named_joints.js';
+import { engineText } from '../state/robot_text.js';
 import { openDialog } from '../view/dialogs.js';
 import { isTextField } from '../view/keyboard.js';
 import type { ForesightDocument } from '../wire/messages.js';
@@ -113,9 +115,9 @@ function Unsaved({ app }: { app: MakeApp }) {
   );
 }
 
-function foresightText(foresight: ForesightDocument): string {
+function foresightText(foresight: ForesightDocument, joints: readonly { name: string }[]): string {
   if (foresight.failure !== null) {
-    return `After ${foresight.seconds.toFixed(1)} s: ${foresight.failure}`;
+    return `After ${foresight.seconds.toFixed(1)} s: ${namedJoints(foresight.failure, joints)}`;
   }
   const distance = foresight.distance === null ? '' : `${foresight.distance.toFixed(2)} m in ${foresight.seconds.toFixed(0)} s`;
   return `${distance}${foresight.heading === null ? '' : `, ${wayText(foresight.heading)}`}`;
@@ -134,15 +136,10 @@ function Foresight({ app }: { app: MakeApp }) {
   const draft = app.draft.value;
   const isNew = foresight !== null && draft !== null && foresight.revision === draft.revision;
   return (
-    <p class={isNew ? 'foresight-text' : 'foresight-text old'} role="status" data-testid="foresight">
+    <p class={isNew ? 'foresight-text' : 'foresight-text old'} role="status" tabIndex={0} data-testid="foresight">
       <i class="mark path" /> <strong>The next half minute:</strong>{' '}
-      {foresight === null ? 'computing …' : foresightText(foresight)}
-      {foresight !== null && foresight.engine !== 'reduced' && (
-        <span class="hint" title="The reduced engine, which is faster, does not have such a world.">
-          {' '}
-          ({foresight.engine.toUpperCase()})
-        </span>
-      )}
+      {foresight === null ? 'computing …' : foresightText(foresight, app.page.state.draftRobot.value?.joints ?? [])}
+      {foresight !== null && <span class="hint"> ({engineText(foresight.engine, draft?.run.engine ?? foresight.engine)})</span>}
       {foresight?.refusal != null && <span class="servo-problem"> The engine that Run has cannot simulate this scenario: {foresight.refusal}</span>}
       {foresight?.servo_problem != null && <span class="servo-problem"> {foresight.servo_problem}</span>}
     </p>

@@ -241,6 +241,7 @@ export function NewPanel({ app }: { app: MakeApp }) {
                 name="name"
                 aria-label="name of the robot and of its folder"
                 autocomplete="off"
+                size={32}
                 placeholder="its name, and that of its folder"
                 value={choices.name}
                 onInput={(event) => (choices.name.value = event.currentTarget.value)}

@@ -1,6 +1,7 @@
 // Bands below the top bar: facts that the user must know, and questions that need an answer now.
 import { useEffect, useState } from 'preact/hooks';
 import type { Stores } from '../view/robot_view.js';
+import { namedJoints } from '../state/named_joints.js';
 import type { PageAddress } from '../wire/page_address.js';
 import { BusBands } from './bus_bands.js';
 import { ConnectionBand } from './connection_band.js';
@@ -63,7 +64,7 @@ export function Bands({ app, address }: { app: Stores<'operations' | 'shownPage'
       <BusBands app={app} />
       {session?.failure && (
         <div class="band lost" role="alert">
-          {session.failure}
+          {namedJoints(session.failure, app.state.robot.value?.joints ?? [])}
         </div>
       )}
       {repeats && (

@@ -20,8 +20,9 @@ function NoticeView({ notice }: { notice: Notice }) {
     if (notice.level === 'error') {
       return undefined;
     }
-    const timer = setTimeout(() => close(notice.number), shownFor);
-    return () => clearTimeout(timer);
+    // It counts from when it is first seen, also while newer ones or another page hide it.
+    setTimeout(() => close(notice.number), shownFor);
+    return undefined;
   }, [notice.number]);
   return (
     <li class={`notice ${notice.level}`}>

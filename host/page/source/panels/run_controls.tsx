@@ -135,6 +135,7 @@ export function RunControls({ app }: { app: Stores<'newestTick' | 'operations' |
       <button
         type="button"
         disabled={!isHolder || runState === 'failed'}
+        class="record"
         aria-pressed={recording !== null}
         onClick={() => recordOrEnd(app)}
         title={recording === null ? 'Records the whole run, from tick 0 on (R)' : `Ends the recording ${recording} (R)`}

@@ -38,3 +38,11 @@ export function fromTail(count: number): number[] {
 export function algorithmTitle(name: string): string {
   return name.replace(/^(PatternGenerator|SensingModule)_/, '').replaceAll('_', ' ');
 }
+
+const engineTitles: Record<string, string> = { ode: 'ODE', reduced: 'the reduced engine', mujoco: 'MuJoCo' };
+const engineTitle = (engine: string) => engineTitles[engine] ?? engine;
+
+// Which engine has computed something, and that of the run, if it is another one.
+export function engineText(engine: string, ofRun: string): string {
+  return `by ${engineTitle(engine)}${engine === ofRun ? '' : `; Run has ${engineTitle(ofRun)}`}`;
+}

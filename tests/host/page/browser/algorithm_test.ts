@@ -50,7 +50,7 @@ describe("an algorithm of one's own", () => {
   it('begins with a form, which says at the field what is wrong', async () => {
     await page().keyboard.press('3');
     await page().getByRole('tab', { name: 'Algorithm', exact: true }).click();
-    await part().getByRole('button', { name: 'New …' }).click();
+    await part().getByRole('button', { name: 'New algorithm …' }).click();
     await form().locator('input[name=name]').fill('class');
     await form().locator('input[name="parameters.1.default"]').fill('21');
     await form().getByRole('button', { name: 'Write the source' }).click();

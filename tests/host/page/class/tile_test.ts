@@ -66,6 +66,7 @@ describe('a tile', () => {
 
   it('says that nobody is there, and that the robot runs all the same', () => {
     assert.deepEqual(tileState(seat(1, { connections: 0 }), session({ state: 'paused' })), { text: 'not there', kind: 'absent' });
+    assert.deepEqual(tileState(seat(1, { connections: 0 }), session({ state: 'stopped' })), { text: 'not there, robot STOPPED', kind: 'stopped' });
     assert.deepEqual(tileState(seat(1, { connections: 0 }), session()), { text: 'not there, robot runs', kind: 'running' });
     assert.equal(tileState(seat(0, { connections: 0 }), session()).text, 'runs', 'of the teacher');
   });

@@ -1,7 +1,8 @@
 // Words for joints, and the order of a chain.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, fromTail } from '../../../../host/page/source/state/robot_text.js';
+import { algorithmTitle, axisAngle, axisLetter, axisOfAngle, axisWord, engineText, fromTail } from '../../../../host/page/source/state/robot_text.js';
+import { namedJoints } from '../../../../host/page/source/state/named_joints.js';
 
 describe('the axis of a joint', () => {
   it('is pitch, yaw or an angle between them', () => {
@@ -36,5 +37,18 @@ describe('the name of an algorithm', () => {
   it('is without what all names have', () => {
     assert.equal(algorithmTitle('PatternGenerator_sinusoidal_extended'), 'sinusoidal extended');
     assert.equal(algorithmTitle('DirectJointAccess'), 'DirectJointAccess');
+  });
+});
+
+describe('texts about a robot', () => {
+  it('name the engine that has computed something, and that of the run if it is another one', () => {
+    assert.equal(engineText('reduced', 'ode'), 'by the reduced engine; Run has ODE');
+    assert.equal(engineText('ode', 'ode'), 'by ODE');
+  });
+
+  it('have the name of a joint in place of its number', () => {
+    const joints = ['J8', 'J7', 'J6'].map((name) => ({ name }));
+    assert.equal(namedJoints('found no end after 1 s in the algorithm mine, joint 1 (0 is at the head)', joints), 'found no end after 1 s in the algorithm mine, J7');
+    assert.equal(namedJoints('joint 9 (0 is at the head)', joints), 'joint 9 (0 is at the head)');
   });
 });

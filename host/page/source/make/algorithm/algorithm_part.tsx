@@ -164,7 +164,7 @@ export function AlgorithmPart({ app: make }: { app: AlgorithmHost }) {
               </button>
             ))}
             <button type="button" aria-pressed={app.isMaking.value} onClick={() => (app.isMaking.value = !app.isMaking.value)}>
-              New …
+              New algorithm …
             </button>
           </div>
           {app.isMaking.value ? <AlgorithmFormView app={app} first={document.form} /> : <SourceView app={app} />}

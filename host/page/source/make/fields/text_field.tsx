@@ -1,5 +1,7 @@
 // A text that is sent when it is complete: with Enter, or when the field is left.
 import { useSignal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import { addFront } from '../../view/front.js';
 
 interface Field {
   label: string;
@@ -17,6 +19,20 @@ interface Field {
 export function TextField({ label, value, unit = '', title, placeholder, size, isNumeric, isDisabled, commit }: Field) {
   const typed = useSignal<string | null>(null);
   const problem = useSignal<string | null>(null);
+  const input = useRef<HTMLInputElement>(null);
+  // Esc takes back what was typed, and leaves the field: the next key is one of the page.
+  useEffect(
+    () =>
+      addFront({
+        isOpen: () => typed.peek() !== null && document.activeElement === input.current,
+        close: () => {
+          typed.value = null;
+          problem.value = null;
+          input.current?.blur();
+        },
+      }),
+    [],
+  );
   const send = async () => {
     const text = typed.peek();
     if (text === null) return;
@@ -28,6 +44,7 @@ export function TextField({ label, value, unit = '', title, placeholder, size, i
     <label class="number-field" title={title}>
       <span>{label}</span>
       <input
+        ref={input}
         type="text"
         inputMode={isNumeric === true ? 'decimal' : 'text'}
         size={size}

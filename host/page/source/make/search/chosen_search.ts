@@ -56,6 +56,7 @@ export class ChosenSearch {
   constructor(
     private readonly host: SearchHost,
     readonly name: string,
+    private readonly confirmations: Map<string, SearchConfirmation> | null = null, // of all searches, by name, repetition and candidate; null: they are forgotten
   ) {}
 
   close(): void {
@@ -107,7 +108,7 @@ export class ChosenSearch {
     this.number.value = number;
     this.candidate.value = null;
     this.candidateProblem.value = null;
-    this.confirmation.value = null;
+    this.confirmation.value = this.confirmations?.get(`${this.name}/${this.run.peek()}/${number}`) ?? null;
     if (number !== null) void this.readCandidate(number);
   }
 
@@ -121,6 +122,7 @@ export class ChosenSearch {
     this.candidateProblem.value = null;
     try {
       const confirmation = (await this.host.page.operations.ask('search.confirm', { name: this.name, run, number })) as SearchConfirmation;
+      this.confirmations?.set(`${this.name}/${run}/${number}`, confirmation);
       if (isWanted()) this.confirmation.value = confirmation;
     } catch (error) {
       if (!isWanted()) return;

@@ -1,5 +1,6 @@
 // The stores of the part Search of the page Make: the searches that there are, the one that is shown, and the form of a new one.
 import { computed, effect, signal, untracked } from '@preact/signals-core';
+import type { SearchConfirmation } from '../../wire/messages.js';
 import { onFrame } from '../../view/frame_clock.js';
 import { ChosenSearch } from './chosen_search.js';
 import { MotionLoader, type WantedMotion } from './motion_loader.js';
@@ -31,6 +32,7 @@ export class SearchApp {
   readonly problem = signal<string | null>(null); // of what was asked of the chosen search
   readonly entries = computed(() => this.host.page.state.searches.value?.searches ?? []);
   readonly entry = computed(() => this.entries.value.find(({ name }) => name === this.host.chosenSearch.value));
+  private readonly confirmations = new Map<string, SearchConfirmation>(); // they stay when another search is chosen
   private refreshedAt = -Infinity;
   private isRefreshing = false;
   private lookedAt = -Infinity;
@@ -47,7 +49,7 @@ export class SearchApp {
       untracked(() => {
         this.chosen.peek()?.close();
         this.problem.value = null;
-        this.chosen.value = name === null ? null : new ChosenSearch(host, name);
+        this.chosen.value = name === null ? null : new ChosenSearch(host, name, this.confirmations);
       });
     });
     effect(() => {

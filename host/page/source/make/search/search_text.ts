@@ -9,7 +9,10 @@ export function sentence(text: string): string {
   return text === '' ? '' : `${text[0]!.toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? '' : '.'}`;
 }
 
+const rounding = 1e-12; // what is smaller is left over from a sum that is 0
+
 export function shortNumber(value: number, digits = 5): string {
+  if (Math.abs(value) < rounding) return '0';
   return Number.isFinite(value) ? String(Number(value.toPrecision(digits))) : '–';
 }
 

@@ -124,6 +124,26 @@ describe('the chosen candidate', () => {
     assert.deepEqual([search.confirmation.value, search.candidateProblem.value], [null, 'another estimate or confirmation was asked for']);
   });
 
+  it('keeps the answers when another search was chosen meanwhile', async () => {
+    const { program } = await shown();
+    const kept = new Map();
+    const first = new ChosenSearch(program.host, 'searches/wave', kept);
+    first.chooseCandidate(1);
+    const done = first.confirm();
+    const answer = { nothing_speaks_against: true, findings: [] };
+    first.close();
+    await program.last('search.confirm').answer(answer);
+    await done;
+    const again = new ChosenSearch(program.host, 'searches/wave', kept);
+    again.chooseCandidate(1);
+    assert.deepEqual(again.confirmation.value, answer);
+    again.chooseCandidate(2);
+    assert.equal(again.confirmation.value, null);
+    const other = new ChosenSearch(program.host, 'searches/other', kept);
+    other.chooseCandidate(1);
+    assert.equal(other.confirmation.value, null);
+  });
+
   it('that is not there says why', async () => {
     const { program, search } = await shown();
     search.chooseCandidate(7_000_000);

@@ -29,6 +29,8 @@ describe('numbers in words', () => {
   it('are short', () => {
     assert.equal(shortNumber(1.889590852728988), '1.8896');
     assert.equal(shortNumber(40), '40');
+    assert.equal(shortNumber(2.78e-17), '0', 'what is left over from a sum');
+    assert.equal(shortNumber(-2.5e-7), '-2.5e-7');
     assert.equal(shortNumber(NaN), '–');
     assert.equal(withUnit(2.1715, 'm'), '2.1715 m');
     assert.equal(withUnit(0.25, ''), '0.25');

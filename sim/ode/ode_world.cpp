@@ -44,7 +44,6 @@ class OdeWorld final : public World {
   OdeWorld(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
       : step_s_(step_s), stepper_(stepper), self_collision_(environment.self_collision) {
     prepare_engine_for_this_thread();
-    messages_before_ = engine_messages();
     world_.reset(dWorldCreate());
     StepMemory::use_for(world_.get());
     // A world without its own threading implementation crashes when other worlds are stepped beside it.
@@ -89,7 +88,9 @@ class OdeWorld final : public World {
     }
     step_memory_.select();
     try {
+      const std::size_t before = engine_messages();
       advance();
+      messages_ += engine_messages() - before;
     } catch (...) {
       abandon();
       throw;
@@ -200,7 +201,7 @@ class OdeWorld final : public World {
     return hit.distance;
   }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
-  [[nodiscard]] std::size_t solver_messages() const override { return engine_messages() - messages_before_; }
+  [[nodiscard]] std::size_t solver_messages() const override { return messages_; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return engine_message_texts(); }
 
  private:
@@ -367,7 +368,7 @@ class OdeWorld final : public World {
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
   std::optional<double> lowest_ground_;
-  std::size_t messages_before_ = 0;
+  std::size_t messages_ = 0;  ///< of its own steps; the thread may step other worlds, too
   double step_s_;
   Stepper stepper_;
   bool self_collision_;

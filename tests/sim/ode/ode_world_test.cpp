@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+#include <ode/error.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "sim/ode/engine.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tests/sim/physics/world_contract.hpp"
 
@@ -85,6 +87,18 @@ TEST(OdeWorld, TheIterativeStepperRepeatsBesideWorldsOfOtherThreads) {
   for (const std::vector<double>& numbers : beside) {
     EXPECT_EQ(numbers, alone);
   }
+}
+
+TEST(OdeWorld, CountsTheMessagesOfItsOwnStepsOnly) {
+  const std::unique_ptr<World> world = crawling_world();
+  dMessage(0, "LCP internal error, s <= 0 (s=%g)", 0.5);  // as the step of another world on this thread gives it
+  positions_after_steps(*world, 1);
+  EXPECT_EQ(world->solver_messages(), 0U);
+  std::thread([&world] {
+    prepare_engine_for_this_thread();
+    positions_after_steps(*world, 1);
+    EXPECT_EQ(world->solver_messages(), 0U) << "made on a thread that had messages";
+  }).join();
 }
 
 /// A child of fork() has the threads of its parent no more, whatever they were in the middle of.

@@ -291,7 +291,7 @@ class HardwareLoop::Implementation {
     }
     report_.setpoint_hash.append(values_.setpoints());
     plant_ticks_.end(now, values_.setpoints());
-    report_.world_hash.append(plant_.world());
+    report_.world_hash.append(plant_);
   }
 
   void follow_reference() {
@@ -390,6 +390,7 @@ std::optional<std::uint32_t> HardwareLoop::first_fault_tick() const { return imp
 const ValueHash& HardwareLoop::setpoint_hash() const { return implementation_->report().setpoint_hash; }
 const ValueHash& HardwareLoop::servo_hash() const { return implementation_->report().servo_hash; }
 std::optional<std::string> HardwareLoop::world_hash() const { return implementation_->report().world_hash.hex(); }
+std::string HardwareLoop::motion_hash() const { return implementation_->report().world_hash.motion_hex(); }
 std::uint64_t HardwareLoop::differences() const { return implementation_->report().differences; }
 std::uint64_t HardwareLoop::differences(unsigned joint) const {
   return implementation_->report().differences_of[joint];

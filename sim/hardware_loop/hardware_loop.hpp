@@ -84,6 +84,7 @@ class HardwareLoop {
   [[nodiscard]] const ValueHash& servo_hash() const;
   /// Hash of the world after all ticks; nothing if its engine does not give the same on every computer.
   [[nodiscard]] std::optional<std::string> world_hash() const;
+  [[nodiscard]] std::string motion_hash() const;
   /// Set-points and servo commands that differ from the gait in memory, so far, and the first of them.
   [[nodiscard]] std::uint64_t differences() const;
   /// Set-points and servo commands of one joint that differ from the gait in memory, so far.

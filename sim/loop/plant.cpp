@@ -313,6 +313,7 @@ void Plant::add_to(TickSample& sample) const {
   sample.object_poses = object_poses_;
   sample.sensor_values = sensors_.values();
   sample.measured_sensors = sensors_.measured();
+  sample.has_world = true;
 }
 
 ServoReadings Plant::servo_readings(std::size_t joint) const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "sim/loop/module_readings.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/physics/world.hpp"
+#include "sim/record/motion.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/sensor/attached_sensors.hpp"
@@ -191,26 +191,29 @@ class Plant {
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };
 
-/// Hash of the states of a world after ticks. Two runs on any two computers had the same motion if their hashes are
-/// equal.
+/// Hashes of the states of a world after ticks.
 class WorldHash {
  public:
-  void append(const World& world) {
-    for (const double number : world.state()) {
+  /// The state at the end of the last finished tick.
+  void append(const Plant& plant) {
+    for (const double number : plant.world().state()) {
       has_states_ = true;
-      const auto bits = std::bit_cast<std::uint64_t>(number);
-      hash_.append(static_cast<std::int32_t>(bits));
-      hash_.append(static_cast<std::int32_t>(bits >> 32U));
+      hash_.append_number(number);
     }
+    motion_.append(plant.link_poses(), plant.object_poses());
   }
 
-  /// The hash, in hexadecimal; nothing if the engine does not give the same states on every computer.
+  /// Two runs on any two computers had the same motion if these are equal. Nothing if the engine does not give the same
+  /// states on every computer.
   [[nodiscard]] std::optional<std::string> hex() const {
     return has_states_ ? std::optional(hash_.hex()) : std::nullopt;
   }
+  /// Of the poses, with every engine (sim/record/motion.hpp).
+  [[nodiscard]] std::string motion_hex() const { return motion_.hex(); }
 
  private:
   ValueHash hash_;
+  MotionHash motion_;
   bool has_states_ = false;
 };
 

@@ -172,7 +172,7 @@ const Change* Simulation::begin_tick() {
 void Simulation::end_tick() {
   pulse_player_.end_tick(setpoints());
   if (has_hashes_) {
-    world_hash_.append(plant_.world());
+    world_hash_.append(plant_);
   }
 }
 

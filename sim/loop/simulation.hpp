@@ -78,6 +78,8 @@ class Simulation {
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
   /// Hash of the states of the world after all ticks; nothing if its engine does not give the same on every computer.
   [[nodiscard]] std::optional<std::string> world_hash() const { return world_hash_.hex(); }
+  /// Hash of the motion (sim/record/motion.hpp).
+  [[nodiscard]] std::string motion_hash() const { return world_hash_.motion_hex(); }
 
  private:
   void read_modules();

@@ -201,7 +201,7 @@ class LossesByTick {
 };
 
 Verification recompute(const Recording& recording, const RecordedGait& recorded,
-                       const std::function<void(std::uint32_t tick)>& progress) {
+                       const std::function<void(std::uint32_t tick)>& progress, MotionCheck* motion) {
   LossesByTick losses(recording);
   const std::vector<RecordedRestart> restarts = recording.restarts();
   PulsesByTick pulses(recording);
@@ -269,7 +269,11 @@ Verification recompute(const Recording& recording, const RecordedGait& recorded,
       }
     }
     const std::uint64_t end_us = (tick.tick + std::uint64_t{1}) * recorded.configuration.tick_period_us;
-    compare_pulses(tick.tick, pulses.take_before(end_us), gait.pulses(), note);
+    const std::span<const ServoPulse> taken = pulses.take_before(end_us);
+    compare_pulses(tick.tick, taken, gait.pulses(), note);
+    if (motion != nullptr) {
+      motion->check(tick, taken);
+    }
     result.servo_commands += gait.pulses().size();
     ++result.ticks;
     if (progress) {
@@ -287,13 +291,14 @@ Verification recompute(const Recording& recording, const RecordedGait& recorded,
 
 }  // namespace
 
-Verification verify(const Recording& recording, const std::function<void(std::uint32_t tick)>& progress) {
+Verification verify(const Recording& recording, const std::function<void(std::uint32_t tick)>& progress,
+                    MotionCheck* motion) {
   const RecordedGait gait(recording);
   if (recording.first_tick() != 0) {
     gait.refuse("tick " + std::to_string(recording.first_tick()) + " as the first one", "a recording from tick 0 on");
   }
   try {
-    return recompute(recording, gait, progress);
+    return recompute(recording, gait, progress, motion);
   } catch (const KernelRefusal& refusal) {
     gait.refuse(std::string("values that the kernel refuses: ") + refusal.what(), "a recording of this version");
   }

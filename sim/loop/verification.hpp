@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/loop/difference.hpp"
+#include "sim/loop/motion_check.hpp"
 #include "sim/record/recording.hpp"
 
 namespace proleg::sim {
@@ -24,10 +25,11 @@ struct Verification {
 };
 
 /// Recomputes every set-point, internal value and servo command of a recording with this program's core, from the
-/// recorded start values, changes, contacts, losses and restarts; no world is simulated. Throws InputError for a
-/// recording that does not start at tick 0, or has an algorithm that this program does not have. progress: called with
-/// every tick.
+/// recorded start values, changes, contacts, losses and restarts. Throws InputError for a recording that does not start
+/// at tick 0, or has an algorithm that this program does not have. progress: called with every tick. motion: of the
+/// same recording; checks the same ticks. Null: no world is simulated.
 [[nodiscard]] Verification verify(const Recording& recording,
-                                  const std::function<void(std::uint32_t tick)>& progress = {});
+                                  const std::function<void(std::uint32_t tick)>& progress = {},
+                                  MotionCheck* motion = nullptr);
 
 }  // namespace proleg::sim

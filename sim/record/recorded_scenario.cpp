@@ -1,5 +1,8 @@
 #include "sim/record/recorded_scenario.hpp"
 
+#include <sys/utsname.h>
+
+#include <fstream>
 #include <string_view>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -35,6 +38,46 @@ std::string user_algorithms_text(const KernelConfiguration& kernel) {
     }
   }
   return text;
+}
+
+std::string processor_text() {
+  utsname system{};
+  std::string text = uname(&system) == 0 ? static_cast<const char*>(system.machine) : "unknown";
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (const std::size_t colon = line.find(':'); line.starts_with("model name") && colon != std::string::npos) {
+      text += ", " + one_line(trimmed(std::string_view(line).substr(colon + 1)));
+      break;
+    }
+  }
+  return text;
+}
+
+OverrideWords recorded_overrides(const Recording& recording) {
+  OverrideWords words;
+  for (const OverrideDeclaration& declaration : override_declarations()) {
+    if (const std::string word = recording.run_value("override_" + std::string(declaration.name)); !word.empty()) {
+      words.*declaration.word = word;
+    }
+  }
+  return words;
+}
+
+std::vector<std::string> other_program(const Recording& recording, const std::string& build_id) {
+  std::vector<std::string> sentences;
+  if (const std::string recorded = recording.run_value("build_id"); recorded != build_id) {
+    sentences.push_back("the recording was made by " + recorded + ", this program is " + build_id);
+  }
+  const std::string recorded = recording.run_value("processor");
+  if (recording.run_value("engine") == name_of(PhysicsEngine::reduced)) {
+    return sentences;
+  }
+  if (recorded.empty()) {
+    sentences.emplace_back("the recording does not name its processor");
+  } else if (const std::string present = processor_text(); recorded != present) {
+    sentences.push_back("the recording was made on " + recorded + ", this computer is " + present);
+  }
+  return sentences;
 }
 
 std::vector<std::string> other_algorithms(const Recording& recording) {

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "sim/record/motion.hpp"
 #include "sim/record/recorded_run.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/record/run_tables.hpp"
@@ -149,10 +151,16 @@ class Recorder::Storage {
       }
     }
     write_sensors(sample);
+    if (sample.has_world) {
+      add_motion(sample);
+    }
     commit_if_due();
   }
 
   void finish(const std::vector<std::pair<std::string, std::string>>& summary) {
+    if (last_unhashed_) {
+      write_motion_hash(*last_unhashed_);
+    }
     Statement result(database_, "INSERT INTO result(name, value) VALUES(?1, ?2)");
     for (const auto& [name, value] : summary) {
       result.run(std::string_view(name), std::string_view(value));
@@ -185,6 +193,19 @@ class Recorder::Storage {
     std::uint32_t joint;
     std::uint32_t index;
   };
+
+  void add_motion(const TickSample& sample) {
+    motion_hash_.append(sample.link_poses, sample.object_poses);
+    last_unhashed_ = sample.tick;
+    if (ends_second(sample.tick, scenario_.kernel.tick_period_us)) {
+      write_motion_hash(sample.tick);
+    }
+  }
+
+  void write_motion_hash(std::uint32_t tick) {
+    insert_motion_.run(tick, std::string_view(motion_hash_.hex()));
+    last_unhashed_.reset();
+  }
 
   void write_sensors(const TickSample& sample) {
     std::size_t position = 0;
@@ -264,6 +285,9 @@ class Recorder::Storage {
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
   Statement insert_event_{database_, "INSERT INTO module_event(time_us, joint, text) VALUES(?1, ?2, ?3)"};
+  Statement insert_motion_{database_, "INSERT INTO motion_hash VALUES(?1, ?2)"};
+  MotionHash motion_hash_;
+  std::optional<std::uint32_t> last_unhashed_;  ///< the last tick with a world, if the table has no hash until it
   bool closed_ = false;
   std::string failure_;  ///< the first error; empty without one
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();

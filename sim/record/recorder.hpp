@@ -41,6 +41,7 @@ struct TickSample {
   std::span<const double> sensor_values{};
   std::span<const std::uint8_t> measured_sensors{};
   std::span<const JointReadings> readings{};  ///< per joint, given to the kernels at k; empty: no algorithm reads them
+  bool has_world = false;                     ///< the poses are those of a simulated world
 };
 
 /// Writes a run into an SQLite file (tables: schema.hpp) while it runs. Other programs may read the file at the same

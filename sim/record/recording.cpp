@@ -7,6 +7,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/kernel/kernel.hpp"
 #include "sim/record/recorded_run.hpp"
 #include "sim/record/recording_rows.hpp"
@@ -238,6 +239,21 @@ std::vector<RobotMove> Recording::moves() const {
   });
 }
 
+std::vector<RecordedMotionHash> Recording::motion_hashes() const {
+  return reading(path_, [&] {
+    std::vector<RecordedMotionHash> hashes;
+    // A recording of an older program of this format has no such table (schema.hpp).
+    if (!Statement(tables_->database, "SELECT 1 FROM sqlite_schema WHERE name = 'motion_hash'").step()) {
+      return hashes;
+    }
+    Statement row(tables_->database, "SELECT tick, hash FROM motion_hash ORDER BY tick");
+    while (row.step()) {
+      hashes.push_back({natural(row, 0), row.text(1)});
+    }
+    return hashes;
+  });
+}
+
 std::vector<RecordedLosses> Recording::losses_in_parts(std::uint32_t parts) const {
   return reading(path_, [&] {
     std::vector<RecordedLosses> losses;
@@ -412,6 +428,11 @@ std::optional<Loss> LossReader::next() {
     return Loss{natural(*row_, 0), recording_.joint_number(*row_, 1), static_cast<std::uint8_t>(channel),
                 recording_.joint_number(*row_, 3)};
   });
+}
+
+std::string name_of(const MotionDifference& difference, const Recording& recording) {
+  return difference.is_object ? "object " + in_quotes(recording.objects()[difference.part])
+                              : "link " + in_quotes(recording.links()[difference.part]);
 }
 
 std::string remark_on_unfinished_run(const Recording& recording) {

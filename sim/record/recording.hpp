@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/record/motion.hpp"
 #include "sim/record/recorded_run.hpp"
 #include "sim/robot/servo.hpp"
 #include "sim/scenario/losses.hpp"
@@ -60,6 +61,10 @@ class Recording {
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
   /// The moves by ascending tick; those of a tick in their order.
   [[nodiscard]] std::vector<RobotMove> moves() const;
+  /// Whether the poses are those of a simulated world: `proleg drive` records the start of a robot that it cannot see.
+  [[nodiscard]] bool has_world() const { return run_value("program") != "drive"; }
+  /// The recorded hashes of the motion by ascending tick. Empty for an older recording, and without a simulated world.
+  [[nodiscard]] std::vector<RecordedMotionHash> motion_hashes() const;
   /// The losses, summed over up to so many parts of the run of equal length; parts without losses are left out. Reads
   /// at most the first million losses.
   [[nodiscard]] std::vector<RecordedLosses> losses_in_parts(std::uint32_t parts) const;
@@ -135,6 +140,9 @@ class LossReader {
   const Recording& recording_;
   std::unique_ptr<Statement> row_;
 };
+
+/// "link 'Tail'" or "object 'ball'".
+[[nodiscard]] std::string name_of(const MotionDifference& difference, const Recording& recording);
 
 /// One line for the user if the run was interrupted or is still running; empty if it is finished.
 [[nodiscard]] std::string remark_on_unfinished_run(const Recording& recording);

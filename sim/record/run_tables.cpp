@@ -42,6 +42,9 @@ void write_run(Database& database, const Scenario& scenario, const std::string& 
   put("program", program);
   put("build_id", build_id);
   put("core_fingerprint", hexadecimal(core_fingerprint, 8));
+  if (scenario.environment.engine != PhysicsEngine::reduced) {  // whose motion is the same on every processor
+    put("processor", processor_text());
+  }
   if (const std::string algorithms = user_algorithms_text(scenario.kernel); !algorithms.empty()) {
     put("user_algorithms", algorithms);
   }

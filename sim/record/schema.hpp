@@ -161,6 +161,15 @@ CREATE TABLE object_pose(
   PRIMARY KEY(tick, object)
 ) STRICT, WITHOUT ROWID;
 
+CREATE TABLE motion_hash(
+  -- Of a simulated world: SHA-256 over all poses of links and then of objects, of ticks 0 to tick, in the order of pose
+  -- and object_pose, eight bytes a number. A row where a second of the run ends, and one at its end. The same program
+  -- gives the same on the same processor (both in the table run). A recording of an older program of this format has
+  -- no such table.
+  tick INTEGER PRIMARY KEY,
+  hash TEXT NOT NULL
+) STRICT;
+
 CREATE TABLE contact(
   -- Touch sensors under a link as the modules were given them at SYNC tick, tick * tick_us / 1000000 seconds after the
   -- start: the state frames labelled tick + 1 say the same. rear is nearer to the tail, front nearer to the head.

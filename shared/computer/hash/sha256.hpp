@@ -3,6 +3,7 @@
 #include <openssl/types.h>
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,12 @@ class ValueHash {
     }
   }
   void append(std::span<const std::int32_t> values);
+  /// The eight bytes of a number, little-endian.
+  void append_number(double number) {
+    const auto bits = std::bit_cast<std::uint64_t>(number);
+    append(static_cast<std::int32_t>(bits));
+    append(static_cast<std::int32_t>(bits >> 32U));
+  }
 
   /// Hash of all values so far, 64 lower-case hexadecimal digits. More values may follow.
   [[nodiscard]] std::string hex() const;

@@ -392,6 +392,63 @@ TEST_F(Replay, ReportsResultsWhoseHashesAreNotThoseOfTheTables) {
   EXPECT_EQ(result["recorded_servo_hash"], "abc");
 }
 
+// A pose that another world would have: the commands are the recorded ones.
+TEST_F(Replay, SaysWhereTheMotionDepartsAlthoughAllCommandsAreEqual) {
+  const std::string recording = file("run.proleg").string();
+  const Json simulated = succeed(
+      {"simulate", scenario("coupled"), "--seconds", "2.5", "--move", "0.5,0,0.1,30@120", "--record", recording});
+  const Json equal = succeed({"replay", recording});
+  EXPECT_EQ(equal["differences"], 0);
+  EXPECT_EQ(equal["motion"]["compared_ticks"], 250);
+  EXPECT_EQ(equal["motion"]["table_hashes"], 3);
+  EXPECT_EQ(equal["motion"]["hash"], simulated["motion_hash"]);
+  EXPECT_EQ(equal["motion"]["recorded_hash"], simulated["motion_hash"]);
+  Database(recording, SQLITE_OPEN_READWRITE).execute("UPDATE pose SET z_m = z_m + 1e-15 WHERE tick > 130 AND link = 3");
+  const Finished finished = proleg({"replay", recording, "--json"});
+  EXPECT_EQ(finished.status, 1);
+  const Json result(finished.out);
+  EXPECT_EQ(result["differences"], 119);
+  EXPECT_EQ(result["command_differences"], 0);
+  EXPECT_EQ(result["same_hashes"], Json("true"));
+  EXPECT_EQ(result["motion"]["first_tick"], 131);
+  EXPECT_NE(finished.err.find("the motion departs from that of this program: at tick 131 (1.32 s), link '"),
+            std::string::npos)
+      << finished.err;
+  EXPECT_EQ(finished.err.find("the recording was made"), std::string::npos) << finished.err;
+  EXPECT_EQ(succeed({"replay", recording, "--commands"})["differences"], 0);
+  Database(recording, SQLITE_OPEN_READWRITE).execute("UPDATE run SET value = 'z80' WHERE key = 'processor'");
+  EXPECT_NE(proleg({"replay", recording}).err.find("the recording was made on z80, this computer is "),
+            std::string::npos);
+}
+
+TEST_F(Replay, ChecksTheHashesOfTheMotion) {
+  const std::string recording = file("run.proleg").string();
+  (void)succeed({"simulate", scenario("coupled"), "--seconds", "0.5", "--record", recording});
+  EXPECT_EQ(succeed({"replay", recording})["motion"]["table_hashes"], 1) << "a run shorter than a second";
+  for (const char* damage : {"UPDATE motion_hash SET hash = 'abc'", "UPDATE motion_hash SET tick = 4000"}) {
+    Database(recording, SQLITE_OPEN_READWRITE).execute(damage);
+    const Finished finished = proleg({"replay", recording, "--json"});
+    EXPECT_EQ(finished.status, 1) << damage;
+    EXPECT_EQ(Json(finished.out)["differences"], 0) << damage;
+    EXPECT_NE(finished.err.find("expected an undamaged table 'motion_hash'"), std::string::npos) << finished.err;
+  }
+  Database(recording, SQLITE_OPEN_READWRITE).execute("DROP TABLE motion_hash; DELETE FROM run WHERE key = 'processor'");
+  const Json old = succeed({"replay", recording});
+  EXPECT_EQ(old["motion"]["table_hashes"], 0);
+  EXPECT_EQ(old["motion"]["compared_ticks"], 50);
+}
+
+TEST_F(Replay, TheWorldOfModulesIsComparedUntilOneRestarts) {
+  const std::string recording = file("run.proleg").string();
+  const Json run = succeed({"hil", scenario("coupled"), "--seconds", "2", "--reset", "3@100", "--record", recording});
+  const Json whole = succeed({"hil", scenario("coupled"), "--seconds", "2", "--record", file("whole.proleg").string()});
+  const Json replayed = succeed({"replay", recording});
+  EXPECT_EQ(replayed["motion"]["compared_ticks"], 100);
+  EXPECT_EQ(replayed["motion"]["not_compared"], "a module restarted at tick 100");
+  EXPECT_EQ(succeed({"replay", file("whole.proleg").string()})["motion"]["hash"], whole["motion_hash"]);
+  EXPECT_EQ(whole["motion_hash"], succeed({"simulate", scenario("coupled"), "--seconds", "2"})["motion_hash"]);
+}
+
 TEST_F(Replay, RefusesAFileThatIsNoRecording) {
   expect_refused({"replay", file("none").string(), "--verify"}, {"no such file"});
   expect_refused({"replay", scenario("uniform"), "--verify"}, {"not a database"});

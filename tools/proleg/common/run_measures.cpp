@@ -95,11 +95,13 @@ void add_measures_option(CommandLine& command_line, bool& all) {
   command_line.add_flag("--measures", all, "print all measures of the run; --json always has all");
 }
 
-void print_hashes(const std::string& setpoints, const std::string& servos, const std::optional<std::string>& world) {
+void print_hashes(const std::string& setpoints, const std::string& servos, const std::optional<std::string>& world,
+                  const std::string& motion) {
   std::printf("set-point hash    %s\n", setpoints.c_str());
   std::printf("servo hash        %s\n", servos.c_str());
   std::printf("world hash        %s\n",
               world ? world->c_str() : "none: the two above are of commands, and may be the same on another floor");
+  std::printf("motion hash       %s\n", motion.c_str());
 }
 
 void print_measures(const sim::MeasureValues& values, bool all) {

@@ -48,7 +48,8 @@ void print_warning_on_servos(const std::string& program, const RunMeasures& meas
 void add_measures_option(CommandLine& command_line, bool& all);
 
 /// Prints the hashes of a run; world: nothing if the engine has none.
-void print_hashes(const std::string& setpoints, const std::string& servos, const std::optional<std::string>& world);
+void print_hashes(const std::string& setpoints, const std::string& servos, const std::optional<std::string>& world,
+                  const std::string& motion);
 
 /// Prints measures that the run defines on standard output, one in each line: all, or the six that say most.
 void print_measures(const sim::MeasureValues& values, bool all);

@@ -99,7 +99,7 @@ json recording_document(const sim::Recording& recording) {
           {"marks", marks_json(recording)}};
 }
 
-bool has_path(const sim::Recording& recording) { return recording.run_value("program") != "drive"; }
+bool has_path(const sim::Recording& recording) { return recording.has_world(); }
 
 json recorded_parameters_document(const sim::Recording& recording, const sim::Scenario& scenario) {
   ParameterTable table(scenario, scenario);

@@ -112,6 +112,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.setpoint_hash = loop.setpoint_hash().hex();
   result.servo_hash = loop.servo_hash().hex();
   result.world_hash = loop.world_hash();
+  result.motion_hash = loop.motion_hash();
   result.measures = measures_of(loop.plant().meter());
   loop.finish_watch();
   const sim::MotionWatch& watch = loop.motion_watch();

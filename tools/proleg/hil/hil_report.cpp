@@ -116,6 +116,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"setpoint_hash", result.setpoint_hash},
           {"servo_hash", result.servo_hash},
           {"world_hash", result.world_hash},
+          {"motion_hash", result.motion_hash},
           {"differences", result.differences},
           {"first_difference", result.first_difference},
           {"dropped_changes", dropped_changes},
@@ -180,7 +181,7 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
     std::printf("problem           %s, tick %u: %s\n", joint_and_node(run, problem.joint).c_str(), problem.tick,
                 problem.text.substr(0, problem.text.find('\n')).c_str());
   }
-  print_hashes(result.setpoint_hash, result.servo_hash, result.world_hash);
+  print_hashes(result.setpoint_hash, result.servo_hash, result.world_hash, result.motion_hash);
   std::printf(
       "differences       %llu against the gait in memory%s\n", count(result.differences),
       result.first_fault_tick
@@ -214,6 +215,7 @@ std::vector<std::pair<std::string, std::string>> hil_summary(const ScenarioRun& 
   if (result.world_hash) {
     summary.emplace_back("world_hash", *result.world_hash);
   }
+  summary.emplace_back("motion_hash", result.motion_hash);
   append_results(result.measures, run.scenario.robot, summary);
   append_sensors(result.sensors, summary);
   return summary;

@@ -41,6 +41,7 @@ struct HilResult {
   std::string setpoint_hash;
   std::string servo_hash;
   std::optional<std::string> world_hash;
+  std::string motion_hash;
   std::vector<std::uint32_t> clipped_ticks;    ///< number of clipped ticks by joint
   std::vector<std::uint32_t> dropped_changes;  ///< ticks of the changes that did not take effect
   std::vector<RestartReport> restarts;

@@ -7,6 +7,7 @@
 
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/loop/ramp_in.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "tools/proleg/common/result_folder.hpp"
 
@@ -39,46 +40,20 @@ Mirror::Mirror(const sim::Scenario& scenario)
   remember_angles();
 }
 
-/// Some ticks that are not recorded: the way of each servo at 90 degrees a second, and half a second at rest.
-void Mirror::ramp_in(std::span<const sim::ServoPulse> first_pulses) {
-  const std::uint32_t tick_us = scenario_.kernel.tick_period_us;
-  const std::int32_t step =
-      std::max(1, static_cast<std::int32_t>(servo_quarter_turn * std::uint64_t{tick_us} / 1'000'000));
-  const std::uint32_t resting_ticks = 500'000 / tick_us;
-  std::vector<std::int32_t> goals(plant_.servo_commands().begin(), plant_.servo_commands().end());
-  for (std::size_t i = std::min(first_pulses.size(), goals.size()); i-- > 0;) {
-    goals[first_pulses[i].joint] = first_pulses[i].command;
-  }
-  std::vector<std::int32_t> commands(plant_.servo_commands().begin(), plant_.servo_commands().end());
-  std::vector<sim::ServoPulse> pulses(goals.size());
-  for (std::uint32_t rested = 0; rested < resting_ticks; rested += commands == goals ? 1U : 0U) {
-    for (std::uint32_t joint = 0; joint < goals.size(); ++joint) {
-      commands[joint] = std::clamp(goals[joint], commands[joint] - step, commands[joint] + step);
-      pulses[joint] = {0, joint, commands[joint]};
-    }
-    player_.advance(0, pulses);
-  }
-  angles_.clear();
-  next_tick_ = 0;
-  remember_angles();
-}
-
 sim::TickSample Mirror::follow(const sim::TickSample& real) {
   if (real.tick == 0) {
-    ramp_in(real.servo_pulses);
+    sim::ramp_in(scenario_, plant_, player_, real.servo_pulses);
+    angles_.clear();
+    next_tick_ = 0;
+    remember_angles();
   }
   player_.advance(real.tick, real.servo_pulses);
+  hash_.append(plant_);
   remember_angles();
   compare();
   sim::TickSample sample = real;
-  sample.link_poses = plant_.link_poses();
-  sample.joint_angles = plant_.joint_angles();
-  sample.motor_torques = plant_.motor_torques();
-  sample.servo_currents = plant_.servo_currents();
-  sample.contact_forces = plant_.contact_forces();
-  sample.object_poses = plant_.object_poses();
-  sample.sensor_values = plant_.sensors().values();
-  sample.measured_sensors = plant_.sensors().measured();
+  plant_.add_to(sample);
+  sample.servo_commands = real.servo_commands;
   return sample;
 }
 
@@ -173,7 +148,8 @@ std::vector<PlannedOutput> MirroredRun::planned(const ScenarioOptions& options, 
 void MirroredRun::finish(double seconds, const GaitCheck& check) {
   recorder_->finish({{"simulated_s", exact_text(seconds)},
                      {"setpoint_hash", check.setpoint_hash().hex()},
-                     {"servo_hash", check.servo_hash().hex()}});
+                     {"servo_hash", check.servo_hash().hex()},
+                     {"motion_hash", mirror_.motion_hash()}});
   write_file(picture_of(recording_), mirror_.picture(title_, seconds));
 }
 
@@ -187,7 +163,11 @@ Json MirroredRun::json() const {
                    {"root_mean_square_deg", difference.root_mean_square},
                    {"largest_deg", difference.largest}});
   }
-  return {{"recording", recording_}, {"picture", picture_of(recording_).string()}, {"joints", joints}};
+  return {{"recording", recording_},
+          {"picture", picture_of(recording_).string()},
+          {"motion_hash", mirror_.motion_hash()},
+          {"motion_compared", false},
+          {"joints", joints}};
 }
 
 void MirroredRun::print() const {
@@ -202,6 +182,8 @@ void MirroredRun::print() const {
                   difference.root_mean_square, difference.largest);
     }
   }
+  std::printf("%-17s %s; the verdict is on commands: a real robot has no hash of its motion\n", "mirror, motion",
+              mirror_.motion_hash().c_str());
   std::printf("%-17s %s, %s\n", "mirror", recording_.c_str(), picture_of(recording_).c_str());
 }
 

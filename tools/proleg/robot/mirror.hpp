@@ -31,6 +31,9 @@ class Mirror {
   /// currents and forces. Valid until the next call. Throws PhysicsError as Plant does.
   sim::TickSample follow(const sim::TickSample& real);
 
+  /// Hash of the motion of the simulated robot (sim/record/motion.hpp).
+  [[nodiscard]] std::string motion_hash() const { return hash_.motion_hex(); }
+
   /// A module has measured this angle, in rad, at SYNC `tick`.
   void note_measured(std::uint32_t tick, unsigned joint, double angle);
 
@@ -52,13 +55,13 @@ class Mirror {
     unsigned joint;
     double angle;
   };
-  void ramp_in(std::span<const sim::ServoPulse> first_pulses);
   void remember_angles();
   void compare();
 
   const sim::Scenario& scenario_;
   sim::Plant plant_;
   sim::PulsePlayer player_;
+  sim::WorldHash hash_;
   /// The newest ticks, by joint: rad, at their SYNCs. A measurement waits for its tick, and comes a few ticks after it.
   std::deque<std::vector<double>> angles_;
   std::uint32_t next_tick_ = 0;  ///< after the last of angles_

@@ -34,6 +34,7 @@ struct Result {
   std::string setpoint_hash;
   std::string servo_hash;
   std::optional<std::string> world_hash;
+  std::string motion_hash;
   RunMeasures measures;
 
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
@@ -67,6 +68,7 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
           simulation.setpoint_hash().hex(),
           simulation.servo_hash().hex(),
           simulation.world_hash(),
+          simulation.motion_hash(),
           measures_of(simulation.plant().meter())};
 }
 
@@ -80,6 +82,7 @@ void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const 
                     {"setpoint_hash", result.setpoint_hash},
                     {"servo_hash", result.servo_hash},
                     {"world_hash", result.world_hash},
+                    {"motion_hash", result.motion_hash},
                     {"real_time_factor", result.real_time_factor()},
                     {"contacts_mean", result.contacts_mean},
                     {"solver_messages", result.solver_messages},
@@ -104,7 +107,7 @@ void print_table(const ScenarioOptions& options, const Result& result, const std
   if (options.losses) {
     std::printf("lost frames       %s\n", losses_text(result.lost_frames, result.receptions).c_str());
   }
-  print_hashes(result.setpoint_hash, result.servo_hash, result.world_hash);
+  print_hashes(result.setpoint_hash, result.servo_hash, result.world_hash, result.motion_hash);
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }

@@ -39,6 +39,7 @@ std::vector<std::pair<std::string, std::string>> results_of(const sim::Simulatio
   if (const std::optional<std::string> hash = simulation.world_hash()) {
     results.emplace_back("world_hash", *hash);
   }
+  results.emplace_back("motion_hash", simulation.motion_hash());
   append_results(measures_of(plant.meter()), scenario.robot, results);
   append_sensors(plant.sensors().summaries(), results);
   return results;

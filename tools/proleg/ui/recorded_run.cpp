@@ -248,6 +248,14 @@ std::vector<std::string> RecordedRun::joint_names() const {
   return names;
 }
 
+bool RecordedRun::has_world() {
+  return with_recording([](const sim::Recording& recording) { return recording.has_world(); });
+}
+
+std::string RecordedRun::part_name(const sim::MotionDifference& difference) {
+  return with_recording([&](const sim::Recording& recording) { return name_of(difference, recording); });
+}
+
 json RecordedRun::documents() {
   return with_recording([this](const sim::Recording& recording) {
     json document = recording_document(recording);

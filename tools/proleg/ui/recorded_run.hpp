@@ -97,6 +97,10 @@ class RecordedRun {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Names of the joints, from the head on.
   [[nodiscard]] std::vector<std::string> joint_names() const;
+  /// Whether the poses are those of a simulated world.
+  [[nodiscard]] bool has_world();
+  /// The name of what moved otherwise. Throws as Recording does.
+  [[nodiscard]] std::string part_name(const sim::MotionDifference& difference);
   [[nodiscard]] std::uint32_t tick_period_us() const { return tick_period_us_; }
   /// First and last tick of the file, as far as it had grown when it was last read.
   [[nodiscard]] std::uint32_t first_tick() const { return first_tick_; }

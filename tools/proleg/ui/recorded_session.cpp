@@ -21,7 +21,8 @@ constexpr std::uint32_t ticks_at_once = 128;
 
 }  // namespace
 
-RunComparison::RunComparison(RecordedRun& run, RecordedRun& other) : runs_{&run, &other} {
+RunComparison::RunComparison(RecordedRun& run, RecordedRun& other)
+    : runs_{&run, &other}, has_motion_(run.has_world() && other.has_world()) {
   const auto require_same = [&](std::uint64_t found, std::uint64_t expected, const std::string& unit) {
     if (found != expected) {
       throw InputError(other.path().filename().string(), 0, std::to_string(found) + ' ' + unit,
@@ -44,26 +45,27 @@ std::uint32_t RunComparison::last_tick() const { return std::min(runs_[0]->last_
 
 bool RunComparison::compare_some() {
   const std::uint32_t common = last_tick() - first_tick() + 1;
-  if (damage_ || difference_ || compared_ >= common) {
+  if (damage_ || is_decided() || compared_ >= common) {
     return false;
   }
   const std::uint32_t from = first_tick() + compared_;
   const std::uint32_t to = from + std::min(ticks_at_once, common - compared_) - 1;
-  setpoints_.clear();
-  runs_[0]->read_ticks(from, to, [this](const sim::RecordedTick& tick) {
-    setpoints_.insert(setpoints_.end(), tick.setpoints.begin(), tick.setpoints.end());
-  });
-  auto expected = setpoints_.begin();
-  runs_[1]->read_ticks(from, to, [&](const sim::RecordedTick& tick) {
-    const auto [found, differs] = std::mismatch(tick.setpoints.begin(), tick.setpoints.end(), expected);
-    if (found != tick.setpoints.end() && !difference_) {
-      const auto joint = static_cast<std::size_t>(found - tick.setpoints.begin());
-      difference_ = {tick.tick, runs_[0]->joint_names()[joint]};
-    }
-    expected += static_cast<std::ptrdiff_t>(tick.setpoints.size());
-  });
+  ticks_.clear();
+  runs_[0]->read_ticks(from, to, [this](const sim::RecordedTick& tick) { ticks_.push_back(tick); });
+  runs_[1]->read_ticks(from, to, [&](const sim::RecordedTick& tick) { compare(ticks_[tick.tick - from], tick); });
   compared_ += to - from + 1;
-  return !difference_ && compared_ < common;
+  return !is_decided() && compared_ < common;
+}
+
+void RunComparison::compare(const sim::RecordedTick& tick, const sim::RecordedTick& other) {
+  const auto joint = std::ranges::mismatch(tick.setpoints, other.setpoints).in1 - tick.setpoints.begin();
+  if (!difference_ && joint < std::ssize(tick.setpoints)) {
+    difference_ = {tick.tick, runs_[0]->joint_names()[static_cast<std::size_t>(joint)]};
+  }
+  if (has_motion_ && !moved_) {
+    moved_ = sim::compare_motion(tick.tick, tick.link_poses, other.link_poses, tick.object_poses, other.object_poses);
+    moved_part_ = moved_ ? runs_[0]->part_name(*moved_) : "";
+  }
 }
 
 json RunComparison::document() {
@@ -76,11 +78,13 @@ json RunComparison::document() {
   if (difference_) {
     difference = {{"tick", difference_->tick}, {"joint", difference_->joint}};
   }
-  return {{"first_tick", first_tick()},
-          {"last_tick", last_tick()},
-          {"compared", compared_},
-          {"difference", std::move(difference)},
-          {"damage", damage_ ? json(*damage_) : json()},
+  json motion;
+  if (has_motion_) {
+    motion = {{"difference", moved_ ? json{{"tick", moved_->tick}, {"part", moved_part_}} : json()}};
+  }
+  return {{"first_tick", first_tick()},  {"last_tick", last_tick()},
+          {"compared", compared_},       {"difference", std::move(difference)},
+          {"motion", std::move(motion)}, {"damage", damage_ ? json(*damage_) : json()},
           {"head_m", std::move(head)}};
 }
 

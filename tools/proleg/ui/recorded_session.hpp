@@ -19,7 +19,8 @@
 
 namespace proleg::tools {
 
-/// Whether two recordings have the same set-points, bit for bit, in the ticks that both have.
+/// Whether two recordings have the same set-points, and their simulated worlds the same motion, bit for bit, in the
+/// ticks that both have.
 class RunComparison {
  public:
   /// Both must outlive this. Throws InputError if they cannot be compared tick by tick.
@@ -29,8 +30,8 @@ class RunComparison {
   [[nodiscard]] bool is_of(const RecordedRun& run, const RecordedRun& other) const {
     return runs_[0] == &run && runs_[1] == &other;
   }
-  /// Compares some further ticks; false: all that are known are compared, or a difference was found. Throws as
-  /// Recording does.
+  /// Compares some further ticks; false: all that are known are compared, or the first differences of both kinds were
+  /// found. Throws as Recording does.
   bool compare_some();
   /// Ends the comparison, because a file is damaged.
   void end(const std::string& why) { damage_ = why; }
@@ -43,15 +44,20 @@ class RunComparison {
     std::string joint;
   };
 
+  void compare(const sim::RecordedTick& tick, const sim::RecordedTick& other);
+  [[nodiscard]] bool is_decided() const { return difference_ && (moved_ || !has_motion_); }
   [[nodiscard]] std::uint32_t first_tick() const;
   /// May be before first_tick(): no tick is in both.
   [[nodiscard]] std::uint32_t last_tick() const;
 
   std::array<RecordedRun*, 2> runs_;
   std::uint32_t compared_ = 0;  ///< ticks
+  bool has_motion_;             ///< both robots were simulated
   std::optional<Difference> difference_;
+  std::optional<sim::MotionDifference> moved_;
+  std::string moved_part_;
   std::optional<std::string> damage_;
-  std::vector<std::int32_t> setpoints_;  ///< of some ticks of the first run
+  std::vector<sim::RecordedTick> ticks_;  ///< of the first run, a few
 };
 
 struct RecordedSessionOptions {

@@ -6,6 +6,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/record/recorded_scenario.hpp"
+#include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/document/recording_document.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
 
@@ -15,22 +16,12 @@ namespace {
 constexpr std::uint32_t piece_ticks = 256;  // that are read from the file at once
 constexpr std::size_t max_losses = 10'000'000;
 
-sim::OverrideWords recorded_overrides(const sim::Recording& recording) {
-  sim::OverrideWords words;
-  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
-    if (const std::string word = recording.run_value("override_" + std::string(declaration.name)); !word.empty()) {
-      words.*declaration.word = word;
-    }
-  }
-  return words;
-}
-
 }  // namespace
 
 RepeatedRun::RepeatedRun(const std::filesystem::path& path, std::uint32_t last_tick)
     : recording_(std::make_unique<sim::Recording>(path)),
       last_tick_(last_tick),
-      overrides_(recorded_overrides(*recording_)),
+      overrides_(sim::recorded_overrides(*recording_)),
       scenario_(scenario_of(*recording_, sim::read_overrides(overrides_))) {
   require_simulation();
   read_inputs();
@@ -123,14 +114,15 @@ void RepeatedRun::check(const sim::TickSample& sample) {
     expected_.clear();
     recording_->read_ticks(sample.tick, std::min(last_tick_, sample.tick + piece_ticks - 1),
                            [this](const sim::RecordedTick& tick) {
-                             expected_.push_back({tick.setpoints, tick.link_poses.front()});
+                             expected_.push_back({tick.setpoints, tick.link_poses, tick.object_poses});
                            });
   }
   const Expected& expected = expected_[sample.tick - expected_from_];
-  const sim::Pose& head = sample.link_poses.front();
-  if (!std::ranges::equal(sample.setpoints, expected.setpoints) || head.position != expected.head.position ||
-      head.orientation.coeffs() != expected.head.orientation.coeffs()) {
+  const std::optional<sim::MotionDifference> moved =
+      sim::compare_motion(sample.tick, sample.link_poses, expected.links, sample.object_poses, expected.objects);
+  if (moved || !std::ranges::equal(sample.setpoints, expected.setpoints)) {
     first_difference_ = sample.tick;
+    moved_ = moved;
   }
 }
 
@@ -139,14 +131,17 @@ std::string RepeatedRun::verdict() const {
       left_out_ == 0 ? "" : "; " + std::to_string(left_out_) + " later changes of the recording are left out";
   if (!first_difference_) {
     return name() + ": computed again up to tick " + std::to_string(last_tick_) +
-           ", with the same set-points and places of the head, bit for bit" + later;
+           ", with the same set-points and the same motion of all links, bit for bit" + later;
   }
-  std::string other;
+  std::string other = moved_ ? "; " + sim::name_of(*moved_, *recording_) + " is elsewhere" : "; the set-points differ";
+  for (const std::string& sentence : sim::other_program(*recording_, build_id)) {
+    other += "; " + one_line(sentence);
+  }
   for (const std::string& sentence : sim::other_algorithms(*recording_)) {
     other += "; " + one_line(sentence);
   }
   return name() + ": found other values than the recorded ones from tick " + std::to_string(*first_difference_) +
-         " on, expected the same: it was recorded by " + recording_->run_value("build_id") + other + later;
+         " on, expected the same" + other + later;
 }
 
 }  // namespace proleg::tools

@@ -51,7 +51,8 @@ class RepeatedRun {
   /// The parts of a recorded tick that would differ first.
   struct Expected {
     std::vector<std::int32_t> setpoints;
-    sim::Pose head;
+    std::vector<sim::Pose> links;
+    std::vector<sim::Pose> objects;
   };
 
   void require_simulation() const;
@@ -71,6 +72,7 @@ class RepeatedRun {
   std::vector<Expected> expected_;  ///< of the next ticks
   std::uint32_t expected_from_ = 0;
   std::optional<std::uint32_t> first_difference_;
+  std::optional<sim::MotionDifference> moved_;  ///< in that tick
 };
 
 }  // namespace proleg::tools

@@ -414,7 +414,8 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   const sim::Simulation& simulation = live_->simulation();
   return {{"text", text + " --seconds " + exact_text(simulation.time_s())},
           {"setpoint_hash", simulation.setpoint_hash().hex()},
-          {"servo_hash", simulation.servo_hash().hex()}};
+          {"servo_hash", simulation.servo_hash().hex()},
+          {"motion_hash", simulation.motion_hash()}};
 }
 
 void SimulatedSession::tick() {

@@ -117,6 +117,7 @@ interface Command {
   text?: string;
   setpoint_hash?: string;
   servo_hash?: string;
+  motion_hash?: string;
 }
 
 function CommandLine({ app }: { app: Stores<'operations'> }) {
@@ -137,8 +138,9 @@ function CommandLine({ app }: { app: Stores<'operations'> }) {
       </pre>
       {result?.setpoint_hash !== undefined && (
         <p class="hint">
-          It prints what this run has had until now: set-point hash <code data-testid="setpoint-hash">{result.setpoint_hash}</code>, servo hash{' '}
-          <code data-testid="servo-hash">{result.servo_hash}</code>.
+          It prints what this run has had until now. Commands: set-point hash <code data-testid="setpoint-hash">{result.setpoint_hash}</code>,
+          servo hash <code data-testid="servo-hash">{result.servo_hash}</code>. Motion, on the same program and processor: motion hash{' '}
+          <code data-testid="motion-hash">{result.motion_hash}</code>.
         </p>
       )}
       <button type="button" class="primary" disabled={!command} onClick={() => void copy()}>

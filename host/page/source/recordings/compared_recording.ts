@@ -1,7 +1,7 @@
-// A second recording that is shown beside the first, and how their set-points differ.
+// A second recording that is shown beside the first, and how their set-points, motion, parameters and results differ.
 import { signal } from '@preact/signals-core';
 import type { Playback } from '../state/playback.js';
-import type { RunComparison } from '../wire/messages.js';
+import type { Documents, RunComparison, ServedRecordingDocument } from '../wire/messages.js';
 import type { RecordingClient } from './recording_client.js';
 import { RecordingReader } from './recording_reader.js';
 
@@ -16,6 +16,7 @@ export class ComparedRecording {
     private readonly first: RecordingClient,
     readonly reader: RecordingReader,
     comparison: RunComparison,
+    readonly parameters: Documents['parameters'],
     private readonly now: () => number,
   ) {
     this.comparison = signal(comparison);
@@ -26,11 +27,15 @@ export class ComparedRecording {
   static async open(first: RecordingClient, second: RecordingClient, now: () => number = () => performance.now()): Promise<ComparedRecording> {
     const comparison = await first.compare(second);
     const documents = await second.open();
-    return new ComparedRecording(first, new RecordingReader(second, documents, now), comparison, now);
+    return new ComparedRecording(first, new RecordingReader(second, documents, now), comparison, documents.parameters, now);
   }
 
   get name(): string {
     return this.reader.client.file;
+  }
+
+  get recording(): ServedRecordingDocument {
+    return this.reader.document.value;
   }
 
   get failure(): string | null {
@@ -59,21 +64,31 @@ export class ComparedRecording {
 }
 
 // Whether no further tick has to be compared.
-export function isDecided({ first_tick, last_tick, compared, difference, damage }: RunComparison): boolean {
-  return difference !== null || damage !== null || compared > last_tick - first_tick;
+export function isDecided({ first_tick, last_tick, compared, difference, motion, damage }: RunComparison): boolean {
+  return (difference !== null && motion?.difference !== null) || damage !== null || compared > last_tick - first_tick;
 }
 
-// One line that says which ticks both recordings have, and whether their set-points are the same.
+// One line that says which ticks both recordings have, and whether their set-points and their motion are the same.
 export function comparisonText(comparison: RunComparison): string {
-  const { first_tick, last_tick, compared, difference } = comparison;
+  const { first_tick, last_tick, compared, difference, motion } = comparison;
   const ticks = last_tick - first_tick + 1;
-  const both = `ticks ${first_tick} to ${last_tick} are in both`;
-  if (difference !== null) {
-    return `${both}; the set-points differ from tick ${difference.tick} on (${difference.joint})`;
+  const parts = [`ticks ${first_tick} to ${last_tick} are in both`];
+  const moved = motion?.difference ?? null;
+  if (motion === null) {
+    parts.push('the motion was not compared, because a robot was not simulated');
+  } else if (moved !== null) {
+    parts.push(`the motion departs from tick ${moved.tick} on (${moved.part})`);
   }
-  return compared < ticks
-    ? `${both}; comparing … ${Math.floor((100 * compared) / ticks)} %`
-    : `${both}; the same set-points in all ${ticks} ticks, bit for bit`;
+  if (difference !== null) {
+    parts.push(`the set-points differ from tick ${difference.tick} on (${difference.joint})`);
+  }
+  if (!isDecided(comparison)) {
+    parts.push(`comparing … ${Math.floor((100 * compared) / ticks)} %`);
+  } else if (compared >= ticks && (difference === null || (motion && moved === null))) {
+    const same = [motion && moved === null ? 'the same motion' : '', difference === null ? 'the same set-points' : ''];
+    parts.push(`${same.filter((text) => text !== '').join(' and ')} in all ${ticks} ticks, bit for bit`);
+  }
+  return parts.join('; ');
 }
 
 // The distances that the heads moved in the common ticks, as text.

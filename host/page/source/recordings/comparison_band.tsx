@@ -9,15 +9,17 @@ export function ComparisonBand({ opened }: { opened: OpenedRecording }) {
   }
   const { failure } = compared;
   const comparison = compared.comparison.value;
-  const { difference } = comparison;
+  const { difference, motion } = comparison;
+  const ticks = [difference?.tick, motion?.difference?.tick].filter((tick) => tick !== undefined);
+  const first = Math.min(...ticks);
   return (
     <div class={`band ${failure === null ? 'info' : 'lost'} comparison`} role="status" data-testid="comparison">
       <span>
         <strong>{compared.name}</strong> (dashed, <i class="mark ghost" /> translucent): {failure ?? `${comparisonText(comparison)}; ${wayText(comparison)}`}
       </span>
-      {difference !== null && (
-        <button type="button" onClick={() => opened.time.pick(difference.tick)} title="The time cursor goes to the first difference">
-          To tick {difference.tick}
+      {ticks.length > 0 && (
+        <button type="button" onClick={() => opened.time.pick(first)} title="The time cursor goes to the first difference">
+          To tick {first}
         </button>
       )}
       <button type="button" onClick={() => (opened.compared.value = null)} title="Ends the comparison (D)">

@@ -88,7 +88,7 @@ function OpenedView({ app, opened }: { app: RecordingsApp; opened: OpenedRecordi
         <div class="live-side">
           <JointTable app={opened} />
           <MarkList app={opened} />
-          <RecordingFacts app={opened} />
+          <RecordingFacts app={opened} second={opened.compared.value} />
         </div>
       </div>
     </>

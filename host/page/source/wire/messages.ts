@@ -136,12 +136,13 @@ export interface RecordingsDocument {
   alone: boolean; // there is no robot
 }
 
-// The value of `recording.compare`: the set-points of two recordings in the ticks that both have.
+// The value of `recording.compare`: set-points and motion of two recordings in the ticks that both have.
 export interface RunComparison {
   first_tick: number;
   last_tick: number;
   compared: number; // number of ticks that were compared until now
-  difference: { tick: number; joint: string } | null; // the first one
+  difference: { tick: number; joint: string } | null; // the first one of the set-points
+  motion?: { difference: { tick: number; part: string } | null } | null; // null: a robot was not simulated
   damage: string | null; // reason why the comparison cannot continue
   head_m: [number | null, number | null]; // distance that each head moved, in metres
 }

@@ -26,6 +26,21 @@ describe('the line about two recordings', () => {
     assert.match(comparisonText(different), /the set-points differ from tick 42 on \(J2\)$/);
   });
 
+  it('says where the motion departs, although all set-points are the same', () => {
+    const moved = { ...begun, compared: 200, motion: { difference: { tick: 57, part: "link 'Tail'" } } };
+    assert.match(comparisonText(moved), /the motion departs from tick 57 on \(link 'Tail'\); the same set-points in all 200 ticks, bit for bit$/);
+    const same = { ...begun, compared: 200, motion: { difference: null } };
+    assert.match(comparisonText(same), /the same motion and the same set-points in all 200 ticks, bit for bit$/);
+    assert.match(comparisonText({ ...begun, motion: null }), /the motion was not compared, because a robot was not simulated; comparing … 25 %$/);
+  });
+
+  it('goes on until the motion departs, too', () => {
+    const different = { ...begun, difference: { tick: 42, joint: 'J2' }, motion: { difference: null } };
+    assert.equal(isDecided(different), false);
+    assert.equal(isDecided({ ...different, motion: { difference: { tick: 43, part: "link '1Seg'" } } }), true);
+    assert.equal(isDecided({ ...different, motion: null }), true);
+  });
+
   it('says how far the heads moved, if that is known', () => {
     assert.equal(wayText(begun), 'head: 0.500 m, second not known');
   });

@@ -80,6 +80,27 @@ TEST_F(RunComparisonTest, FindsWhereAChangeTookEffect) {
   EXPECT_NE(document["head_m"][0], document["head_m"][1]);
 }
 
+TEST_F(RunComparisonTest, FindsWhereTheMotionDepartsAlthoughAllSetPointsAreTheSame) {
+  const fs::path one = record("a.proleg", 400);
+  const fs::path other = record("b.proleg", 400);
+  EXPECT_TRUE(compared(one, other)["motion"]["difference"].is_null());
+  change(other, "UPDATE pose SET y_m = y_m + 1e-15 WHERE tick >= 170 AND link = 4");
+  const json document = compared(one, other);
+  EXPECT_TRUE(document["difference"].is_null());
+  EXPECT_EQ(document["compared"], 400);
+  EXPECT_EQ(document["motion"]["difference"]["tick"], 170);
+  EXPECT_EQ(document["motion"]["difference"]["part"].get<std::string>().substr(0, 6), "link '");
+}
+
+TEST_F(RunComparisonTest, ARealRobotHasNoMotionToCompare) {
+  const fs::path one = record("a.proleg", 100);
+  const fs::path other = record("b.proleg", 100);
+  change(other, "UPDATE run SET value = 'drive' WHERE key = 'program'");
+  const json document = compared(one, other);
+  EXPECT_TRUE(document["motion"].is_null());
+  EXPECT_EQ(document["compared"], 100);
+}
+
 TEST_F(RunComparisonTest, ComparesTheTicksThatBothHave) {
   const json document = compared(record("short.proleg", 150), record("long.proleg", 400, "amplitude=30"));
   EXPECT_TRUE(document["difference"].is_null());

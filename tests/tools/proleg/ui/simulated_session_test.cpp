@@ -347,6 +347,17 @@ TEST_F(SimulatedSessionTest, SaysFromWhichTickOnARecordingIsNotItsOwn) {
   EXPECT_NE(viewers_.notices().find("from tick 30 on"), std::string::npos) << viewers_.notices();
 }
 
+TEST_F(SimulatedSessionTest, SaysWhichLinkOfARecordingMovedOtherwise) {
+  record_run("run.proleg", 100);
+  Database(folder_ / "run.proleg", SQLITE_OPEN_READWRITE)
+      .execute("UPDATE pose SET x_m = x_m + 1e-15 WHERE tick = 30 AND link = 5");
+  open(nullptr, true);
+  EXPECT_TRUE(ask("continue", {{"file", "run.proleg"}, {"tick", 60}}).is_done);
+  wait_for_continued(60);
+  EXPECT_NE(viewers_.notices().find("from tick 30 on"), std::string::npos) << viewers_.notices();
+  EXPECT_NE(viewers_.notices().find("link 'Tail' is elsewhere"), std::string::npos) << viewers_.notices();
+}
+
 TEST_F(SimulatedSessionTest, StaysWhereARecordingIsDamaged) {
   record_run("run.proleg", 600);
   Database(folder_ / "run.proleg", SQLITE_OPEN_READWRITE).execute("DELETE FROM pose WHERE tick = 400");

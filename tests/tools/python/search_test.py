@@ -212,6 +212,7 @@ class Store(InAFolder):
         with proleg.Search(store="both") as again:
             self.assertTrue(again.done)
             self.assertEqual(again.best, best)
+            self.assertEqual(len({again.best, best}), 1)
 
     def test_has_the_failures_of_the_command_line(self):
         """nan is a run that failed, or does not define the measure: the score is that of a failed run."""

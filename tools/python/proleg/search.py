@@ -39,13 +39,16 @@ class Objective(NamedTuple):
     higher_is_better: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Found:
     """An evaluation of a search."""
 
     number: int  #: from 0, in the order of the search
     values: Mapping[str, float]  #: by the names of the dimensions
     scores: Mapping[str, float]  #: by the names of the objectives
+
+    def __hash__(self) -> int:
+        return hash(self.number)
 
 
 class Search(Unique):

@@ -107,6 +107,10 @@ class Watchdog {
     // A fork() copies the memory but not the thread.
     pthread_atfork([] { instance().mutex_.lock(); }, [] { instance().mutex_.unlock(); },
                    [] {
+                     // The child would do what the program does, and drive its robot on when that has ended.
+                     if (current_guard != nullptr && current_guard->is_active) {
+                       end_program_after(*current_guard, "calls fork()", "; the copy of the program ends");
+                     }
                      instance().runs_ = false;
                      instance().watched_ = {};
                      ++generation;

@@ -15,6 +15,7 @@
 #include "shared/computer/algorithm_library/call_watchdog.hpp"
 #include "shared/computer/algorithm_library/floating_point_modes.hpp"
 #include "shared/computer/algorithm_library/guard_signals.hpp"
+#include "shared/computer/algorithm_library/kept_signals.hpp"
 #include "shared/computer/algorithm_library/thread_guard.hpp"
 
 namespace proleg {
@@ -104,6 +105,9 @@ bool run_guarded(const CallSubject& subject, void (*function)(void*), void* cont
   const FloatingPointModes modes;
   const End end = enter(guard, function, context);
   modes.restore();
+  if (do_libraries_change_signals()) {
+    restore_ending_signals();
+  }
   if (guard.is_look_due) {  // not after each call: it takes a microsecond
     guard.is_look_due = false;
     pthread_sigmask(SIG_SETMASK, &guard.mask, nullptr);

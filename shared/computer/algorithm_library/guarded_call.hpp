@@ -26,9 +26,10 @@ struct CallFailure {
 /// SIGILL), calls abort(), or takes too long; `failure` says which. What the function had locked or allocated is then
 /// lost: do not call its code again. If that are locks of the C library, or its lists of memory are damaged, or the
 /// function calls exit() or quick_exit(), or does not return with all signals blocked, one line is printed and the
-/// program ends with status 1. Modes of floating point that the function changes are restored after the call; handlers
-/// and the mask of signals soon after (kept_signals.hpp). Does not protect from code that overwrites memory of the
-/// program, or calls _exit(). Calls may not be nested. Any thread may call it.
+/// program ends with status 1. A child that the function makes by fork() ends at once with such a line; the program
+/// goes on. Modes of floating point that the function changes are restored after the call; handlers and the mask of
+/// signals soon after (kept_signals.hpp). Does not protect from code that overwrites memory of the program, or calls
+/// _exit(). Calls may not be nested. Any thread may call it.
 [[nodiscard]] bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context,
                                CallFailure& failure);
 

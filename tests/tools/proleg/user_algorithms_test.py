@@ -72,7 +72,12 @@ OTHER_MISTAKES = {
                                 "for (volatile int i = 0;; i = i + 1) {}",
     "thread_exits": "std::thread([] { std::exit(0); }).join();",
     "thread_crashes": "std::thread([] { *volatile_null = 1; }).join();",
+    "forks": "static_cast<void>(fork());",
 }
+# Libraries that do this in each call.
+IGNORES_SIGNALS = "for (const int number : {SIGINT, SIGTERM, SIGHUP}) { std::signal(number, SIG_IGN); }\n"
+THREAD_IGNORES_SIGNALS = ("static const bool runs = [] { std::thread([] { for (;;) { " + IGNORES_SIGNALS +
+                          " usleep(20); } }).detach(); return true; }();\n")
 # One library has them all, since each would take a second to compile. This variable of the environment chooses one.
 MISTAKE = "PROLEG_TEST_MISTAKE"
 
@@ -410,6 +415,30 @@ class UserAlgorithms(unittest.TestCase):
                 run.send_signal(signal.SIGINT)
                 self.assertIn("interrupted after", run.communicate(timeout=LONGEST)[1])
                 self.assertEqual(run.returncode, 1)
+
+    def test_one_control_c_stops_a_robot_although_the_library_ignores_it_always(self):
+        begin = "std::int32_t* next) const override {\n"
+        for name, code in (("in_each_call", IGNORES_SIGNALS), ("in_a_thread", THREAD_IGNORES_SIGNALS)):
+            library = self.compile(f"ignores_{name}", TOOLS + self.source.replace(begin, begin + code))
+            for program, options in (("drive", ("--bus", f"sim:{self.scenario}", "--seconds", "3600")),
+                                     ("simulate", ("--seconds", "50000"))):
+                with self.subTest(f"{program}, {name}"):
+                    recording = self.folder / f"{program}_{name}.proleg"
+                    run = subprocess.Popen([PROGRAMS / f"proleg-{program}", self.scenario, "--algorithms", library, *options,
+                                            "--record", recording], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                           stderr=subprocess.PIPE, text=True)
+                    self.addCleanup(run.kill)
+                    wait_until(lambda: Path(f"{recording}-wal").exists() and Path(f"{recording}-wal").stat().st_size > 1e5)
+                    run.send_signal(signal.SIGINT)
+                    output, errors = run.communicate(timeout=LONGEST)
+                    self.assertEqual(run.returncode, 0 if program == "drive" else 1, output + errors)
+                    self.assertIn("0 differences" if program == "drive" else "interrupted after", output + errors)
+
+    def test_a_copy_of_the_program_that_the_library_makes_ends(self):
+        result = self.simulate_mistake("forks")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.count("set-point hash"), 1, result.stdout)
+        self.assert_one_line(result, self.mistakes, "calls fork()", "the copy of the program ends")
 
     def test_exit_in_a_thread_of_the_library_is_no_success(self):
         result = self.simulate_mistake("thread_exits")

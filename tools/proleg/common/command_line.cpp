@@ -163,6 +163,11 @@ void CommandLine::add_algorithms_option() {
       .value_name("LIBRARY");
 }
 
+void CommandLine::add_locked_algorithms_option() {
+  add_algorithms_option();
+  locks_signals_ = true;
+}
+
 std::string CommandLine::name() const { return app_->get_name(); }
 
 std::vector<std::string> CommandLine::given() const {
@@ -203,6 +208,10 @@ int CommandLine::run_body(int argc, char** argv, const std::function<int()>& bod
   }
   try {
     prepare_();
+    if (locks_signals_ && !algorithms_.empty()) {
+      catch_interrupts();
+      lock_ending_signals();
+    }
     load_algorithms(algorithms_);
     const int status = action();
     if (!std::cout.flush()) {

@@ -70,6 +70,8 @@ class CommandLine {
 
   /// Adds --algorithms, for programs that read scenarios or name parameters. run() loads the libraries before the body.
   void add_algorithms_option();
+  /// The same for programs that start no programs of others: run() catches interrupts, and no library can change that.
+  void add_locked_algorithms_option();
 
   /// run() calls this before the body, after the variables have their values. An exception is as one of the body.
   void prepare_with(std::function<void()> prepare) { prepare_ = std::move(prepare); }
@@ -87,6 +89,7 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   std::vector<std::string> algorithms_;
+  bool locks_signals_ = false;
   std::function<void()> prepare_ = [] {};
 };
 

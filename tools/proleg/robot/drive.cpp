@@ -342,6 +342,6 @@ int main(int argc, char** argv) {
   command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
   command_line.add_flag("--check", options.only_checks,
                         "read FILE, and the scenario of --bus sim:FILE, and end: no bus is opened, and nothing moves");
-  command_line.add_algorithms_option();
+  command_line.add_locked_algorithms_option();
   return command_line.run(argc, argv, [&] { return drive(options); });
 }

@@ -165,6 +165,6 @@ int main(int argc, char** argv) {
   add_scenario_options(command_line, options);
   add_measures_option(command_line, options.all_measures);
   add_move_option(command_line, options);
-  command_line.add_algorithms_option();
+  command_line.add_locked_algorithms_option();
   return command_line.run(argc, argv, [&] { return simulate(options); });
 }

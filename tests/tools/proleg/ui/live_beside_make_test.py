@@ -18,7 +18,7 @@ from ui_program import UiProgram  # noqa: E402
 SCENARIOS = SOURCE / "sim/scenarios"
 SENSOR = '<AttachedSensor name="touch"><link>Head</link><sensor type="TactileSensor"/></AttachedSensor>'
 TICKS = 150
-FORESIGHTS = 3
+FORESIGHTS = 2
 
 
 def long_chain(folder):
@@ -28,7 +28,8 @@ def long_chain(folder):
              "long_chain/twenty.actuation.xml": "twenty.actuation.xml",
              "travelling_wave/flat.environment.xml": "flat.environment.xml"}
     for shipped, name in files.items():
-        (folder / name).write_text((SCENARIOS / shipped).read_text().replace("../travelling_wave/", ""))
+        (folder / name).write_text((SCENARIOS / shipped).read_text().replace("../travelling_wave/", "")
+                                   .replace("<duration>10<", "<duration>2<"))
     robot = folder / "twenty.robot.xml"
     robot.write_text(robot.read_text().replace("</Robot>", SENSOR + "</Robot>"))
     (folder / "modules").symlink_to(SCENARIOS / "travelling_wave/modules")

@@ -66,6 +66,21 @@ void BusConnection::transmitted(Microseconds time, const CanFrame& frame) {
   for_each_user([&](BusUser& user) { user.transmitted(time, frame); });
 }
 
+/// After a time in which this program stood still, what was received meanwhile waits. The users get it before they look
+/// at the time: else they would take the silence of this program for that of the modules.
+void BusConnection::catch_up() {
+  constexpr Microseconds standstill_us = 3 * longest_wait_us;
+  constexpr unsigned most_reads = 100'000;  // a bus that is never silent must not keep the program here
+  if (looked_at_ != never && now() > looked_at_ + standstill_us) {
+    std::uint64_t before = 0;
+    for (unsigned reads = 0; reads < most_reads && (reads == 0 || statistics().received != before); ++reads) {
+      before = statistics().received;
+      transport_->run_until(now());
+    }
+  }
+  looked_at_ = now();
+}
+
 void BusConnection::poll_users() {
   for_each_user([this](BusUser& user) {
     if (const Microseconds time = now(); user.next_deadline() <= time) {
@@ -86,6 +101,7 @@ Microseconds BusConnection::next_deadline() const {
 
 bool BusConnection::run_until(Microseconds deadline, const std::function<bool()>& done) {
   for (;;) {
+    catch_up();
     poll_users();
     if (done()) {
       return true;

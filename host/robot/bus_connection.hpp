@@ -53,6 +53,7 @@ class BusConnection final : public CanPort, private TransportListener {
   void detach(BusUser& user);
   void received(Microseconds time, const CanFrame& frame) override;
   void transmitted(Microseconds time, const CanFrame& frame) override;
+  void catch_up();
   void poll_users();
   [[nodiscard]] Microseconds next_deadline() const;
   template <typename Call>
@@ -61,7 +62,8 @@ class BusConnection final : public CanPort, private TransportListener {
   std::vector<BusUser*> users_;  ///< null: a user that was detached while users are called
   unsigned calls_ = 0;           ///< number of nested calls of for_each_user()
   std::bitset<128> heard_;
-  std::uint64_t requested_ = 0;  ///< number of frames that the transport took
+  std::uint64_t requested_ = 0;     ///< number of frames that the transport took
+  Microseconds looked_at_ = never;  ///< time of the last look at the bus
   std::unique_ptr<Transport> transport_;
 };
 

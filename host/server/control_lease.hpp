@@ -17,8 +17,9 @@ class ControlLease {
  public:
   /// Duration after which a holder that does not answer a request has granted it.
   static constexpr ServerTime answer_timeout{10'000};
-  /// Duration without a sign of life after which a holder is away.
-  static constexpr ServerTime away_timeout{1'000};
+  /// Duration without a sign of life after which a holder is away: what it drives is at rest a second later
+  /// (docs/safety.md).
+  static constexpr ServerTime away_timeout{500};
 
   /// The result of an operation, decided now or some calls later.
   struct Result {

@@ -7,11 +7,11 @@
 
 #include "host/transport/can_socket.hpp"
 #include "host/transport/event_loop.hpp"
+#include "host/transport/frame_queue.hpp"
 
 namespace proleg::host {
 namespace {
 
-constexpr std::size_t max_queue = 1'024;
 constexpr Microseconds retry_pause = 1'000;  // a full queue (ENOBUFS) cannot be waited for
 /// Duration without a frame on the bus after which the waiting frames are out of date.
 constexpr Microseconds send_timeout = 500'000;
@@ -37,14 +37,14 @@ class CanTransport final : public Transport {
 
   [[nodiscard]] Microseconds now() const override { return steady_now(); }
   [[nodiscard]] bool send(const CanFrame& frame) override {
-    if (!socket_ || queue_.size() >= max_queue) {
+    const bool is_first = queue_.empty() && unconfirmed_.empty();
+    if (!socket_ || !queue_.push(frame)) {
       ++statistics_.dropped_out;
       return false;
     }
-    if (queue_.empty() && unconfirmed_.empty()) {
+    if (is_first) {
       last_progress_ = now();
     }
-    queue_.push_back(frame);
     // The frame is not sent in this call, because the listener may be called when the interface has failed. With
     // frames before it the timer is already set: for frames of the same call, or for another attempt to send one that
     // the kernel has refused.
@@ -176,7 +176,7 @@ class CanTransport final : public Transport {
       }
       if (error == 0) {
         unconfirmed_.push_back(queue_.front());
-        queue_.pop_front();
+        queue_.pop();
       }
     }
     if (!unconfirmed_.empty()) {
@@ -223,7 +223,7 @@ class CanTransport final : public Transport {
   Timer reconnect_;
   BusState state_;
   Statistics statistics_;
-  std::deque<CanFrame> queue_;        ///< frames that the kernel has not taken
+  FrameQueue queue_;                  ///< frames that the kernel has not taken
   std::deque<CanFrame> unconfirmed_;  ///< frames that the kernel has taken and not confirmed
   Microseconds last_progress_ = 0;  ///< time at which a frame was confirmed, or the first frame was given to the kernel
   Microseconds pause_ = first_pause;

@@ -361,19 +361,23 @@ void SlcanClient::drop_frames() {
 void SlcanClient::drop_output() { output_.erase(has_begun_line_ ? output_.find(slcan_end) + 1 : 0); }
 
 bool SlcanClient::send(const CanFrame& frame) {
-  if (state_ != State::open || settings_.is_listen_only || queue_.size() >= settings_.max_queue) {
+  if (state_ != State::open || settings_.is_listen_only || !queue_.push(frame)) {
     ++statistics_.dropped_out;
     return false;
   }
-  queue_.push_back(frame);
   return true;
 }
 
+/// Whether a frame may be written now.
+bool SlcanClient::has_next_frame() const {
+  return state_ == State::open && !queue_.empty() &&
+         (!is_acknowledging_ || pending_.size() < settings_.window || queue_.has_stop());
+}
+
 void SlcanClient::fill_output(Microseconds now) {
-  while (state_ == State::open && !queue_.empty() && output_.size() < output_ahead &&
-         (!is_acknowledging_ || pending_.size() < settings_.window)) {
+  while (has_next_frame() && (output_.size() < output_ahead || queue_.has_stop())) {
     const CanFrame frame = queue_.front();
-    queue_.pop_front();
+    queue_.pop();
     output_ += format_slcan_frame(slcan_frame(frame)).view();
     output_ += slcan_end;
     if (is_acknowledging_) {
@@ -386,10 +390,7 @@ void SlcanClient::fill_output(Microseconds now) {
   }
 }
 
-bool SlcanClient::has_output() const {
-  const bool can_write = state_ == State::open && (!is_acknowledging_ || pending_.size() < settings_.window);
-  return !output_.empty() || (can_write && !queue_.empty());
-}
+bool SlcanClient::has_output() const { return !output_.empty() || has_next_frame(); }
 
 std::string SlcanClient::take(Microseconds now, std::size_t max_characters) {
   fill_output(now);

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "host/transport/frame_queue.hpp"
 #include "host/transport/slcan_adapter_lines.hpp"
 #include "host/transport/transport.hpp"
 #include "shared/can/slcan.hpp"
@@ -30,7 +31,7 @@ class SlcanClientListener {
 /// adapter is there. So start() sends C, V, N, S8, Z0 and O, each when the one before was answered or its time is over
 /// (some adapters lose all but one command of a packet), and begins again, because some adapters need two seconds
 /// after the line was opened. A channel with an acknowledging adapter carries `window` frames that are not confirmed
-/// yet.
+/// yet; frames that end motion (frame_queue.hpp) do not wait for confirmations, which may be cut off.
 class SlcanClient {
  public:
   struct Settings {
@@ -46,7 +47,6 @@ class SlcanClient {
     /// has reported that its controller is in trouble. An adapter that was reset has a closed channel.
     Microseconds rejection_timeout = 500'000;
     std::size_t window = 32;
-    std::size_t max_queue = 1'024;  ///< frames that wait for the window
     bool is_listen_only = false;
   };
   enum class State : std::uint8_t {
@@ -103,6 +103,7 @@ class SlcanClient {
   void handle_frame_answer(Microseconds now, Answer answer);
   void confirm(Microseconds now);
   void ask_for_a_sign(Microseconds now);
+  [[nodiscard]] bool has_next_frame() const;
   void fill_output(Microseconds now);
   void drop_frames();
   void drop_output();
@@ -122,7 +123,7 @@ class SlcanClient {
   std::string line_;  ///< the last line, or what is left of it
   std::string output_;
   bool has_begun_line_ = false;  ///< a part of an output line was taken
-  std::deque<CanFrame> queue_;
+  FrameQueue queue_;
   std::deque<CanFrame> pending_;  ///< frames that are written and not confirmed
 
   Microseconds start_deadline_ = 0;

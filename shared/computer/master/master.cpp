@@ -82,6 +82,7 @@ void Master::receive(Microseconds now, const CanFrame& frame) {
     return;
   }
   now_ = now;
+  heard_at_ = frame.identifier == identifier::heartbeat + host_node ? heard_at_ : now;
   if (frame.identifier == identifier::sync) {
     if (const std::optional<std::uint8_t> counter = decode_sync(frame)) {
       ticks_.sync(*counter);
@@ -94,6 +95,7 @@ void Master::receive(Microseconds now, const CanFrame& frame) {
     switch (identifier::base_of(frame.identifier)) {
       case identifier::sdo_answer:
         sdo_clients_.receive(now, frame, *this);
+        look_at_answers();
         break;
       case identifier::heartbeat:
         on_heartbeat(frame);
@@ -124,7 +126,8 @@ void Master::poll(Microseconds now) {
   now_ = now;
   if (now >= heartbeat_at_) {
     constexpr Microseconds until_next_try_us = 1'000;
-    const bool sent = queue_.push(encode(Heartbeat{host_node, NmtState::operational}));
+    const bool is_unanswered = is_powered_ && now >= heard_at_ + unanswered_us;
+    const bool sent = is_unanswered || queue_.push(encode(Heartbeat{host_node, NmtState::operational}));
     heartbeat_at_ += heartbeat_period_us;
     if (!sent || heartbeat_at_ <= now) {
       heartbeat_at_ = now + (sent ? heartbeat_period_us : until_next_try_us);
@@ -135,6 +138,9 @@ void Master::poll(Microseconds now) {
   if (now >= sync_lost_at_) {
     fail({ProblemCode::sync_lost});
   }
+  if (now >= silent_at()) {
+    fail({ProblemCode::robot_silent});
+  }
   if (now >= deadline_) {
     deadline_ = never;
     phase_timed_out();
@@ -144,7 +150,7 @@ void Master::poll(Microseconds now) {
 
 Microseconds Master::next_deadline() const {
   Microseconds next = sdo_clients_.next_deadline();
-  for (const Microseconds deadline : {heartbeat_at_, deadline_, silence_at_, sync_lost_at_}) {
+  for (const Microseconds deadline : {heartbeat_at_, deadline_, silence_at_, sync_lost_at_, silent_at()}) {
     next = std::min(next, deadline);
   }
   return next;
@@ -271,7 +277,7 @@ void Master::on_tick_passed() {
   if (!is_running()) {
     return;
   }
-  sync_lost_at_ = now_ + silence_us;
+  sync_lost_at_ = now_ + robot_silence_us;
   if (const std::optional<std::uint32_t> tick = ticks_.tick(); tick && *tick >= ticks_on_the_way) {
     plan_.pass(*tick - ticks_on_the_way);  // the change is also in force in a module that has missed the last SYNC
   }
@@ -288,6 +294,10 @@ void Master::watch_heartbeats() {
       continue;
     }
     const Microseconds silent_at = heartbeat_received_at_[joint] + silence_us;
+    if (silent_at <= now_ && gets_power()) {
+      fail(problem_of(ProblemCode::module_silent, joint));
+      return;
+    }
     if (silent_at <= now_) {
       lost_ |= JointMask::of(joint);
       add_event(EventKind::silent, setup_.nodes[joint]);
@@ -299,7 +309,26 @@ void Master::watch_heartbeats() {
   silence_at_ = silence_at_ == never ? now_ + silence_us : silence_at_;
 }
 
+/// A robot whose answers come late must not get power. Requests that were lost make single answers late, too.
+void Master::look_at_answers() {
+  const Durations& answers_us = sdo_clients_.answers_us();
+  if (mission_ != Mission::bring_up || phase_ != Phase::set_up ||
+      (answers_us.count() != answers_to_look_at && !sdo_clients_.done())) {
+    return;
+  }
+  if (const std::uint64_t median_us = answers_us.median().value_or(0); median_us > latest_answers_us) {
+    fail(late_answers(median_us));
+  }
+}
+
 // Handlers of problems.
+
+Problem Master::late_answers(Microseconds found_us) {
+  Problem problem{ProblemCode::late_answers};
+  problem.found = static_cast<std::uint32_t>(found_us / 1'000);
+  problem.expected = static_cast<std::uint32_t>(latest_answers_us / 1'000);
+  return problem;
+}
 
 Problem Master::problem_of(ProblemCode code, unsigned joint) const {
   Problem problem{code};

@@ -96,7 +96,12 @@ enum class MasterState : std::uint8_t {
 
 class Master final : private SdoWork {
  public:
-  static constexpr Microseconds heartbeat_period_us = 100'000;
+  /// Half a period of a module's heartbeat: with the time for which modules wait for it (host_timeout_ms) a program may
+  /// stand still for 0.3 s.
+  static constexpr Microseconds heartbeat_period_us = 50'000;
+  /// Time without a frame of any module after which the heartbeat pauses while servos have power: the way back is cut,
+  /// perhaps, and then the modules stop by themselves, also if no other frame of the host reaches them.
+  static constexpr Microseconds unanswered_us = 200'000;
   /// Time in which another host sends three heartbeats.
   static constexpr Microseconds listening_time_us = 300'000;
   /// Time for which another host may have the lease without a heartbeat: its session is over then, and its lease ends.
@@ -118,7 +123,11 @@ class Master final : private SdoWork {
   static constexpr Microseconds repeat_us = 500'000;
   static constexpr unsigned max_requests = 3;
   static constexpr Microseconds send_timeout_us = 1'000'000;
+  /// Time without the heartbeat of a module after which it is silent.
   static constexpr Microseconds silence_us = 500'000;
+  /// Time after which the robot is silent: without SYNC while it runs, without any frame while it gets power. Then a
+  /// joint that is 90 degrees from its safe pose is there 1.4 s after its last frame (docs/safety.md).
+  static constexpr Microseconds robot_silence_us = 400'000;
   /// Time between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, so transfers
   /// without pauses would keep TICK from the bus.
   static constexpr Microseconds pause_us = 300;
@@ -126,6 +135,10 @@ class Master final : private SdoWork {
   static constexpr Microseconds stop_timeout_us = 100'000;
   static constexpr unsigned max_stop_attempts = 3;
   static constexpr unsigned commit_repeats = 3;
+  /// Median of the answers in the set-up, above which the servos get no power: a command to stop would come too late.
+  static constexpr Microseconds latest_answers_us = 300'000;
+  /// Number of answers after which the master looks at it for the first time.
+  static constexpr std::uint64_t answers_to_look_at = 40;
 
   struct Identity {
     std::uint32_t vendor = 0;
@@ -278,6 +291,9 @@ class Master final : private SdoWork {
   void request_start();
   [[nodiscard]] bool repeat_request();
   void watch_heartbeats();
+  void look_at_answers();
+  [[nodiscard]] bool gets_power() const { return mission_ == Mission::bring_up && is_powered_; }
+  [[nodiscard]] Microseconds silent_at() const { return gets_power() ? heard_at_ + robot_silence_us : never; }
 
   [[nodiscard]] bool is_before_reset() const {
     return phase_ == Phase::listen || phase_ == Phase::take_lease || phase_ == Phase::reset;
@@ -285,6 +301,7 @@ class Master final : private SdoWork {
   [[nodiscard]] bool is_running() const { return state_ == MasterState::running; }
   [[nodiscard]] JointMask all_joints() const { return JointMask::first(setup_.kernel.joint_count); }
   [[nodiscard]] bool has_passed(const Change& change) const;
+  [[nodiscard]] static Problem late_answers(Microseconds found_us);
   [[nodiscard]] Problem problem_of(ProblemCode code, unsigned joint) const;
   void fail(const Problem& problem);
   void report(const Problem& problem);
@@ -309,6 +326,7 @@ class Master final : private SdoWork {
   Microseconds heartbeat_at_ = never;
   Microseconds silence_at_ = never;  ///< time of the next check of heartbeats
   Microseconds sync_lost_at_ = never;
+  Microseconds heard_at_ = 0;     ///< time of the last frame of a module
   Microseconds ticks_until_ = 0;  ///< without another SYNC there are no ticks from this time on
 
   JointMask joints_;                ///< joints of the mission

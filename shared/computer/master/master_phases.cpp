@@ -128,6 +128,10 @@ void Master::enter(Phase phase) {
       break;
     case Phase::enable:
       served = joints_;
+      if (!is_powered_) {
+        silence_at_ = now_ + silence_us;
+        heartbeat_received_at_.fill(now_);
+      }
       is_powered_ = true;
       break;
     case Phase::ramp_in:
@@ -359,9 +363,7 @@ bool Master::repeat_request() {
 void Master::run() {
   state_ = MasterState::running;
   mission_ = Mission::none;
-  sync_lost_at_ = now_ + silence_us;
-  silence_at_ = now_ + silence_us;
-  heartbeat_received_at_.fill(now_);
+  sync_lost_at_ = now_ + robot_silence_us;
   enter(Phase::none);
 }
 

@@ -46,6 +46,12 @@ std::string_view describe(ProblemCode code) {
       return "a joint does not reach the angle at which the gait starts";
     case ProblemCode::not_operational:
       return "a module does not become operational";
+    case ProblemCode::late_answers:
+      return "the modules answer too late for a robot that must be stopped in time";
+    case ProblemCode::robot_silent:
+      return "nothing comes from the modules any more";
+    case ProblemCode::module_silent:
+      return "a module is silent";
     case ProblemCode::commit_too_late:
       return "a change came too late for its tick";
     case ProblemCode::change_refused:
@@ -153,6 +159,10 @@ std::string problem_text(const canopen::Problem& problem, const NodeName& name) 
     case ProblemCode::bus_too_small:
       text += ": found up to " + std::to_string((problem.found + 9) / 10) + " % of it, expected at most " +
               std::to_string(problem.expected / 10) + " %: a longer tick helps";
+      break;
+    case ProblemCode::late_answers:
+      text += ": found answers after " + std::to_string(problem.found) + " ms, expected at most " +
+              std::to_string(problem.expected) + " ms; the servos get no power: check the connection";
       break;
     case ProblemCode::no_answer:
       text += ": object " + in_text(problem.address);

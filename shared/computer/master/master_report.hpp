@@ -41,6 +41,9 @@ enum class ProblemCode : std::uint8_t {
   not_enabled,          ///< the drive of the module is not in Operation enabled; `found` and `expected` are statuswords
   not_ramped_in,        ///< the joint does not reach the start of the gait before the timeout
   not_operational,      ///< the heartbeat of the module does not report Operational before the timeout
+  late_answers,         ///< half of the answers of the modules take longer than `found` ms, more than `expected` ms
+  robot_silent,         ///< no module has sent a frame for 400 ms while they got power
+  module_silent,        ///< the module has sent no heartbeat for 500 ms while the servos got power
   // These problems occur while the robot runs.
   commit_too_late,  ///< `change` for the tick `expected` could not be committed by the tick `found`; it is dropped
   change_refused,   ///< the module refused a value of `change` with `abort_code`; the change is dropped for all

@@ -8,6 +8,7 @@ namespace proleg::canopen {
 
 void SdoClientPool::begin(JointMask joints, Microseconds timeout_us, Microseconds pause_us) {
   channels_ = {};
+  answers_us_ = {};
   waiting_ = joints;
   timeout_us_ = timeout_us;
   pause_us_ = pause_us;
@@ -89,6 +90,7 @@ void SdoClientPool::send(Microseconds now, std::span<const std::uint8_t> nodes, 
       if (!request) {
         continue;
       }
+      channel.begin = channel.attempts == 0 ? now : channel.begin;
       begin_transfer(channel, nodes[channel.joint], *request);
     }
     if (const std::optional<CanFrame> frame = channel.transfer.next_frame(now)) {
@@ -129,6 +131,9 @@ void SdoClientPool::finish(Microseconds now, Channel& channel, SdoWork& work) {
   pause_ends_ = pause_us_ == 0 ? 0 : now + pause_us_;
   const std::size_t position = channel.position++;
   channel.attempts = 0;
+  if (channel.transfer.state() != SdoTransfer::State::aborted) {
+    answers_us_.add(now - channel.begin);
+  }
   // The functions of `work` may cancel the list, so they come last.
   if (channel.transfer.state() == SdoTransfer::State::aborted) {
     const Address address = channel.transfer.address();

@@ -12,6 +12,7 @@
 #include "shared/can/can_port.hpp"
 #include "shared/can/transmit_queue.hpp"
 #include "shared/canopen/object.hpp"
+#include "shared/computer/durations/durations.hpp"
 #include "shared/computer/master/sdo_transfer.hpp"
 #include "shared/gait/joint_mask.hpp"
 
@@ -66,6 +67,8 @@ class SdoClientPool {
   void receive(Microseconds now, const CanFrame& frame, SdoWork& work);
   void poll(Microseconds now, SdoWork& work);
   [[nodiscard]] Microseconds next_deadline() const;
+  /// How long modules took to answer since begin(), each from the first attempt on [us].
+  [[nodiscard]] const Durations& answers_us() const { return answers_us_; }
 
  private:
   /// A client and the list that it works through.
@@ -75,8 +78,9 @@ class SdoClientPool {
     bool is_busy = false;
     std::uint8_t joint = 0;
     std::size_t position = 0;
-    bool is_read = false;   ///< whether the present transfer is a read
-    unsigned attempts = 0;  ///< number of attempts of the present transfer that have failed
+    bool is_read = false;    ///< whether the present transfer is a read
+    unsigned attempts = 0;   ///< number of attempts of the present transfer that have failed
+    Microseconds begin = 0;  ///< time of the first attempt
   };
 
   [[nodiscard]] std::optional<SdoRequest> next_request(Channel& channel, SdoWork& work);
@@ -85,6 +89,7 @@ class SdoClientPool {
 
   std::array<Channel, clients> channels_;
   unsigned attempts_ = 1;
+  Durations answers_us_;
   JointMask waiting_;  ///< joints whose lists have not begun
   Microseconds timeout_us_ = 0;
   Microseconds pause_us_ = 0;

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "host/robot/bus_user.hpp"
 #include "sim/live/live_robot.hpp"
+#include "slcan_line.hpp"
 
 namespace proleg::test {
 
@@ -40,6 +42,9 @@ class LiveBus final : public CanPort {
     confirms_ = confirms;
   }
 
+  /// From now on the frames go through a line and an slcan adapter.
+  SlcanLine& connect_by_slcan() { return line_.emplace(robot_); }
+
   /// As many slcan adapters: a frame is confirmed while it waits for the bus. Beyond so many it is dropped.
   void confirm_at_once(std::size_t room) { room_ = room; }
   [[nodiscard]] std::uint64_t dropped_frames() const { return dropped_frames_; }
@@ -48,6 +53,9 @@ class LiveBus final : public CanPort {
     ++sent_frames_;
     for (host::BusUser* user : std::vector(users_)) {
       user->requested(now(), frame);
+    }
+    if (line_) {
+      return line_->send_by_host(frame);
     }
     if (is_cut_to_robot_ || is_lost()) {
       events_.push_back({robot_.now(), frame, true});
@@ -81,8 +89,17 @@ class LiveBus final : public CanPort {
       for (const host::BusUser* user : users_) {
         wake = std::min(wake, user->next_deadline());
       }
+      if (line_) {
+        wake = std::min(wake, line_->next_event());
+      }
       if (events_.empty()) {
         robot_.advance_to(std::min(robot_.next_event(), std::max(wake, now() + 1) * 1'000));
+      }
+      if (line_) {
+        line_->poll();
+        for (const SlcanLine::Event& event : line_->take_events()) {
+          events_.push_back({event.time * 1'000, event.frame, event.is_own});
+        }
       }
       for (const Event& event : std::exchange(events_, {})) {
         for (host::BusUser* user : std::vector(users_)) {
@@ -106,12 +123,14 @@ class LiveBus final : public CanPort {
 
   sim::LiveRobotOptions with_callbacks(sim::LiveRobotOptions options) {
     options.on_frame = [this](const sim::Transmission& transmission, bool is_own) {
-      if (!is_own && !is_cut_from_robot_ && !is_lost()) {
+      if (line_ && !is_own) {
+        line_->received_from_bus(transmission.frame);
+      } else if (!is_own && !is_cut_from_robot_ && !is_lost()) {
         events_.push_back({transmission.end, transmission.frame, false});
       }
     };
     options.on_sent = [this](sim::BusTime time, const CanFrame& frame, std::uint32_t /*source*/) {
-      if (room_ == 0 && confirms_) {
+      if (!line_ && room_ == 0 && confirms_) {
         events_.push_back({time, frame, true});
       }
     };
@@ -129,6 +148,7 @@ class LiveBus final : public CanPort {
   std::size_t room_ = 0;
   std::uint64_t dropped_frames_ = 0;
   sim::LiveRobot robot_;
+  std::optional<SlcanLine> line_;
 };
 
 }  // namespace proleg::test

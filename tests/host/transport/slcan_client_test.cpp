@@ -308,6 +308,59 @@ TEST_F(SlcanClientTest, AFullQueueRefusesFrames) {
   EXPECT_EQ(client.statistics().dropped_out, 1U);
 }
 
+/// docs/protocol.md, "Bringing up a robot": the quick stop of a node. CiA 301, table 5: NMT stop of all nodes.
+CanFrame quick_stop(unsigned node) { return {static_cast<std::uint16_t>(0x200 + node), 6, {2, 0, 0, 0, 0, 0x80}}; }
+CanFrame enabling_command(unsigned node) { return {static_cast<std::uint16_t>(0x200 + node), 6, {0x0F}}; }
+constexpr CanFrame nmt_stop{0x000, 2, {0x02, 0}};
+constexpr CanFrame nmt_start{0x000, 2, {0x01, 0}};
+CanFrame controlword_by_sdo(std::uint8_t controlword) { return {0x603, 8, {0x2B, 0x40, 0x60, 0, controlword}}; }
+
+TEST_F(SlcanClientTest, FramesThatEndMotionWaitForNoConfirmation) {
+  bool is_cut = false;
+  const Script script = [&](const std::string& line) { return is_cut ? std::string() : lawicel(line); };
+  open(script);
+  is_cut = true;
+  for (unsigned number = 0; number < 1'024; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  exchange(script);
+  ASSERT_EQ(lines.size(), 32U) << "the window";
+  for (unsigned node = 1; node <= 126; ++node) {
+    ASSERT_TRUE(client.send(quick_stop(node))) << "they find room in a queue that is full";
+  }
+  ASSERT_TRUE(client.send(nmt_stop));
+  lines.clear();
+  exchange(script);
+  ASSERT_EQ(lines.size(), 127U);
+  EXPECT_EQ(lines.front(), "t2016020000000080");
+  EXPECT_EQ(lines.back(), "t00020200");
+}
+
+TEST_F(SlcanClientTest, TheConfirmationsAreThoseOfTheFramesInTheOrderInWhichTheyWereWritten) {
+  open(lawicel);
+  for (unsigned number = 0; number < 3; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  ASSERT_TRUE(client.send(quick_stop(5)));
+  run(lawicel);
+  EXPECT_EQ(frames_transmitted, (std::vector<CanFrame>{quick_stop(5), frame(0), frame(1), frame(2)}));
+}
+
+TEST(FrameQueue, KnowsTheFramesThatEndMotion) {
+  EXPECT_TRUE(ends_motion(quick_stop(3)));
+  EXPECT_TRUE(ends_motion(nmt_stop));
+  EXPECT_TRUE(ends_motion({0x000, 2, {0x80, 3}})) << "Pre-operational";
+  EXPECT_TRUE(ends_motion(controlword_by_sdo(2)));
+  EXPECT_TRUE(ends_motion(controlword_by_sdo(0)));
+  EXPECT_FALSE(ends_motion(nmt_start));
+  EXPECT_FALSE(ends_motion(enabling_command(3)));
+  for (const std::uint8_t enabling : {6, 7, 15}) {
+    EXPECT_FALSE(ends_motion(controlword_by_sdo(enabling))) << unsigned{enabling};
+  }
+  EXPECT_FALSE(ends_motion({0x77F, 1, {5}})) << "the heartbeat of the host";
+  EXPECT_FALSE(ends_motion(frame(0)));
+}
+
 TEST_F(SlcanClientTest, PassesFramesAndReportsAndIgnoresForeignFrames) {
   open(lawicel);
   client.input(now, "t08011F12AB\rT000001000\rr1000\rsp000128\re1a\rgarbage\r");

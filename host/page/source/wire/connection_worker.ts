@@ -24,7 +24,7 @@ export type FromConnectionWorker =
   | { kind: 'alive?' };
 
 // Period in milliseconds at which the main thread is asked for a sign of life.
-const signPeriod = 200;
+const signPeriod = 100;
 
 const post = (message: FromConnectionWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 

@@ -181,7 +181,7 @@ describe('a connection', () => {
 });
 
 describe('signs of life', () => {
-  it('are sent at least every 500 ms by the holder only', () => {
+  it('are sent at least every 250 ms by the holder only', () => {
     const { clock, connection, last, greet, give } = setUp();
     connection.open();
     greet();
@@ -191,7 +191,7 @@ describe('signs of life', () => {
     give(3);
     assert.equal(last().ofType('beat').length, 1, 'at once: the lease begins');
     for (let i = 0; i < 4; i += 1) {
-      clock.advance(500);
+      clock.advance(250);
       answerPings();
       assert.ok(last().ofType('beat').length >= i + 2);
     }

@@ -552,6 +552,37 @@ TEST(MasterStop, EveryJointGetsTheQuickStopAtOnceAlsoIfNoModuleAnswers) {
   EXPECT_EQ(stopped.size(), joints);
 }
 
+TEST(MasterStop, ASilentRobotIsNoticedIn400MillisecondsFromTheFirstPowerOn) {
+  // The last SYNC is up to a tick older than the silence; the rest is for the frames on the bus.
+  constexpr Microseconds at_most_us = 400'000 + 10'000;
+  constexpr unsigned seed = 7;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937_64 random(seed);
+  for (int round = 0; round < 20; ++round) {
+    ScriptedRobot robot(20);
+    robot.options.attempts = 8;  // with them the answers alone would take more than a second
+    robot.start();
+    ASSERT_TRUE(robot.run_until([&] { return robot.module(0).power() == PowerState::operation_enabled; }, 10'000'000));
+    robot.run_for(pick(random, 30'000));
+    robot.master_node().is_deaf = true;
+    EXPECT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::failed; }, at_most_us)) << round;
+  }
+}
+
+TEST(MasterStop, TheHeartbeatPausesWhileNothingComesFromTheRobot) {
+  ScriptedRobot robot(3);
+  robot.start();
+  ASSERT_TRUE(robot.run_until_running());
+  robot.run_for(500'000);
+  robot.master_node().is_deaf = true;
+  robot.run_for(Master::unanswered_us);
+  const std::size_t before = robot.transmissions.size();
+  robot.run_for(2'000'000);
+  for (std::size_t i = before; i < robot.transmissions.size(); ++i) {
+    EXPECT_NE(robot.transmissions[i].frame.identifier, identifier::heartbeat + canopen::host_node);
+  }
+}
+
 TEST(MasterStop, TakesAFewSecondsIfNothingComesFromTheRobot) {
   ScriptedRobot robot(20);
   robot.options.ramps_down = true;

@@ -47,7 +47,7 @@ TEST(MasterStart, AnotherModuleCanProduceSync) {
   }
 }
 
-TEST(MasterStart, TheHostSendsAHeartbeatEvery100MsFromTheStartOn) {
+TEST(MasterStart, TheHostSendsAHeartbeatEvery50MsFromTheStartOn) {
   ScriptedRobot robot(2);
   robot.start();
   robot.run_for(3'050'000);
@@ -58,9 +58,9 @@ TEST(MasterStart, TheHostSendsAHeartbeatEvery100MsFromTheStartOn) {
       times.push_back(transmission.start);
     }
   }
-  EXPECT_EQ(times.size(), 31U);
+  EXPECT_EQ(times.size(), 61U);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(times[i] - times[i - 1]), 100e6, 2e6);
+    EXPECT_NEAR(static_cast<double>(times[i] - times[i - 1]), 50e6, 2e6);
   }
 }
 
@@ -328,6 +328,29 @@ TEST(MasterProblem, EveryStartEndsWithAnyBrokenModule) {
       EXPECT_EQ(robot.master().state(), MasterState::running) << describe(robot.master().problem().code);
     }
     EXPECT_EQ(robot.master().state() == MasterState::failed, robot.master().problem().code != ProblemCode::none);
+  }
+}
+
+TEST(MasterStart, AConnectionThatIsLateGivesTheServosNoPowerAndIsNamed) {
+  for (const Microseconds late_us : {350'000, 600'000}) {
+    ScriptedRobot robot(5);
+    robot.options.resets_modules = true;
+    robot.options.answer_timeout_us = 150'000;
+    robot.options.attempts = 8;
+    robot.start();
+    ASSERT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::setting_up; }, 5'000'000));
+    robot.master_node().late_us = late_us;
+    ASSERT_TRUE(robot.run_until([&] { return robot.settled(); }, 20'000'000));
+    const Problem problem = robot.master().problem();
+    EXPECT_EQ(problem.code, ProblemCode::late_answers) << describe(problem.code);
+    EXPECT_NEAR(problem.found, late_us / 1'000, 30) << "beside the time on the bus";
+    EXPECT_EQ(problem_text(problem, [](std::uint8_t) { return std::string(); }),
+              "the modules answer too late for a robot that must be stopped in time: found answers after " +
+                  std::to_string(problem.found) +
+                  " ms, expected at most 300 ms; the servos get no power: check the connection");
+    for (const auto& module : robot.modules) {
+      EXPECT_EQ(module->power(), PowerState::switch_on_disabled);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robot.hpp"
@@ -26,12 +27,27 @@ class MasterNode final : public sim::BusListener, private CanPort {
              std::span<Change> changes)
       : controller(bus.attach(*this)), master(*this, setup, options, changes) {}
 
-  void received(sim::BusTime time, const CanFrame& frame) override { master.receive(time / 1000, frame); }
+  void received(sim::BusTime time, const CanFrame& frame) override {
+    if (late_us != 0) {
+      late_frames.emplace_back(time / 1000 + late_us, frame);
+    } else if (!is_deaf) {
+      master.receive(time / 1000, frame);
+    }
+  }
   void transmitted(sim::BusTime time, const CanFrame& frame) override { master.transmitted(time / 1000, frame); }
+  /// Hands over the late frames that are due.
+  void take_late_frames(Microseconds now) {
+    for (; !late_frames.empty() && late_frames.front().first <= now; late_frames.pop_front()) {
+      master.receive(now, late_frames.front().second);
+    }
+  }
 
   sim::Controller& controller;
   /// Whether a frame is lost when it is sent.
   std::function<bool(const CanFrame&)> vanishes;
+  bool is_deaf = false;      ///< no frame reaches the master
+  Microseconds late_us = 0;  ///< how much later frames reach the master
+  std::deque<std::pair<Microseconds, CanFrame>> late_frames;
   canopen::Master master;
 
  private:
@@ -86,6 +102,9 @@ class ScriptedRobot {
       for (const auto& one : modules) {
         next = std::min(next, one->next_deadline());
       }
+      if (const auto& late = master_node().late_frames; !late.empty()) {
+        next = std::min(next, late.front().first);
+      }
       next = std::max(next, now_);
       const sim::BusTime bus_event = bus.next_event();
       const bool bus_first = bus_event != sim::never_on_bus && bus_event <= next * 1000;
@@ -105,6 +124,7 @@ class ScriptedRobot {
       for (const auto& one : modules) {
         one->poll(now_);
       }
+      master_node().take_late_frames(now_);
       if (master().next_deadline() <= now_) {
         master().poll(now_);
         EXPECT_GT(master().next_deadline(), now_) << "a deadline that is polled is over";

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+
+#include "shared/can/can_frame.hpp"
+
+namespace proleg::host {
+
+/// Whether a frame takes motion or power from joints: NMT other than start, and a controlword (0x6040, by RPDO1 or SDO)
+/// with which a drive makes a quick stop or loses its power (CiA 402, table 27).
+[[nodiscard]] bool ends_motion(const CanFrame& frame);
+
+/// Frames that wait for a line or a controller. Those that end motion come first, in their order; then the others, in
+/// theirs.
+class FrameQueue {
+ public:
+  static constexpr std::size_t max_others = 1'024;
+  static constexpr std::size_t max_stops = 256;  ///< two for each node
+
+  /// False, without an effect, if the queue is full; other frames take no room from those that end motion.
+  [[nodiscard]] bool push(const CanFrame& frame) {
+    const bool is_stop = ends_motion(frame);
+    std::deque<CanFrame>& frames = is_stop ? stops_ : others_;
+    if (frames.size() >= (is_stop ? max_stops : max_others)) {
+      return false;
+    }
+    frames.push_back(frame);
+    return true;
+  }
+  [[nodiscard]] bool empty() const { return stops_.empty() && others_.empty(); }
+  [[nodiscard]] std::size_t size() const { return stops_.size() + others_.size(); }
+  /// Whether front() ends motion.
+  [[nodiscard]] bool has_stop() const { return !stops_.empty(); }
+  /// The next frame; the queue must not be empty.
+  [[nodiscard]] const CanFrame& front() const { return stops_.empty() ? others_.front() : stops_.front(); }
+  void pop() { (stops_.empty() ? others_ : stops_).pop_front(); }
+  void clear() {
+    stops_.clear();
+    others_.clear();
+  }
+
+ private:
+  std::deque<CanFrame> stops_;
+  std::deque<CanFrame> others_;
+};
+
+}  // namespace proleg::host

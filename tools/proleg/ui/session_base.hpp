@@ -220,7 +220,7 @@ class DriverWatch {
  public:
   using Clock = SessionRequests::Clock;
   /// Time without a driver after which what moves must stop.
-  static constexpr std::chrono::milliseconds longest_absence{1'000};
+  static constexpr std::chrono::milliseconds longest_absence{500};
 
   /// Takes note of the present holder of control. Returns whether what moves must stop.
   bool look(const SessionRequests::Holder& holder, Clock::time_point now) {

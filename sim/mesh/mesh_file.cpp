@@ -227,6 +227,21 @@ void leave_out_repetitions(aiNode& node) {
   }
 }
 
+/// Cameras, lights and animations are no part of a surface. Assimp's validation refuses those with equal names.
+void leave_out_stage(aiScene& scene) {
+  const auto leave_out = [](auto**& items, unsigned& count) {
+    for (unsigned i = 0; i < count; ++i) {
+      delete items[i];
+    }
+    delete[] items;
+    items = nullptr;
+    count = 0;
+  };
+  leave_out(scene.mCameras, scene.mNumCameras);
+  leave_out(scene.mLights, scene.mNumLights);
+  leave_out(scene.mAnimations, scene.mNumAnimations);
+}
+
 [[noreturn]] void refuse(const std::string& name, const std::string& found) {
   throw MeshError(found + " in " + in_quotes(name), "a mesh of triangles");
 }
@@ -312,6 +327,10 @@ TriangleMesh import_mesh(const std::string& name, const std::string& file_bytes,
   if (!is_mesh_file_name(name)) {
     throw MeshError("a mesh file of another kind, " + in_quotes(name), std::string(mesh_file_endings));
   }
+  if (file_bytes.starts_with("version https://git-lfs.github.com/spec/")) {
+    throw MeshError("a pointer of Git LFS instead of the mesh, " + in_quotes(name),
+                    "the mesh: 'git lfs pull' fetches it");
+  }
   const std::string bytes = ending == ".stl" ? plain_stl(name, file_bytes) : plain_text(name, file_bytes);
   if (ending == ".dae") {
     check_collada_unit(name, bytes);
@@ -349,6 +368,7 @@ TriangleMesh import_mesh(const std::string& name, const std::string& file_bytes,
                                aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
     if (const aiScene* const read = importer.ReadFile(name, 0); read != nullptr && read->mRootNode != nullptr) {
       leave_out_repetitions(*read->mRootNode);
+      leave_out_stage(const_cast<aiScene&>(*read));  // which the importer owns, and changes in its own steps
     }
     if (bad_companion) {
       throw *bad_companion;

@@ -184,6 +184,33 @@ TEST(MeshFile, AMeshThatANodeOfAColladaFileNamesTwiceIsOne) {
   EXPECT_NEAR(solid_of(read("t.dae", text)).volume, 1e-6, 1e-12);
 }
 
+TEST(MeshFile, CamerasAndLightsOfAColladaFileAreNoPartOfItsMesh) {
+  // Blender writes the same camera and light for each of its scenes.
+  std::string stage;
+  std::string nodes;
+  for (const char* name : {"one", "two"}) {
+    stage += std::string(R"(<library_cameras><camera id="c" name=")") + name +
+             R"("><optics><technique_common><perspective><xfov>40</xfov><znear>0.1</znear><zfar>9</zfar></perspective>)"
+             R"(</technique_common></optics></camera></library_cameras><library_lights><light id="l" name=")" +
+             name +
+             R"("><technique_common><point><color>1 1 1</color></point></technique_common></light></library_lights>)";
+    nodes +=
+        R"(<node id="C" name="C"><instance_camera url="#c"/></node><node id="L" name="L"><instance_light url="#l"/>)"
+        "</node>";
+  }
+  std::string text = collada("0.01", "Z_UP");
+  text.insert(text.find("<library_geometries>"), stage);
+  text.insert(text.find("</visual_scene>"), nodes);
+  EXPECT_NEAR(solid_of(read("t.dae", text)).volume, 1e-6, 1e-12);
+}
+
+TEST(MeshFile, APointerOfGitLfsIsNamed) {
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:12\nsize 5\n";
+  for (const char* name : {"a.stl", "a.dae", "a.obj", "a.off"}) {
+    EXPECT_EQ(refusal(name, pointer), std::string("a pointer of Git LFS instead of the mesh, '") + name + "'");
+  }
+}
+
 TEST(MeshFile, AMeshOfAColladaFileWithSeveralMaterialsIsWhole) {
   const auto replace = [](std::string text, const std::string& before, const std::string& after) {
     EXPECT_NE(text.find(before), std::string::npos) << before;

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
+
 #include "shared/computer/text/text.hpp"
 #include "sim/robot/robot_model.hpp"
 
@@ -23,6 +25,38 @@ constexpr std::string_view hard_contact = "0.9999 0.9999 0.001";
 /// A motor that leaves a hundredth of the difference in speed to the next step moves the robot as far as a harder one
 /// (within 1 %), and Newton's solver needs a third less time.
 constexpr std::string_view hard_motor = "0.99 0.99 0.001";
+
+/// The principal moments of a body, ascending.
+Eigen::Vector3d moments_of(const MassProperties& mass) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// MuJoCo refuses a moment that is larger than the sum of the two others, by a last bit, too. Solids are at most
+/// rounding above it.
+constexpr double rounding = 1e-6;
+bool is_of_solid(const Eigen::Vector3d& moments) { return moments[2] <= (moments[0] + moments[1]) * (1.0 + rounding); }
+
+/// MuJoCo 2.2.2 and 3 refuse smaller moments.
+constexpr double least_moment = 2e-14;  // kg m^2
+
+/// The inertia with what rounding and tiny bodies lack for MuJoCo: the same is added to all moments.
+Eigen::Matrix3d compilable_inertia(const MassProperties& mass) {
+  const Eigen::Vector3d moments = moments_of(mass);
+  constexpr double last_bits = 1e-9;
+  const double lacking = moments[2] * (1.0 + last_bits) - moments[0] - moments[1];
+  const double more = std::max(is_of_solid(moments) ? lacking : 0.0, least_moment - moments[0]);
+  return more > 0.0 ? Eigen::Matrix3d(mass.inertia + more * Eigen::Matrix3d::Identity()) : mass.inertia;
+}
+
+/// MuJoCo's own body has the name "world".
+std::string body_name(const Link& link, const RobotModel& robot) {
+  std::string name = link.name;
+  while (name == "world" ||
+         (name != link.name && std::ranges::find(robot.links, name, &Link::name) != robot.links.end())) {
+    name += '_';
+  }
+  return name;
+}
 
 /// Who reads the text.
 enum class Reader : std::uint8_t {
@@ -37,8 +71,12 @@ class Writer {
   }
 
   void write(const RobotModel& robot, const EnvironmentModel& environment, double step_s, std::string_view integrator) {
+    const auto is_balanced = [](const auto& body) { return is_of_solid(moments_of(body.mass)); };
+    const bool needs_balance = for_user_ && !(std::ranges::all_of(robot.links, is_balanced) &&
+                                              std::ranges::all_of(environment.moving_objects, is_balanced));
     text_ << "<mujoco" << (for_user_ ? " model='" + quoted(robot.name) + "'" : "") << ">\n"
-          << "<compiler angle='radian' inertiafromgeom='false'/>\n"
+          << "<compiler angle='radian' inertiafromgeom='false'" << (needs_balance ? " balanceinertia='true'" : "")
+          << "/>\n"
           << "<option solver='Newton' cone='elliptic'" << (for_user_ ? "" : " collision='predefined'")
           << " integrator='" << integrator << "' timestep='" << step_s << "'" << vector("gravity", environment.gravity)
           << "><flag energy='enable' multiccd='enable'/></option>\n";
@@ -94,12 +132,9 @@ class Writer {
     return text;
   }
 
-  /// A name that users see. MuJoCo's world has the name "world".
-  static std::string user_name(std::string_view name) { return quoted(name) + (name == "world" ? "_" : ""); }
-
   /// The name of a part of the model; the engine needs none.
   [[nodiscard]] std::string name_attribute(std::string_view name) const {
-    return for_user_ ? " name='" + user_name(name) + "'" : "";
+    return for_user_ ? " name='" + quoted(name) + "'" : "";
   }
 
   /// For the engine the place in the list; for users a name that no other geometry has.
@@ -261,7 +296,7 @@ class Writer {
     for (std::size_t i = 0; i < robot.links.size(); ++i) {
       const Link& link = robot.links[i];
       const Pose pose = i == 0 ? robot_pose * link.pose : robot.links[i - 1].pose.inverse() * link.pose;
-      text_ << "<body" << name_attribute(link.name) << place(pose) << ">\n";
+      text_ << "<body" << name_attribute(body_name(link, robot)) << place(pose) << ">\n";
       if (i == 0) {
         text_ << "<freejoint/>\n";
       } else {
@@ -278,7 +313,7 @@ class Writer {
   }
 
   void write_mass(const MassProperties& mass) {
-    const Eigen::Matrix3d& inertia = mass.inertia;
+    const Eigen::Matrix3d inertia = compilable_inertia(mass);
     text_ << "<inertial mass='" << mass.mass << "'" << vector("pos", mass.center) << " fullinertia='" << inertia(0, 0)
           << ' ' << inertia(1, 1) << ' ' << inertia(2, 2) << ' ' << inertia(0, 1) << ' ' << inertia(0, 2) << ' '
           << inertia(1, 2) << "'/>\n";
@@ -297,14 +332,21 @@ class Writer {
     const Pose to_link = link.pose.inverse();
     // MuJoCo turns the child against its parent; our angle is that of the link towards the head, here the parent.
     const Eigen::Vector3d axis = to_link.orientation * -joint.axis;
-    constexpr double min_range = 1e-6;  // rad; MuJoCo refuses joints that cannot turn
     text_ << "<joint" << name_attribute(joint.name) << " type='hinge'" << vector("pos", to_link * joint.anchor)
-          << vector("axis", axis) << " range='" << joint.lower_limit << ' '
-          << std::max(joint.upper_limit, joint.lower_limit + min_range) << "'";
+          << vector("axis", axis) << range_text("range", joint.lower_limit, joint.upper_limit);
     if (!for_user_) {
       text_ << " frictionloss='" << joint.max_torque << "'";
     }
     text_ << "/>\n";
+  }
+
+  /// MuJoCo refuses ranges in which nothing can move.
+  static std::string range_text(std::string_view attribute, double lower, double upper) {
+    constexpr double min_range = 1e-6;  // rad
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << ' ' << attribute << "='" << lower << ' ' << std::max(upper, lower + min_range) << "'";
+    return text.str();
   }
 
   void write_pairs(const EnvironmentModel& environment) {
@@ -334,11 +376,11 @@ class Writer {
     for (const Joint& joint : robot.joints) {
       const double kv = joint.max_torque / (slip * joint.max_speed);
       const double kp = kv * robot.servo.gain;
-      text_ << "<general" << name_attribute(joint.name) << " joint='" << user_name(joint.name)
-            << "' ctrllimited='true' ctrlrange='" << std::max(joint.lower_limit, -right_angle) << ' '
-            << std::min(joint.upper_limit, right_angle) << "' forcelimited='true' forcerange='" << -joint.max_torque
-            << ' ' << joint.max_torque << "' gainprm='" << kp << "' biastype='affine' biasprm='0 " << -kp << ' ' << -kv
-            << "'/>\n";
+      text_ << "<general" << name_attribute(joint.name) << " joint='" << quoted(joint.name) << "' ctrllimited='true'"
+            << range_text("ctrlrange", std::max(joint.lower_limit, -right_angle),
+                          std::min(joint.upper_limit, right_angle))
+            << " forcelimited='true' forcerange='" << -joint.max_torque << ' ' << joint.max_torque << "' gainprm='"
+            << kp << "' biastype='affine' biasprm='0 " << -kp << ' ' << -kv << "'/>\n";
     }
     text_ << "</actuator>\n";
   }
@@ -387,7 +429,20 @@ MjcfExport export_mjcf(const RobotModel& robot, const EnvironmentModel& environm
       {}};
   const auto lose = [&](const std::string& what) { result.lost.push_back(what); };
   lose("the servos' greatest speed, pulses and latency: an actuator follows its control at once");
+  const auto lose_inertia = [&](const std::string& owner, const MassProperties& mass) {
+    const Eigen::Vector3d moments = moments_of(mass);
+    if (!is_of_solid(moments)) {
+      lose("the inertia of " + owner +
+           ", which no solid has: balanceinertia replaces its principal moments by their mean");
+    } else if (moments[0] < least_moment) {
+      lose("the inertia of " + owner + ", which is too small for MuJoCo: it has at least " + number_text(least_moment) +
+           " kg m^2");
+    }
+  };
   lose("the gait, the touch sensors");
+  for (const MovingObject& object : environment.moving_objects) {
+    lose_inertia("object " + in_quotes(object.name), object.mass);
+  }
   for (const AttachedSensor& sensor : robot.sensors) {
     lose("the sensor " + in_quotes(sensor.name));
   }
@@ -395,6 +450,10 @@ MjcfExport export_mjcf(const RobotModel& robot, const EnvironmentModel& environm
     lose("meshes that are only shown");
   }
   for (const Link& link : robot.links) {
+    if (const std::string name = body_name(link, robot); name != link.name) {
+      lose("the name of link " + in_quotes(link.name) + ", which MuJoCo's own body has: it is " + in_quotes(name));
+    }
+    lose_inertia("link " + in_quotes(link.name), link.mass);
     if (std::ranges::any_of(link.geometries, [](const Geometry& solid) { return solid.friction_across.has_value(); })) {
       lose("the friction across link " + in_quotes(link.name));
     }

@@ -120,6 +120,7 @@ class ChainBuilder {
     chain.kernel_limits.push_back(entry.kernel_limits);
     chain.joint_origins.push_back(entry.origin);
     chain.headward_first.push_back(headward_first);
+    chain.is_in_frame_of_link.push_back(entry.is_in_frame_of_body);
     chain.joint_map += (chain.joints.size() > 1 ? ", " : "") + entry.joint.name + " (" +
                        (*bodies_)[headward].link.name + " - " + tailward + ")";
     return body_index(tailward);

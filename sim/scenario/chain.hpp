@@ -15,8 +15,9 @@ struct Chain {
   std::vector<AngleLimits> kernel_limits;
   std::vector<Origin> link_origins;
   std::vector<Origin> joint_origins;
-  std::vector<bool> headward_first;  ///< by joint: whether its file lists the link towards the head first
-  std::string joint_map;             ///< for the user: "joints from the head, ...: J5 (Head - 4Seg), ..."
+  std::vector<bool> headward_first;       ///< by joint: whether its file lists the link towards the head first
+  std::vector<bool> is_in_frame_of_link;  ///< by joint: whether its file gives it in the frame of one of its links
+  std::string joint_map;                  ///< for the user: "joints from the head, ...: J5 (Head - 4Seg), ..."
 };
 
 /// Orders the bodies and joints of a robot file from head to tail. The head is the end of the chain whose name ends

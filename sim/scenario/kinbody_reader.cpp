@@ -201,7 +201,8 @@ class KinBodyReader {
     PendingJoint pending{{{element.document().name(), element.line()},
                           std::move(description.joint),
                           std::move(description.bodies),
-                          description.kernel_limits},
+                          description.kernel_limits,
+                          false},
                          std::move(description.offset_from),
                          scope.pose};
     JointEntry& entry = pending.entry;
@@ -212,6 +213,7 @@ class KinBodyReader {
     }
     if (pending.offset_from) {
       pending.offset_from = scope.prefix + *pending.offset_from;
+      entry.is_in_frame_of_body = std::ranges::find(entry.bodies, *pending.offset_from) != entry.bodies.end();
     }
     const auto same =
         std::ranges::find(joints_, entry.joint.name, [](const PendingJoint& other) { return other.entry.joint.name; });

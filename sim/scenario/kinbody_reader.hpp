@@ -33,6 +33,7 @@ struct JointEntry {
   /// Names of bodies. The angle is the rotation of the second relative to the first about the axis.
   std::array<std::string, 2> bodies;
   AngleLimits kernel_limits;
+  bool is_in_frame_of_body = false;  ///< <offsetfrom> names one of the two bodies
 };
 
 /// Two bodies that must not touch each other.

@@ -81,13 +81,21 @@ class RobotCheck {
  private:
   void warn(const Origin& origin, const std::string& text) { warnings_.push_back(warning(origin, text)); }
 
-  /// A joint is near both of its links. The tolerance is half a link, because a bracket may be no part of either.
+  /// A joint is near both of its links. The tolerance is half a link, because a bracket may be no part of either. The
+  /// axis of a joint in the frame of one of its links may be far from the shell of the other one, as in wrists: there
+  /// the tolerance is many times the longest link, and a length in another unit is outside of it.
   void check_distance(std::size_t joint) {
     const auto excess = [&](std::size_t link) {
       return distance(bounds_[link], chain_->joints[joint].anchor) - length_of(bounds_[link]) / 2.0;
     };
     const std::size_t link = excess(joint) > excess(joint + 1) ? joint : joint + 1;
-    if (excess(link) > 0.0) {
+    const std::size_t nearer = link == joint ? joint + 1 : joint;
+    constexpr double many = 10.0;
+    const double tolerance =
+        chain_->is_in_frame_of_link[joint] && excess(nearer) <= 0.0
+            ? many * length_of(*std::ranges::max_element(bounds_, {}, length_of)) - length_of(bounds_[link]) / 2.0
+            : 0.0;
+    if (excess(link) > tolerance) {
       warn(chain_->joint_origins[joint], "joint " + in_quotes(chain_->joints[joint].name) + " is " +
                                              millimetres(distance(bounds_[link], chain_->joints[joint].anchor)) +
                                              " outside of its body " + in_quotes(chain_->links[link].name) +
@@ -232,6 +240,63 @@ double depth_of_sphere(const Geometry& sphere, const Pose& sphere_body, const Ge
   return sphere.extents.x() - distance;
 }
 
+/// The point of a solid that is farthest in a direction. Cylinders lie along y.
+Eigen::Vector3d farthest(const Geometry& solid, const Pose& body, const Eigen::Vector3d& direction) {
+  const Pose pose = body * solid.pose;
+  const Eigen::Vector3d inner = pose.orientation.conjugate() * direction;
+  const Eigen::Vector3d& extents = solid.extents;
+  const Eigen::Vector3d signs = inner.unaryExpr([](double part) { return part < 0.0 ? -1.0 : 1.0; });
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  switch (solid.shape) {
+    case Shape::box:
+      point = signs.cwiseProduct(extents);
+      break;
+    case Shape::sphere:
+      point = extents.x() * inner.normalized();
+      break;
+    case Shape::cylinder: {
+      const Eigen::Vector3d across(inner.x(), 0.0, inner.z());
+      point = across.norm() > 0.0 ? (extents.x() * across.normalized()).eval() : point;
+      point.y() = signs.y() * extents.y();
+      break;
+    }
+    case Shape::hull:
+    case Shape::surface:
+    case Shape::height_field:
+      point = *std::ranges::max_element(solid.mesh->vertices, {},
+                                        [&](const Eigen::Vector3d& vertex) { return vertex.dot(inner); });
+      break;
+  }
+  return pose * point;
+}
+
+/// Whether two solids overlap by more than a tenth of their size. Steps towards the point of the differences of their
+/// points that is nearest to 0 (Frank and Wolfe 1956) end at a plane between them if there is one.
+bool overlap_much(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
+  static constexpr double share = 0.9;
+  constexpr int steps = 100;
+  const auto centre = [](const Geometry& solid, const Pose& body) {
+    const Bounds bounds = bounds_of(solid, body);
+    return Eigen::Vector3d((bounds.lowest + bounds.highest) / 2.0);
+  };
+  const Eigen::Vector3d left_centre = centre(left, left_body);
+  const Eigen::Vector3d right_centre = centre(right, right_body);
+  const auto smaller = [](const Eigen::Vector3d& point, const Eigen::Vector3d& about) {
+    return Eigen::Vector3d(about + share * (point - about));
+  };
+  Eigen::Vector3d nearest = left_centre - right_centre;
+  for (int step = 0; step < steps && nearest.squaredNorm() > 0.0; ++step) {
+    const Eigen::Vector3d corner = smaller(farthest(left, left_body, -nearest), left_centre) -
+                                   smaller(farthest(right, right_body, nearest), right_centre);
+    if (corner.dot(nearest) > 0.0) {
+      return false;
+    }
+    const Eigen::Vector3d way = corner - nearest;
+    nearest += std::min(1.0, -nearest.dot(way) / way.squaredNorm()) * way;
+  }
+  return true;
+}
+
 /// The value that the share of the values is below.
 double quantile(std::vector<double> values, double share) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -267,6 +332,36 @@ double usual_distance(const HeightField& field) {
 }  // namespace
 
 std::vector<std::string> check_robot(const Chain& chain) { return RobotCheck(chain).run(); }
+
+std::vector<std::string> check_overlaps(const Chain& chain) {
+  std::vector<std::string> pairs;
+  const Origin* first = nullptr;
+  for (std::size_t a = 0; a < chain.links.size(); ++a) {
+    const Link& here = chain.links[a];
+    for (std::size_t b = a + 2; b < chain.links.size(); ++b) {
+      const Link& there = chain.links[b];
+      const bool overlap = std::ranges::any_of(here.geometries, [&](const Geometry& left) {
+        return std::ranges::any_of(there.geometries, [&](const Geometry& right) {
+          return overlap_depth(left, here.pose, right, there.pose) > largest_start_depth &&
+                 overlap_much(left, here.pose, right, there.pose);
+        });
+      });
+      if (overlap) {
+        first = first == nullptr ? &chain.link_origins[a] : first;
+        pairs.push_back(in_quotes(here.name) + " and " + in_quotes(there.name));
+      }
+    }
+  }
+  if (pairs.empty()) {
+    return {};
+  }
+  return {warning(*first,
+                  "bodies overlap at the start that are no neighbours, and their contact may throw the robot "
+                  "away: " +
+                      listed(pairs) +
+                      "; make what touches smaller, or write <selfcollision>0</selfcollision> into the "
+                      "environment")};
+}
 
 std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin) {
   const double noticeable = 0.5 * gravity.norm();  // at 60 degrees, steeper than any slope that can be crawled

@@ -15,6 +15,10 @@ namespace proleg::sim {
 /// Warnings on the geometry and the masses of a robot.
 [[nodiscard]] std::vector<std::string> check_robot(const Chain& chain);
 
+/// A warning on links that are no neighbours and overlap by more than a tenth of their size at angles 0. It holds where
+/// they collide: a contact that deep pushes them apart at once.
+[[nodiscard]] std::vector<std::string> check_overlaps(const Chain& chain);
+
 /// A warning on gravity (m/s^2) that does not hold a robot on the ground. origin: where it is given.
 [[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -219,6 +220,7 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
   }
   robot.warnings = check_robot(chain);
   robot.contact_warnings = contact_warnings(contents, chain.links);
+  std::ranges::move(check_overlaps(chain), std::back_inserter(robot.contact_warnings));
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);

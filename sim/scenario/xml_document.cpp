@@ -39,6 +39,17 @@ std::optional<std::size_t> find_null_reference(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view line_of(std::string_view text, std::size_t at) {
+  return trimmed(text.substr(at, text.find('\n', at) - at));
+}
+
+/// Position of the line that version control writes before the first of two versions that it could not merge.
+std::optional<std::size_t> find_merge_mark(std::string_view text) {
+  constexpr std::string_view mark = "\n<<<<<<< ";
+  const std::size_t at = text.find(mark);
+  return at == std::string_view::npos ? std::nullopt : std::optional(at + 1);
+}
+
 /// "mismatched element" for XML_ERROR_MISMATCHED_ELEMENT.
 std::string error_words(const tinyxml2::XMLDocument& document) {
   std::string words = lower_case(document.ErrorName());
@@ -160,6 +171,14 @@ std::string XmlElement::required_attribute(std::string_view name) const {
   return std::move(*result);
 }
 
+std::vector<std::string> XmlElement::attribute_names() const {
+  std::vector<std::string> names;
+  for (const auto* attribute = node_->FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
+    names.emplace_back(attribute->Name());
+  }
+  return names;
+}
+
 std::string XmlElement::text(std::initializer_list<std::string_view> attributes) const {
   check_attributes(std::span(attributes.begin(), attributes.size()));
   std::string result;
@@ -194,6 +213,10 @@ XmlDocument::XmlDocument(std::filesystem::path path, std::string text, const Xml
     throw InputError(name_, comment->line, comment->found, comment->expected);
   }
   if (parsed_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    if (const auto mark = find_merge_mark(text)) {
+      throw InputError(name_, line_at(text, *mark), "the mark of a merge conflict, " + in_quotes(line_of(text, *mark)),
+                       "one of the two versions, without the lines '<<<<<<<', '=======' and '>>>>>>>'");
+    }
     const tinyxml2::XMLError error = parsed_->ErrorID();
     const bool may_lack_tag = error == tinyxml2::XML_ERROR_PARSING || error == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT;
     if (const auto unpaired = may_lack_tag ? find_unpaired_tag(text) : std::nullopt) {

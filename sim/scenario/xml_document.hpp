@@ -47,6 +47,8 @@ class XmlElement {
 
   [[nodiscard]] std::optional<std::string> attribute(std::string_view name) const;
   [[nodiscard]] std::string required_attribute(std::string_view name) const;
+  /// As they are written.
+  [[nodiscard]] std::vector<std::string> attribute_names() const;
 
   /// The text of an element that has no tags and only these attributes, without blanks at its ends.
   [[nodiscard]] std::string text(std::initializer_list<std::string_view> attributes = {}) const;

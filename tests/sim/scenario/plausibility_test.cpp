@@ -77,6 +77,12 @@ TEST(Plausibility, ALinkFarFromItsJointIsNamed) {
   expect_warning(files, "caterpillar.robot.xml:58: joint 'J5' is 974 mm outside of its body '4Seg'", "is wrong");
 }
 
+TEST(Plausibility, AJointInTheFrameOfItsBodyMayBeFarFromTheShellOfTheOther) {
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file, "<translation>0 0.288 0</translation>", "<translation>0.1 0.288 0</translation>");
+  EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
+}
+
 TEST(Plausibility, OneJointWithItsBodiesInTheOppositeOrderIsNamed) {
   MemoryFiles files = caterpillar_files();
   files.replace(robot_file, "<body>2Seg</body>\n      <body>3Seg</body>", "<body>3Seg</body>\n      <body>2Seg</body>");

@@ -7,7 +7,6 @@ library_packages=(
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
   libassimp-dev libqhull-dev  # meshes of links and worlds
-  liburdfdom-dev  # robots in URDF
   libboost-dev  # Boost.Asio: serial lines, sockets
   libevdev-dev  # gamepads
   libssl-dev    # TLS of the page; SHA-256

@@ -11,6 +11,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/authoring/xml_text.hpp"
 #include "sim/mesh/mesh_file.hpp"
+#include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -231,11 +232,11 @@ class RobotWriter {
       refuse(shape.line, "the mesh " + in_quotes(shape.mesh),
              "a file that ends with " + std::string(mesh_file_endings));
     }
-    const std::optional<std::string> file = meshes_->file_of(shape.mesh);
-    if (!file) {
-      refuse(shape.line, "no file for the mesh " + in_quotes(shape.mesh), expected_mesh(shape.mesh));
+    const ImportedMeshes::Named mesh = meshes_->touching(shape.mesh);
+    if (mesh.file.empty()) {
+      throw InputError(robot_->file + ':' + std::to_string(shape.line) + ": " + mesh.problem);
     }
-    return *file;
+    return mesh.file;
   }
 
   /// Without its look a robot moves as with it.
@@ -249,11 +250,12 @@ class RobotWriter {
       lose(what + "files that can be shown end with " + std::string(mesh_file_endings) + at_line(shape.line));
       return std::nullopt;
     }
-    std::optional<std::string> file = meshes_->file_of(shape.mesh);
-    if (!file) {
-      lose(what + "found no such file, expected " + expected_mesh(shape.mesh) + at_line(shape.line));
+    ImportedMeshes::Named mesh = meshes_->shown(shape.mesh, shape.size);
+    if (mesh.file.empty()) {
+      lose(what + mesh.problem + at_line(shape.line));
+      return std::nullopt;
     }
-    return file;
+    return std::move(mesh.file);
   }
 
   void write_mass(const UrdfBody& body) {
@@ -269,30 +271,54 @@ class RobotWriter {
                        body.line);
       return;
     }
-    check_inertia(body);
-    const Eigen::Matrix3d& inertia = body.mass->inertia;
-    std::string rows;
-    for (Eigen::Index row = 0; row < 3; ++row) {
-      for (Eigen::Index column = 0; column < 3; ++column) {
-        rows += (rows.empty() ? "" : " ") + exact_text(inertia(std::min(row, column), std::max(row, column)));
-      }
+    if (body.mass->mass < masses.min || body.mass->mass > masses.max) {
+      refuse(body.line, "a mass of " + number_text(body.mass->mass) + " kg of link " + in_quotes(body.name),
+             number_text(masses.min) + " to " + number_text(masses.max) +
+                 " kg, or 0 for a mass that its geometry gives; usually it is not in kilograms");
     }
     result_.text.add("      <Mass type=\"custom\">\n        <total>" + exact_text(body.mass->mass) +
-                         "</total>\n        <com>" + vector_text(body.mass->center) + "</com>\n        <inertia>" +
-                         rows + "</inertia>\n      </Mass>\n",
+                         "</total>\n        <com>" + vector_text(body.mass->center) + "</com>\n" + inertia_text(body) +
+                         "      </Mass>\n",
                      body.line);
   }
 
-  void check_inertia(const UrdfBody& body) const {
+  /// Without an <inertia>, Proleg computes that of the geometry.
+  std::string inertia_text(const UrdfBody& body) {
+    const bool is_good = has_good_inertia(body);
+    if (!is_good && body.lacks_inertia) {
+      if (body.collisions.empty()) {
+        refuse(body.line, "link " + in_quotes(body.name) + " with a mass and without moments of inertia",
+               "ixx, iyy and izz above 0, or a <collision> to compute them from");
+      }
+      note("link " + in_quotes(body.name) + " has no moments of inertia, or they are 0: its geometry gives them" +
+           at_line(body.line));
+      return "";
+    }
+    std::string rows;
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      for (Eigen::Index column = 0; column < 3; ++column) {
+        rows +=
+            (rows.empty() ? "" : " ") + exact_text(body.mass->inertia(std::min(row, column), std::max(row, column)));
+      }
+    }
+    return "        <inertia>" + rows + "</inertia>\n";
+  }
+
+  /// Throws InputError for a bad one, unless a link without an inertia is the cause.
+  [[nodiscard]] bool has_good_inertia(const UrdfBody& body) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(body.mass->inertia, Eigen::EigenvaluesOnly);
     const Eigen::Vector3d& moments = solver.eigenvalues();
     constexpr double least_ratio = 1e-9;
-    if (!(moments[0] > least_ratio * moments[2])) {
+    if (moments[0] > least_ratio * moments[2]) {
+      return true;
+    }
+    if (!body.lacks_inertia) {
       refuse(body.line,
              "link " + in_quotes(body.name) + " with an inertia that is not positive definite (principal moments " +
                  number_text(moments[0]) + ", " + number_text(moments[1]) + ", " + number_text(moments[2]) + " kg m^2)",
              "that of a solid; usually it was computed from a mesh in mm, or a product of inertia has the wrong sign");
     }
+    return false;
   }
 
   void write_joint(const UrdfHinge& joint) {

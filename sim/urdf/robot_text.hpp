@@ -49,8 +49,8 @@ struct RobotText {
   std::vector<std::string> lost;   ///< what Proleg has not, one line each
 };
 
-/// Writes robot.robot.xml. source: name of the URDF file. Throws InputError for a mesh that touches and cannot, for an
-/// inertia that no body has, and for a link without mass and geometry.
+/// Writes robot.robot.xml. source: name of the URDF file. Throws InputError for a mesh that touches and cannot, for a
+/// mass out of range, for an inertia that no body has, and for a link without mass and geometry.
 [[nodiscard]] RobotText write_robot_text(const UrdfRobot& robot, const UrdfChain& chain, const std::string& source,
                                          const RobotTextOptions& options, ImportedMeshes& meshes);
 

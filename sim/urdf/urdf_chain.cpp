@@ -148,6 +148,7 @@ class ChainMaker {
     if (link.mass) {
       const MassProperties mass = is_own_frame ? *link.mass : moved(*link.mass, to_body);
       group.body.mass = group.body.mass ? joined(*group.body.mass, mass) : mass;
+      group.body.lacks_inertia = group.body.lacks_inertia || mass.inertia.isZero(0.0);
     }
     const auto placed = [&](UrdfShape shape) {
       shape.pose = is_own_frame ? shape.pose : to_body * shape.pose;

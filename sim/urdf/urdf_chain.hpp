@@ -21,6 +21,7 @@ struct UrdfBody {
   std::string name;                    ///< of the first link from the root that has a mass or a shape
   Pose pose;                           ///< in the robot's frame at angles 0: y is forward, z up
   std::optional<MassProperties> mass;  ///< nothing: no link has one
+  bool lacks_inertia = false;          ///< a link with a mass has none: it counts as a point
   std::vector<Solid> collisions;
   std::vector<UrdfShape> visuals;
   int line = 0;  ///< of that link

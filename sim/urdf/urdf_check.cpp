@@ -1,8 +1,6 @@
 #include "sim/urdf/urdf_check.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -12,57 +10,23 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/values.hpp"
-#include "sim/urdf/urdf_values.hpp"
 
 namespace proleg::sim {
 namespace {
 
-/// Kinds of things that are lost, each with the lines where they are.
-class LostThings {
- public:
-  void add(const std::string& what, int line) {
-    auto known = std::ranges::find(things_, what, &Thing::what);
-    if (known == things_.end()) {
-      if (things_.size() == most_kinds) {
-        return;
-      }
-      known = things_.insert(things_.end(), {what, {}});
-    }
-    known->lines.push_back(line);
-  }
-
-  [[nodiscard]] std::vector<std::string> lines() const {
-    constexpr std::size_t most = 5;
-    std::vector<std::string> result;
-    for (const Thing& thing : things_) {
-      std::string text = thing.what + (thing.lines.size() == 1 ? " (line " : " (lines ");
-      for (std::size_t i = 0; i < std::min(most, thing.lines.size()); ++i) {
-        text += (i > 0 ? ", " : "") + std::to_string(thing.lines[i]);
-      }
-      result.push_back(text + (thing.lines.size() > most ? ", ...)" : ")"));
-    }
-    return result;
-  }
-
- private:
-  static constexpr std::size_t most_kinds = 100;
-
-  struct Thing {
-    std::string what;
-    std::vector<int> lines;
-  };
-  std::vector<Thing> things_;
-};
-
 class UrdfCheck {
  public:
-  explicit UrdfCheck(const XmlDocument& document) : root_(document.root("robot")) {}
+  UrdfCheck(const XmlDocument& document, UrdfRemarks& remarks) : root_(document.root("robot")), remarks_(&remarks) {}
 
   UrdfElements run() {
+    lose_others(root_, {"name", "version"}, {"link", "joint", "gazebo", "material"}, *remarks_);
+    if (const auto version = root_.attribute("version"); version && !version->starts_with("1")) {
+      remarks_->lost.add("version=" + in_quotes(*version) + " of <robot>, which is read as 1.2", root_.line());
+    }
     for (const XmlElement& child : root_.children()) {
       if (lower_case(child.label()).starts_with("<xacro:") || child.is("link") || child.is("joint") ||
           child.is("material")) {
-        check_urdf_values(child);
+        refuse_xacro(child);
       }
       read_top(child);
     }
@@ -75,10 +39,9 @@ class UrdfCheck {
     check_tree();
     for (const auto& [link, line] : gazebo_links_) {
       if (!line_of_link_.contains(link)) {
-        lost_.add("<gazebo> of the unknown link or joint " + in_quotes(link), line);
+        remarks_->lost.add("<gazebo> of the unknown link or joint " + in_quotes(link), line);
       }
     }
-    elements_.lost = lost_.lines();
     return std::move(elements_);
   }
 
@@ -86,20 +49,43 @@ class UrdfCheck {
   void read_top(const XmlElement& element) {
     if (element.is("link")) {
       note_name(element, line_of_link_, "link");
-      check_link(element);
+      note_contents(element);
       elements_.links.push_back(element);
     } else if (element.is("joint")) {
       note_name(element, line_of_joint_, "joint");
       elements_.joints.push_back(element);
     } else if (element.is("gazebo")) {
       read_gazebo(element);
-    } else if (!element.is("material")) {
-      lost_.add(element.label(), element.line());
+    } else if (element.is("material")) {
+      note_material(element);
+    }
+  }
+
+  void note_contents(const XmlElement& link) {
+    for (const XmlElement& child : link.children()) {
+      elements_.has_collision = elements_.has_collision || child.is("collision");
+      if (child.is("visual")) {
+        for (const XmlElement& material : child.children()) {
+          note_material(material);
+        }
+      }
+    }
+  }
+
+  /// A material that another element may name. The first one of a name counts.
+  void note_material(const XmlElement& element) {
+    const std::optional<std::string> name = element.attribute("name");
+    if (!element.is("material") || !name || elements_.materials.contains(*name)) {
+      return;
+    }
+    UrdfRemarks of_uses;  // where the material is read
+    if (const auto colour = urdf_colour(element, of_uses)) {
+      elements_.materials.emplace(*name, *colour);
     }
   }
 
   void note_name(const XmlElement& element, std::map<std::string, int>& lines, const std::string& kind) {
-    const std::string name = checked_name(element, element.required_attribute("name"));
+    const std::string name = urdf_name(element, "name");
     const auto [known, is_new] = lines.emplace(name, element.line());
     if (!is_new) {
       element.refuse("a second " + kind + " " + in_quotes(name),
@@ -107,55 +93,8 @@ class UrdfCheck {
     }
   }
 
-  void check_link(const XmlElement& link) {
-    for (const XmlElement& child : link.children()) {
-      if (child.is("visual") || child.is("collision")) {
-        check_shape(child);
-      } else if (child.is("inertial")) {
-        check_inertial(child, link);
-      } else {
-        lost_.add(child.label() + " of a link", child.line());
-      }
-    }
-    static_cast<void>(link.child("inertial"));  // at most one
-  }
-
-  void check_shape(const XmlElement& shape) {
-    const XmlElement geometry = shape.required_child("geometry");
-    std::vector<XmlElement> solids = geometry.children();
-    constexpr std::array<std::string_view, 4> kinds{"box", "sphere", "cylinder", "mesh"};
-    const auto is_known = [&](const XmlElement& solid) {
-      return std::ranges::any_of(kinds, [&](std::string_view kind) { return solid.is(kind); });
-    };
-    if (solids.size() != 1 || !is_known(solids.front())) {
-      geometry.refuse((solids.empty() ? "nothing" : solids.front().label()) + " in " + geometry.label(),
-                      "one <box>, <sphere>, <cylinder> or <mesh>");
-    }
-    const XmlElement& solid = solids.front();
-    require_urdf_sizes(solid);
-    if (solid.is("mesh") && solid.required_attribute("filename").empty()) {
-      solid.refuse("an empty filename in " + solid.label(), "that of a mesh");
-    }
-    if (const auto material = shape.child("material"); material && material->child("texture")) {
-      lost_.add("<texture> of a <visual>", material->line());
-    }
-  }
-
-  void check_inertial(const XmlElement& inertial, const XmlElement& link) {
-    const XmlElement mass = inertial.required_child("mass");
-    const std::string text = mass.required_attribute("value");
-    if (const std::optional<double> value = parse_number(text); value && *value < 0.0) {
-      mass.refuse("a mass of " + text + " kg in link " + in_quotes(link.required_attribute("name")),
-                  "a mass above 0, or 0 for a frame without mass");
-    }
-    const XmlElement inertia = inertial.required_child("inertia");
-    for (const std::string_view moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) {
-      static_cast<void>(inertia.required_attribute(moment));
-    }
-  }
-
   void check_joint(const XmlElement& joint) {
-    const std::string name = joint.required_attribute("name");
+    const std::string name = urdf_name(joint, "name");
     const std::string type = joint.required_attribute("type");
     if (type != "revolute" && type != "continuous" && type != "fixed") {
       joint.refuse("joint " + in_quotes(name) + " of type " + in_quotes(type),
@@ -167,68 +106,18 @@ class UrdfCheck {
     }
     for (const std::string_view end : {"parent", "child"}) {
       const XmlElement element = joint.required_child(end);
-      if (const std::string link = element.required_attribute("link"); !line_of_link_.contains(link)) {
+      if (const std::string link = urdf_name(element, "link"); !line_of_link_.contains(link)) {
         element.refuse("the unknown link " + in_quotes(link) + " in joint " + in_quotes(name),
                        "one of " + known_links());
       }
     }
-    if (type != "fixed") {
-      check_motion(joint, name, type);
-    }
-    for (const XmlElement& child : joint.children()) {
-      constexpr std::array<std::string_view, 6> read{"origin", "parent", "child", "axis", "limit", "mimic"};
-      const bool is_read =
-          std::ranges::any_of(read, [&](std::string_view tag) { return child.is(tag); }) || has_no_effect(child);
-      if (!is_read) {
-        lost_.add(child.label() + " of a joint", child.line());
-      }
-    }
-  }
-
-  /// <dynamics> without damping and friction.
-  static bool has_no_effect(const XmlElement& element) {
-    const auto is_zero = [&](std::string_view attribute) {
-      const std::optional<std::string> text = element.attribute(attribute);
-      return !text || parse_number(*text) == 0.0;
-    };
-    return element.is("dynamics") && is_zero("damping") && is_zero("friction");
-  }
-
-  static void check_motion(const XmlElement& joint, const std::string& name, const std::string& type) {
-    if (const auto axis = joint.child("axis")) {
-      double square = 0.0;
-      const std::string text = axis->required_attribute("xyz");
-      for (const std::string_view word : words(text)) {
-        const double part = parse_number(word).value_or(0.0);
-        square += part * part;
-      }
-      constexpr double least = 1e-6;
-      if (std::sqrt(square) < least) {
-        axis->refuse("the axis " + in_quotes(text) + " of joint " + in_quotes(name), "a direction that is not 0");
-      }
-    }
-    if (type != "revolute") {
-      return;
-    }
-    const XmlElement limit = joint.required_child("limit");
-    const auto value = [&](std::string_view attribute) {
-      const std::optional<std::string> text = limit.attribute(attribute);
-      return text ? parse_number(*text).value_or(0.0) : 0.0;
-    };
-    if (value("lower") >= value("upper")) {
-      limit.refuse("limits " + number_text(value("lower")) + " to " + number_text(value("upper")) + " rad of joint " +
-                       in_quotes(name),
-                   "a lower limit below the upper one; a joint that does not move is 'fixed'");
-    }
-    static_cast<void>(limit.required_attribute("effort"));
-    static_cast<void>(limit.required_attribute("velocity"));
   }
 
   void check_tree() {
     std::map<std::string, std::pair<std::string, XmlElement>> joint_above;  // by child: its parent, and the joint
     for (const XmlElement& joint : elements_.joints) {
-      const std::string parent = joint.required_child("parent").required_attribute("link");
-      const std::string child = joint.required_child("child").required_attribute("link");
+      const std::string parent = urdf_name(joint.required_child("parent"), "link");
+      const std::string child = urdf_name(joint.required_child("child"), "link");
       const auto [known, is_new] = joint_above.emplace(child, std::pair(parent, joint));
       if (!is_new) {
         joint.refuse("link " + in_quotes(child) + " as the child of a second joint",
@@ -237,12 +126,11 @@ class UrdfCheck {
     }
     const XmlElement* root = nullptr;
     for (const XmlElement& link : elements_.links) {
-      const std::string name = link.required_attribute("name");
+      const std::string name = urdf_name(link, "name");
       if (!joint_above.contains(name)) {
         if (root != nullptr) {
-          link.refuse(
-              "link " + in_quotes(name) + " that no joint connects to " + in_quotes(root->required_attribute("name")),
-              "one tree: one link that is no child of a joint");
+          link.refuse("link " + in_quotes(name) + " that no joint connects to " + in_quotes(urdf_name(*root, "name")),
+                      "one tree: one link that is no child of a joint");
         }
         root = &link;
       }
@@ -254,13 +142,13 @@ class UrdfCheck {
   void check_reached(const XmlElement* root) {
     std::multimap<std::string, std::string> children;
     for (const XmlElement& joint : elements_.joints) {
-      children.emplace(joint.required_child("parent").required_attribute("link"),
-                       joint.required_child("child").required_attribute("link"));
+      children.emplace(urdf_name(joint.required_child("parent"), "link"),
+                       urdf_name(joint.required_child("child"), "link"));
     }
     std::set<std::string> reached;
     std::vector<std::string> next;
     if (root != nullptr) {
-      next.push_back(root->required_attribute("name"));
+      next.push_back(urdf_name(*root, "name"));
     }
     while (!next.empty()) {
       const std::string link = next.back();
@@ -270,7 +158,7 @@ class UrdfCheck {
       std::transform(first, last, std::back_inserter(next), [](const auto& pair) { return pair.second; });
     }
     for (const XmlElement& link : elements_.links) {
-      if (const std::string name = link.required_attribute("name"); !reached.contains(name)) {
+      if (const std::string name = urdf_name(link, "name"); !reached.contains(name)) {
         link.refuse("link " + in_quotes(name) + " in a ring of links, or below one", "a tree");
       }
     }
@@ -282,7 +170,7 @@ class UrdfCheck {
     const auto mu = element.child("mu1");
     for (const XmlElement& child : element.children()) {
       if (!(reference && (child.is("mu1") || child.is("mu2")))) {
-        lost_.add(child.label() + " in <gazebo>", child.line());
+        remarks_->lost.add(child.label() + " in <gazebo>", child.line());
       }
     }
     if (!reference || !mu) {
@@ -294,13 +182,13 @@ class UrdfCheck {
     };
     const std::optional<double> along = read(*mu);
     if (!along) {
-      lost_.add("<mu1> that is no number from 0 to 1000 in <gazebo>", mu->line());
+      remarks_->lost.add("<mu1> that is no number from 0 to 1000 in <gazebo>", mu->line());
       return;
     }
     gazebo_links_.emplace_back(*reference, element.line());
     elements_.friction[*reference] = *along;
     if (const auto across = element.child("mu2"); across && read(*across) != along) {
-      lost_.add("<mu2> that differs from <mu1> in <gazebo>", across->line());
+      remarks_->lost.add("<mu2> that differs from <mu1> in <gazebo>", across->line());
     }
   }
 
@@ -317,11 +205,34 @@ class UrdfCheck {
   std::map<std::string, int> line_of_link_;
   std::map<std::string, int> line_of_joint_;
   std::vector<std::pair<std::string, int>> gazebo_links_;  ///< link and line of each <gazebo> with a friction
-  LostThings lost_;
+  UrdfRemarks* remarks_;
 };
 
 }  // namespace
 
-UrdfElements check_urdf(const XmlDocument& document) { return UrdfCheck(document).run(); }
+UrdfElements check_urdf(const XmlDocument& document, UrdfRemarks& remarks) {
+  return UrdfCheck(document, remarks).run();
+}
+
+std::optional<Eigen::Vector3d> urdf_colour(const XmlElement& material, UrdfRemarks& remarks) {
+  for (const XmlElement& child : material.children()) {
+    if (!child.is("color")) {
+      continue;
+    }
+    const std::string text = child.attribute("rgba").value_or("");
+    std::vector<double> parts;
+    for (const std::string_view word : words(text)) {
+      constexpr Range shares{0.0, 1.0, ""};
+      parts.push_back(parse_number_in(word, shares).value_or(-1.0));
+    }
+    const bool is_good = (parts.size() == 3 || parts.size() == 4) && *std::ranges::min_element(parts) >= 0.0;
+    if (is_good) {
+      return Eigen::Vector3d(parts[0], parts[1], parts[2]);
+    }
+    remarks.lost.add("the colour " + in_quotes(text) + ": expected 4 numbers from 0 to 1", child.line());
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
 
 }  // namespace proleg::sim

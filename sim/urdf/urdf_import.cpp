@@ -38,7 +38,9 @@ class Importer {
     robot_ = read_urdf(path_, *text);
     chain_ = make_urdf_chain(robot_);
     result_.lost = std::move(robot_.lost);
-    result_.notes = std::move(chain_.notes);
+    result_.notes = std::move(robot_.notes);
+    result_.warnings = std::move(robot_.warnings);
+    std::ranges::move(chain_.notes, std::back_inserter(result_.notes));
     note_fixed_base();
     use_visuals_if_nothing_touches();
     finish_scenario(write_scenario());
@@ -102,6 +104,11 @@ class Importer {
       scenario = read(files(0.0));
     }
     std::ranges::move(written.notes, std::back_inserter(result_.notes));
+    std::ranges::copy(meshes_.notes(), std::back_inserter(result_.notes));
+    if (!meshes_.outside().empty()) {
+      result_.warnings.push_back(robot_.file + ": meshes outside of the robot's folder are copied into the scenario: " +
+                                 listed(meshes_.outside()));
+    }
     std::ranges::move(written.lost, std::back_inserter(result_.lost));
     return scenario;
   }
@@ -158,30 +165,32 @@ class Importer {
     result_.files = files(std::ceil(-lowest * per_metre) / per_metre);
     const Scenario scenario = read(result_.files);
     for (const std::string& warning : scenario.warnings) {
-      result_.warnings.push_back(in_words_of_urdf(with_urdf_line(warning)));
+      result_.warnings.push_back(with_urdf_line(warning));
     }
     warn_of_size(scenario.robot);
   }
 
-  /// A warning on the robot's file, with the causes that it has in a URDF file.
-  static std::string in_words_of_urdf(std::string warning) {
-    if (warning.find("<offsetfrom>") != std::string::npos || warning.find("<translation>") != std::string::npos) {
-      return warning.substr(0, warning.find("; usually")) + "; usually an <origin> is wrong";
+  /// A message on the robot's file, in words of URDF and with the causes that it has there.
+  static std::string in_words_of_urdf(std::string message) {
+    if (message.find("<offsetfrom>") != std::string::npos || message.find("<translation>") != std::string::npos) {
+      message = message.substr(0, message.find("; usually")) + "; usually an <origin> is wrong";
     }
     for (const auto& [ours, theirs] : {std::pair<std::string_view, std::string_view>{"<total>", "<mass>"},
-                                       {"<extents> or another length of <Mass> or <Geom>", "a length"}}) {
-      if (const std::size_t at = warning.find(ours); at != std::string::npos) {
-        warning.replace(at, ours.size(), theirs);
+                                       {"<extents> or another length of <Mass> or <Geom>", "a length"},
+                                       {"<maxtorque>", "effort"},
+                                       {"<maxvel>", "velocity"},
+                                       {"<limitsdeg>", "<limit>"},
+                                       {"<anchor>", "<origin>"},
+                                       {"<com>", "<origin> of <inertial>"}}) {
+      if (const std::size_t at = message.find(ours); at != std::string::npos) {
+        message.replace(at, ours.size(), theirs);
       }
     }
-    return warning;
+    return message;
   }
 
-  Scenario read(const std::vector<SourceFile>& files) const {
-    SourceTexts texts;
-    for (const SourceFile& file : files) {
-      texts.add(file.path, file.text);
-    }
+  Scenario read(const std::vector<SourceFile>& files) {
+    ImportedTexts texts(files, meshes_.known_meshes());
     try {
       return read_scenario(files.front().path, texts);
     } catch (const InputError& error) {
@@ -198,7 +207,7 @@ class Importer {
     }
     const auto line = parse_whole<int>(std::string_view(message).substr(prefix.size(), end - prefix.size()));
     const int origin = text_.origin_of(line.value_or(0));
-    return robot_.file + (origin > 0 ? ':' + std::to_string(origin) : "") + message.substr(end);
+    return robot_.file + (origin > 0 ? ':' + std::to_string(origin) : "") + in_words_of_urdf(message.substr(end));
   }
 
   void warn_of_size(const RobotModel& robot) {

@@ -1,192 +1,240 @@
 #include "sim/urdf/urdf_robot.hpp"
 
-#include <console_bridge/console.h>
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
-
 #include <algorithm>
 #include <array>
-#include <exception>
+#include <cmath>
 #include <map>
-#include <mutex>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/scenario/tag_scanner.hpp"
 #include "sim/scenario/xml_document.hpp"
 #include "sim/urdf/urdf_check.hpp"
 
 namespace proleg::sim {
 namespace {
 
-/// Keeps what urdfdom would print.
-class LogCollector final : public console_bridge::OutputHandler {
- public:
-  LogCollector() { console_bridge::useOutputHandler(this); }
-  ~LogCollector() override { console_bridge::restorePreviousOutputHandler(); }
-  LogCollector(const LogCollector&) = delete;
-  LogCollector& operator=(const LogCollector&) = delete;
+constexpr Range inertia_moments{-1e12, 1e12, "kg m^2"};
+/// Torques and speeds of joints. Files write -1, or a number above these, for none.
+constexpr double least_limit = 1e-9;
+constexpr double most_limit = 1e6;
+constexpr double no_angle_limit = 1e3;  // rad; files write 999999 for none
+constexpr Range every_number{-1e300, 1e300, ""};
 
-  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override {
-    if (level == console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_error_.empty()) {
-      first_error_ = text;
-    }
-  }
-  [[nodiscard]] const std::string& first_error() const { return first_error_; }
-
- private:
-  std::string first_error_;
-};
-
-Eigen::Vector3d vector_of(const ::urdf::Vector3& value) { return {value.x, value.y, value.z}; }
-
-Pose pose_of(const ::urdf::Pose& pose) {
-  const ::urdf::Rotation& q = pose.rotation;
-  return {vector_of(pose.position), Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized()};
-}
-
-std::optional<MassProperties> mass_of(const ::urdf::Link& link) {
-  if (!link.inertial || link.inertial->mass <= 0.0) {
+std::optional<MassProperties> read_mass(const XmlElement& link, UrdfRemarks& remarks) {
+  const auto inertial = link.child("inertial");
+  if (!inertial || inertial->children().empty()) {
     return std::nullopt;
   }
-  const ::urdf::Inertial& from = *link.inertial;
-  const Pose pose = pose_of(from.origin);
-  Eigen::Matrix3d inertia;
-  inertia << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
-  const Eigen::Matrix3d rotation = pose.orientation.toRotationMatrix();
-  const Eigen::Matrix3d turned = rotation * inertia * rotation.transpose();
+  lose_others(*inertial, {}, {"origin", "mass", "inertia"}, remarks);
+  const XmlElement mass = inertial->required_child("mass");
+  lose_others(mass, {"value"}, {}, remarks);
+  MassProperties result;
+  result.mass = urdf_number(mass, "value", any_number);
+  if (result.mass < 0.0) {
+    mass.refuse("a mass of " + urdf_value(mass, "value") + " kg in link " + in_quotes(urdf_name(link, "name")),
+                "a mass above 0, or 0 for a frame without mass");
+  }
+  const Pose pose = urdf_origin(*inertial, remarks);
+  result.center = pose.position;
+  result.inertia.setZero();
+  if (const auto inertia = inertial->child("inertia")) {
+    lose_others(*inertia, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}, {}, remarks);
+    const auto moment = [&](std::string_view name) { return urdf_number(*inertia, name, inertia_moments); };
+    const auto product = [&](std::string_view name) {
+      if (!inertia->attribute(name)) {
+        remarks.notes.add("products of inertia that are missing are 0", inertia->line());
+        return 0.0;
+      }
+      return moment(name);
+    };
+    const double xy = product("ixy");
+    const double xz = product("ixz");
+    const double yz = product("iyz");
+    result.inertia << moment("ixx"), xy, xz, xy, moment("iyy"), yz, xz, yz, moment("izz");
+  }
+  if (result.mass == 0.0) {
+    return std::nullopt;
+  }
   // A rotation of no angle keeps each bit.
-  const bool is_turned = !rotation.isIdentity(0.0);
-  return MassProperties{from.mass, pose.position, is_turned ? turned : inertia};
+  if (const Eigen::Matrix3d rotation = pose.orientation.toRotationMatrix(); !rotation.isIdentity(0.0)) {
+    result.inertia = (rotation * result.inertia * rotation.transpose()).eval();
+  }
+  return result;
 }
 
-UrdfShape shape_of(const ::urdf::Geometry& geometry, const ::urdf::Pose& origin, int line) {
-  UrdfShape shape;
-  shape.pose = pose_of(origin);
-  shape.line = line;
-  switch (geometry.type) {
-    case ::urdf::Geometry::BOX:
-      shape.kind = UrdfShape::Kind::box;
-      shape.size = vector_of(dynamic_cast<const ::urdf::Box&>(geometry).dim);
-      break;
-    case ::urdf::Geometry::SPHERE:
-      shape.kind = UrdfShape::Kind::sphere;
-      shape.size.x() = dynamic_cast<const ::urdf::Sphere&>(geometry).radius;
-      break;
-    case ::urdf::Geometry::CYLINDER: {
-      const auto& cylinder = dynamic_cast<const ::urdf::Cylinder&>(geometry);
-      shape.kind = UrdfShape::Kind::cylinder;
-      shape.size.x() = cylinder.radius;
-      shape.size.y() = cylinder.length;
-      break;
-    }
-    case ::urdf::Geometry::MESH: {
-      const auto& mesh = dynamic_cast<const ::urdf::Mesh&>(geometry);
-      shape.kind = UrdfShape::Kind::mesh;
-      shape.mesh = mesh.filename;
-      shape.size = vector_of(mesh.scale);
-      break;
+class RobotReader {
+ public:
+  RobotReader(const XmlDocument& document, UrdfRobot& robot)
+      : elements_(check_urdf(document, remarks_)), robot_(&robot) {
+    const XmlElement root = document.root("robot");
+    robot.file = document.name();
+    robot.name = root.attribute("name") ? urdf_value(root, "name") : "";
+    if (robot.name.empty()) {
+      robot.name = "robot";
+      remarks_.notes.add("the robot has no name: it is called 'robot'", root.line());
     }
   }
-  return shape;
-}
 
-/// urdfdom lists the <visual>s and the <collision>s of a link in the order of the file.
-std::vector<int> lines_of(const XmlElement& link, std::string_view tag) {
-  std::vector<int> lines;
-  for (const XmlElement& child : link.children()) {
-    if (child.is(tag)) {
-      lines.push_back(child.line());
+  void run() {
+    for (const XmlElement& element : elements_.links) {
+      numbers_.emplace(urdf_name(element, "name"), robot_->links.size());
+      robot_->links.push_back(read_link(element));
     }
-  }
-  return lines;
-}
-
-int line_at_place(const std::vector<int>& lines, std::size_t place, const XmlElement& link) {
-  return place < lines.size() ? lines[place] : link.line();
-}
-
-UrdfLink link_of(const ::urdf::Link& from, const XmlElement& element) {
-  UrdfLink link;
-  link.name = from.name;
-  link.line = element.line();
-  link.mass = mass_of(from);
-  const std::vector<int> visual_lines = lines_of(element, "visual");
-  for (const ::urdf::VisualSharedPtr& visual : from.visual_array) {
-    UrdfShape shape =
-        shape_of(*visual->geometry, visual->origin, line_at_place(visual_lines, link.visuals.size(), element));
-    if (visual->material && visual->material->texture_filename.empty()) {
-      const ::urdf::Color& colour = visual->material->color;
-      shape.colour = Eigen::Vector3f(colour.r, colour.g, colour.b).cast<double>();
+    for (const XmlElement& element : elements_.joints) {
+      robot_->joints.push_back(read_joint(element));
     }
-    link.visuals.push_back(std::move(shape));
+    std::vector<bool> is_child(robot_->links.size(), false);
+    for (const UrdfJoint& joint : robot_->joints) {
+      is_child[joint.child] = true;
+    }
+    robot_->root = static_cast<std::size_t>(std::ranges::find(is_child, false) - is_child.begin());
+    robot_->lost = remarks_.lost.with_lines();
+    robot_->notes = remarks_.notes.with_lines();
+    robot_->warnings = remarks_.warnings.as_warnings(robot_->file);
   }
-  const std::vector<int> collision_lines = lines_of(element, "collision");
-  for (const ::urdf::CollisionSharedPtr& collision : from.collision_array) {
-    link.collisions.push_back(shape_of(*collision->geometry, collision->origin,
-                                       line_at_place(collision_lines, link.collisions.size(), element)));
-  }
-  return link;
-}
 
-UrdfJoint joint_of(const ::urdf::Joint& from, const XmlElement& element,
-                   const std::map<std::string, std::size_t>& links) {
-  UrdfJoint joint;
-  joint.name = from.name;
-  joint.line = element.line();
-  joint.kind = from.type == ::urdf::Joint::REVOLUTE     ? UrdfJoint::Kind::revolute
-               : from.type == ::urdf::Joint::CONTINUOUS ? UrdfJoint::Kind::continuous
-                                                        : UrdfJoint::Kind::fixed;
-  joint.parent = links.at(element.required_child("parent").required_attribute("link"));
-  joint.child = links.at(element.required_child("child").required_attribute("link"));
-  joint.origin = pose_of(from.parent_to_joint_origin_transform);
-  if (joint.kind != UrdfJoint::Kind::fixed) {
-    joint.axis = vector_of(from.axis).normalized();
-  }
-  if (from.limits) {
-    joint.lower = from.limits->lower;
-    joint.upper = from.limits->upper;
-    joint.effort = from.limits->effort;
-    joint.velocity = from.limits->velocity;
-  }
-  return joint;
-}
-
-/// The line of a link or joint that a message of urdfdom names in brackets or quotes; otherwise that of the root.
-int line_named_by(const std::string& message, const UrdfElements& elements) {
-  for (const std::vector<XmlElement>* list : {&elements.joints, &elements.links}) {
-    for (const XmlElement& element : *list) {
-      const std::string name = element.required_attribute("name");
-      if (message.find("[" + name + "]") != std::string::npos || message.find("'" + name + "'") != std::string::npos) {
-        return element.line();
+ private:
+  UrdfLink read_link(const XmlElement& element) {
+    lose_others(element, {"name"}, {"inertial", "visual", "collision"}, remarks_);
+    UrdfLink link;
+    link.name = urdf_name(element, "name");
+    link.line = element.line();
+    link.mass = read_mass(element, remarks_);
+    if (const auto friction = elements_.friction.find(link.name); friction != elements_.friction.end()) {
+      link.friction = friction->second;
+    }
+    for (const XmlElement& child : element.children()) {
+      const bool is_look = child.is("visual");
+      if (!is_look && !child.is("collision")) {
+        continue;
+      }
+      std::vector<UrdfShape>& shapes = is_look ? link.visuals : link.collisions;
+      try {
+        const std::vector<UrdfShape> read =
+            is_look ? urdf_looks(child, elements_, remarks_) : urdf_shapes(child, remarks_);
+        shapes.insert(shapes.end(), read.begin(), read.end());
+      } catch (const InputError& error) {
+        if (!is_look || !elements_.has_collision) {
+          throw;
+        }
+        remarks_.lost.add("the look of link " + in_quotes(link.name) + ": " + error.problem(), error.line());
       }
     }
+    return link;
   }
-  return 0;
-}
 
-::urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& file, const UrdfElements& elements) {
-  static std::mutex mutex;  // the log is one for the whole process
-  const std::lock_guard lock(mutex);
-  const LogCollector log;
-  const auto refuse = [&](const std::string& reason) {
-    throw InputError(file, line_named_by(reason, elements),
-                     "what urdfdom refuses" + (reason.empty() ? "" : ": " + one_line(shortened(reason, 300))),
-                     "a robot in URDF");
-  };
-  ::urdf::ModelInterfaceSharedPtr model;
-  try {
-    model = ::urdf::parseURDF(text);
-  } catch (const std::exception& error) {
-    refuse(error.what());
+  UrdfJoint read_joint(const XmlElement& element) {
+    UrdfJoint joint;
+    joint.name = urdf_name(element, "name");
+    joint.line = element.line();
+    const std::string type = element.required_attribute("type");
+    joint.kind = type == "revolute"     ? UrdfJoint::Kind::revolute
+                 : type == "continuous" ? UrdfJoint::Kind::continuous
+                                        : UrdfJoint::Kind::fixed;
+    for (const auto& [end, number] : {std::pair("parent", &joint.parent), std::pair("child", &joint.child)}) {
+      const XmlElement link = element.required_child(end);
+      lose_others(link, {"link"}, {}, remarks_);
+      *number = numbers_.at(urdf_name(link, "link"));
+    }
+    joint.origin = urdf_origin(element, remarks_);
+    lose_others(element, {"name", "type"},
+                {"origin", "parent", "child", "axis", "limit", "mimic", has_damping(element) ? "limit" : "dynamics"},
+                remarks_);
+    if (joint.kind != UrdfJoint::Kind::fixed) {
+      joint.axis = read_axis(element, joint.name);
+      read_limits(element, joint);
+    }
+    return joint;
   }
-  if (!model || !log.first_error().empty()) {
-    refuse(log.first_error());
+
+  static bool has_damping(const XmlElement& joint) {
+    return std::ranges::any_of(joint.children(), [](const XmlElement& child) {
+      return child.is("dynamics") && std::ranges::any_of(child.attribute_names(), [&](const std::string& name) {
+               return parse_number(child.attribute(name).value_or("")) != 0.0;
+             });
+    });
   }
-  return model;
-}
+
+  Eigen::Vector3d read_axis(const XmlElement& joint, const std::string& name) {
+    const auto axis = joint.child("axis");
+    if (!axis) {
+      return Eigen::Vector3d::UnitX();
+    }
+    lose_others(*axis, {"xyz"}, {}, remarks_);
+    const std::vector<double> xyz = urdf_numbers(*axis, "xyz", 3, directions);
+    const Eigen::Vector3d direction(xyz[0], xyz[1], xyz[2]);
+    constexpr double least = 1e-6;
+    if (direction.norm() < least) {
+      axis->refuse("the axis " + in_quotes(urdf_value(*axis, "xyz")) + " of joint " + in_quotes(name),
+                   "a direction that is not 0");
+    }
+    return direction.normalized();
+  }
+
+  void read_limits(const XmlElement& element, UrdfJoint& joint) {
+    const bool is_revolute = joint.kind == UrdfJoint::Kind::revolute;
+    const auto limit = is_revolute ? element.required_child("limit") : element.child("limit");
+    if (!limit) {
+      return;
+    }
+    lose_others(*limit, {"lower", "upper", "effort", "velocity"}, {}, remarks_);
+    joint.effort = read_most(*limit, "effort");
+    joint.velocity = read_most(*limit, "velocity");
+    const auto angle = [&](std::string_view name) {
+      return limit->attribute(name) ? urdf_number(*limit, name, every_number) : 0.0;
+    };
+    const double lower = angle("lower");
+    const double upper = angle("upper");
+    const double largest = std::max(std::abs(lower), std::abs(upper));
+    if (!is_revolute) {
+      if (largest > 0.0 && largest < no_angle_limit) {
+        remarks_.lost.add("the angles of <limit> in a continuous joint", limit->line());
+      }
+      return;
+    }
+    const std::string both =
+        number_text(lower) + " to " + number_text(upper) + " rad of joint " + in_quotes(joint.name);
+    if (lower > upper) {
+      limit->refuse("limits " + both, "the smaller one as the lower limit");
+    }
+    if (lower == upper) {
+      remarks_.notes.add("limits " + both + ": it does not move", limit->line());
+    }
+    constexpr double turn = 2.0 * std::numbers::pi * 1.001;  // files round
+    if (largest > turn && largest <= no_angle_limit) {
+      remarks_.warnings.add("limits", "limits " + both + "; usually they are in degrees, and URDF has radians",
+                            limit->line());
+    }
+    joint.lower = lower;
+    joint.upper = upper;
+  }
+
+  /// An effort or a velocity; 0 if it is missing, or no limit.
+  double read_most(const XmlElement& limit, std::string_view attribute) {
+    if (!limit.attribute(attribute)) {
+      return 0.0;
+    }
+    const std::string text = urdf_value(limit, attribute);
+    constexpr std::array<std::string_view, 4> endless{"inf", "+inf", "infinity", "+infinity"};
+    const bool is_endless = std::ranges::find(endless, lower_case(text)) != endless.end();
+    const double value = is_endless ? any_number.max : urdf_number(limit, attribute, every_number);
+    if (value < 0.0 || value > most_limit) {
+      remarks_.notes.add(
+          std::string(attribute) + '=' + in_quotes(text) + " in <limit> means no limit: as if it is missing",
+          limit.line());
+      return 0.0;
+    }
+    return value < least_limit ? 0.0 : value;
+  }
+
+  UrdfRemarks remarks_;
+  UrdfElements elements_;
+  UrdfRobot* robot_;
+  std::map<std::string, std::size_t> numbers_;  ///< of the links
+};
 
 /// Other encodings than UTF-8 begin with a mark, or have a byte 0 in their first tag.
 void require_utf8(const std::string& file, const std::string& text) {
@@ -197,47 +245,40 @@ void require_utf8(const std::string& file, const std::string& text) {
   }
 }
 
+/// The text without declarations and a plain document type before its first tag, wherever they are there: they change
+/// nothing in a file in UTF-8. All lines keep their numbers.
+std::string without_declarations(std::string text) {
+  const auto blank = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      text[i] = text[i] == '\n' ? '\n' : ' ';
+    }
+  };
+  std::size_t at = text.size() - without_byte_order_mark(text).size();
+  while ((at = text.find_first_not_of(" \t\r\n", at)) != std::string::npos) {
+    const std::string_view rest = std::string_view(text).substr(at);
+    const bool is_comment = rest.starts_with("<!--");
+    const bool is_type = lower_case(rest.substr(0, 9)) == "<!doctype";
+    const std::string_view mark = is_comment ? "-->" : rest.starts_with("<?") ? "?>" : ">";
+    const std::size_t end = rest.find(mark);
+    if (!(is_comment || is_type || rest.starts_with("<?")) || end == std::string_view::npos ||
+        (is_type && rest.substr(0, end).find('[') != std::string_view::npos)) {
+      break;
+    }
+    if (!is_comment) {
+      blank(at, at + end + mark.size());
+    }
+    at += end + mark.size();
+  }
+  return text;
+}
+
 }  // namespace
 
 UrdfRobot read_urdf(const std::filesystem::path& path, const std::string& text) {
   require_utf8(name_of(path), text);
-  const XmlDocument document(path, text, nullptr);
-  UrdfElements elements = check_urdf(document);
-  const ::urdf::ModelInterfaceSharedPtr model =
-      parse(std::string(without_byte_order_mark(text)), document.name(), elements);
-
+  const XmlDocument document(path, without_declarations(text), nullptr);
   UrdfRobot robot;
-  robot.file = document.name();
-  robot.name = model->getName();
-  std::map<std::string, std::size_t> numbers;
-  const auto known = [&](const auto& found, const XmlElement& element) -> decltype(*found)& {
-    if (!found) {
-      element.refuse(
-          element.label() + " " + in_quotes(element.required_attribute("name")) + ", which urdfdom does not find",
-          "tags and attributes in small letters");
-    }
-    return *found;
-  };
-  for (const XmlElement& element : elements.links) {
-    const std::string name = element.required_attribute("name");
-    UrdfLink link = link_of(known(model->getLink(name), element), element);
-    if (const auto friction = elements.friction.find(name); friction != elements.friction.end()) {
-      link.friction = friction->second;
-    }
-    numbers.emplace(name, robot.links.size());
-    robot.links.push_back(std::move(link));
-  }
-  for (const XmlElement& element : elements.joints) {
-    robot.joints.push_back(
-        joint_of(known(model->getJoint(element.required_attribute("name")), element), element, numbers));
-  }
-  const std::size_t count = robot.links.size();
-  std::vector<bool> is_child(count, false);
-  for (const UrdfJoint& joint : robot.joints) {
-    is_child[joint.child] = true;
-  }
-  robot.root = static_cast<std::size_t>(std::ranges::find(is_child, false) - is_child.begin());
-  robot.lost = std::move(elements.lost);
+  RobotReader(document, robot).run();
   return robot;
 }
 

@@ -131,6 +131,16 @@ TEST(UrdfExport, AnObliqueCylinderAndAnAnchorAwayFromTheOriginComeBack) {
   expect_same(scenario.robot, again.robot);
 }
 
+TEST(UrdfExport, AJointThatDoesNotMoveComesBack) {
+  DiskFiles disk;
+  Scenario scenario = read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), disk);
+  scenario.robot.joints[2].lower_limit = 0.0;
+  scenario.robot.joints[2].upper_limit = 0.0;
+  const UrdfImport import = imported_again(export_urdf(scenario.robot, "m"));
+  EXPECT_NE(joined(import.notes).find("it does not move"), std::string::npos);
+  expect_same(scenario.robot, scenario_of(import).robot);
+}
+
 TEST(UrdfExport, SaysWhatUrdfHasNot) {
   DiskFiles disk;
   const Scenario scenario = read_scenario(source_path("/sim/scenarios/gaits/serpenoid.simulation.xml"), disk);

@@ -21,7 +21,7 @@ namespace {
 Stepper choose_stepper(const Scenario& scenario) {
   constexpr std::size_t max_links_for_direct = 8;  // measured: above, the iterative stepper is faster
   if (scenario.solver == Solver::automatic) {
-    return scenario.robot.links.size() <= max_links_for_direct ? Stepper::direct : Stepper::iterative;
+    return scenario.robot.links.size() <= max_links_for_direct ? Stepper::automatic : Stepper::iterative;
   }
   return scenario.solver == Solver::direct ? Stepper::direct : Stepper::iterative;
 }

@@ -159,6 +159,7 @@ class OdeWorld final : public World {
 
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const override { return contacts_->pressed(link); }
   [[nodiscard]] std::size_t contact_count() const override { return contacts_->count(); }
+  [[nodiscard]] std::size_t relieved_steps() const { return relieved_steps_; }
   [[nodiscard]] double contact_force(std::size_t link) const override { return contacts_->force(link); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return contacts_->sliding(); }
   [[nodiscard]] double energy() const override {
@@ -219,10 +220,11 @@ class OdeWorld final : public World {
     for (HingeMotor& motor : motors_) {
       motor.begin_step();
     }
-    if (stepper_ == Stepper::direct) {
+    if (stepper_ == Stepper::direct || (stepper_ == Stepper::automatic && budget_.take(contacts_->count()))) {
       dWorldStep(world_.get(), step_s_);
     } else {
       random_numbers_.quick_step(world_.get(), step_s_);
+      relieved_steps_ += stepper_ == Stepper::automatic ? 1 : 0;
     }
     contacts_->end_step();
     for (HingeMotor& motor : motors_) {
@@ -371,14 +373,29 @@ class OdeWorld final : public World {
   std::size_t messages_ = 0;  ///< of its own steps; the thread may step other worlds, too
   double step_s_;
   Stepper stepper_;
+  StepBudget budget_;
+  std::size_t relieved_steps_ = 0;
   bool self_collision_;
 };
 
 }  // namespace
 
+bool StepBudget::take(std::size_t points) {
+  constexpr double cube_of_lasting = lasting_points * lasting_points * lasting_points;
+  constexpr double moment = 250 * cube_of_lasting;  // two steps of 200 points, or seven of 128
+  const auto count = static_cast<double>(points);
+  spent_ = std::clamp(spent_ + count * count * count - cube_of_lasting, 0.0, 2 * moment);
+  return spent_ <= moment;
+}
+
 std::unique_ptr<World> make_ode_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                       Stepper stepper) {
   return std::make_unique<OdeWorld>(robot, environment, step_s, stepper);
+}
+
+std::size_t relieved_steps(const World& world) {
+  const auto* const its = dynamic_cast<const OdeWorld*>(&world);
+  return its != nullptr ? its->relieved_steps() : 0;
 }
 
 }  // namespace proleg::sim

@@ -168,5 +168,62 @@ TEST(OdeWorld, TheIterativeStepperRepeatsToo) {
   EXPECT_EQ(wriggle_iteratively(), wriggle_iteratively());
 }
 
+TEST(StepBudget, PaysForManyContactPointsForAMomentAndForFewWithoutEnd) {
+  StepBudget budget;
+  for (int step = 0; step < 100'000; ++step) {
+    ASSERT_TRUE(budget.take(static_cast<std::size_t>(StepBudget::lasting_points))) << step;
+  }
+  int direct = 0;
+  while (direct < 1'000 && budget.take(128)) {
+    ++direct;
+  }
+  EXPECT_GE(direct, 1) << "a robot on 32 feet that is put on the floor";
+  EXPECT_LE(direct, 20) << "less than a fiftieth of a second";
+  int until_direct = 0;
+  while (until_direct < 10'000 && !budget.take(20)) {
+    ++until_direct;
+  }
+  EXPECT_LE(until_direct, 500) << "as soon as contact points are few";
+}
+
+/// Links on eight feet, each with four contact points on a floor.
+RobotModel on_many_feet(std::size_t links) {
+  RobotModel robot = chain(links);
+  for (Link& link : robot.links) {
+    Geometry foot = link.geometries.front();
+    foot.extents = {0.004, 0.004, 0.02};
+    link.geometries.clear();
+    for (int i = 0; i < 8; ++i) {
+      foot.pose.position = {i % 2 == 0 ? -0.015 : 0.015, -0.03 + 0.02 * (i / 2), 0.0};
+      link.geometries.push_back(foot);
+    }
+  }
+  return robot;
+}
+
+TEST(OdeWorld, OfFewLinksTakesTheIterativeStepperOnlyWhileContactPointsAreMany) {
+  const auto after = [](const RobotModel& robot, int steps) {
+    std::unique_ptr<World> world = make_ode_world(robot, flat_ground(0.5, 0.026), step_s, Stepper::automatic);
+    for (int i = 0; i < steps; ++i) {
+      world->step();
+    }
+    return world;
+  };
+  const std::unique_ptr<World> few = after(chain(4), 1'000);
+  EXPECT_GT(few->contact_count(), 0U);
+  EXPECT_EQ(relieved_steps(*few), 0U);
+  const std::unique_ptr<World> many = after(on_many_feet(4), 1'000);
+  EXPECT_GT(relieved_steps(*many), 500U);
+  EXPECT_LT(relieved_steps(*many), 1'000U) << "it falls onto the floor in direct steps";
+  const std::unique_ptr<World> exact =
+      make_ode_world(on_many_feet(4), flat_ground(0.5, 0.026), step_s, Stepper::direct);
+  for (int i = 0; i < 100; ++i) {
+    exact->step();
+  }
+  EXPECT_GT(exact->contact_count(), 100U);
+  EXPECT_EQ(relieved_steps(*exact), 0U) << "who names a stepper gets it";
+  EXPECT_NEAR(many->center_of_mass().z(), exact->center_of_mass().z(), 1e-4) << "it rests at the same height";
+}
+
 }  // namespace
 }  // namespace proleg::sim

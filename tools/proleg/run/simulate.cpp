@@ -1,6 +1,7 @@
 // proleg simulate: runs a scenario in the physics simulation.
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -9,6 +10,7 @@
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/common/build_id.hpp"
 #include "tools/proleg/common/command_line.hpp"
@@ -115,6 +117,21 @@ void print_table(const ScenarioOptions& options, const Result& result, const std
   print_sensors(sensors);
 }
 
+/// Says that contacts make a run slow, or less exact.
+void print_warning_on_contacts(const sim::Plant& plant, double real_time_factor) {
+  constexpr double many = 40;
+  const std::string points = number_text(std::round(plant.mean_contacts())) + " contact points on average";
+  if (const std::size_t relieved = sim::relieved_steps(plant.world()); relieved > 0) {
+    print_warning("proleg simulate", "links and floor had " + points + ": too many for the direct stepper in " +
+                                         std::to_string(relieved) +
+                                         " steps, which the iterative one computed. <solver>direct</solver> in the "
+                                         "scenario takes the direct one always, and is slow");
+  } else if (real_time_factor < 1.0 && plant.mean_contacts() > many) {
+    print_warning("proleg simulate", "slower than real time, because links and floor had " + points +
+                                         "; fewer shapes that touch each other are faster");
+  }
+}
+
 int simulate(const ScenarioOptions& options) {
   const ScenarioRun setup = prepare_run(options);
   print_warnings("proleg simulate", setup.scenario);
@@ -152,6 +169,7 @@ int simulate(const ScenarioOptions& options) {
   } else {
     print_table(options, result, simulation.plant().sensors().summaries());
   }
+  print_warning_on_contacts(simulation.plant(), result.real_time_factor());
   print_warning_on_servos("proleg simulate", result.measures, setup.scenario.robot);
   print_warning_on_clipping("proleg simulate", setup.scenario, simulation.chain().clipped_ticks(), simulation.tick());
   return exit_success;

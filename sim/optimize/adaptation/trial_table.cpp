@@ -38,31 +38,60 @@ std::string head_of(const Atlas& atlas) {
 }
 
 /// A trial of a line; nothing if it is damaged. number: that it has to have. values: number of a gait's values.
-std::optional<NotedTrial> noted_trial(std::string_view line, std::size_t number, std::size_t axes, std::size_t values) {
-  const std::vector<std::string_view> columns = cells_of(line);
+/// wrong_column: the first column that has something else than is expected there.
+std::optional<NotedTrial> noted_trial(std::string_view line, std::size_t number, std::size_t axes, std::size_t values,
+                                      std::size_t& wrong_column) {
   const std::size_t first_value = 2 + axes;
   const std::size_t scores = first_value + values;
-  if (columns.size() != scores + columns_of_scores || parse_whole<std::size_t>(columns[0]) != number) {
+  const std::vector<std::string_view> columns = cells_of(line, scores + columns_of_scores);
+  wrong_column = 0;
+  if (parse_whole<std::size_t>(columns[0]) != number) {
     return std::nullopt;
   }
   std::vector<double> numbers;
   for (std::size_t i = first_value; i < scores + 3; ++i) {
     const std::optional<double> its = parse_score(columns[i]);
     if (!its) {
+      wrong_column = i;
       return std::nullopt;
     }
     numbers.push_back(*its);
+  }
+  wrong_column = scores + columns_of_scores;
+  if (columns.size() > wrong_column) {
+    return std::nullopt;
   }
   return NotedTrial{std::string(columns[1]), {numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(values)},
                     numbers[values],         numbers[values + 1],
                     numbers[values + 2],     std::string(columns[scores + 3])};
 }
 
-std::optional<MadeTrial> read_trial(const Atlas& atlas, const GaitMap& map, std::string_view line, std::size_t number) {
+/// What a column of the head must have in the line of a trial.
+std::string expected_in(std::size_t column, std::size_t trial) {
+  return column == 0 ? "trial " + std::to_string(trial) : "a number, with a point before its decimals";
+}
+
+/// Throws InputError if the line is none of this trial.
+MadeTrial read_trial(const Atlas& atlas, const GaitMap& map, const std::string& name, int line_number,
+                     std::string_view line, std::size_t number) {
+  std::size_t wrong_column = 0;
   std::optional<NotedTrial> noted =
-      noted_trial(line, number, atlas.experiment.axes.size(), atlas.experiment.space.dimensions.size());
+      noted_trial(line, number, atlas.experiment.axes.size(), atlas.experiment.space.dimensions.size(), wrong_column);
+  if (!noted) {
+    const std::string head = head_of(atlas);
+    const std::vector<std::string_view> titles = proleg::cells_of(head);
+    const std::vector<std::string_view> cells = cells_of(line, titles.size());
+    if (wrong_column >= titles.size()) {
+      throw InputError(name, line_number, std::to_string(cells.size()) + " columns",
+                       std::to_string(titles.size()) + " as in the head, with tabs between them");
+    }
+    throw InputError(name, line_number,
+                     (cells[wrong_column].empty() ? "nothing" : in_quotes(cells[wrong_column])) + " in the column `" +
+                         std::string(titles[wrong_column]) + "`",
+                     expected_in(wrong_column, number));
+  }
   const auto is_noted = [&](const AtlasGait& gait) {
-    if (!noted || map.place_text(gait.cell) != noted->place) {
+    if (map.place_text(gait.cell) != noted->place) {
       return false;
     }
     for (std::size_t d = 0; d < noted->values.size(); ++d) {
@@ -74,10 +103,11 @@ std::optional<MadeTrial> read_trial(const Atlas& atlas, const GaitMap& map, std:
   };
   const auto gait = std::ranges::find_if(atlas.gaits, is_noted);
   if (gait == atlas.gaits.end()) {
-    return std::nullopt;
+    throw InputError(name, line_number, "a gait that the atlas does not have in the cell " + in_quotes(noted->place),
+                     "trial " + std::to_string(number) + " as it was written");
   }
-  return MadeTrial{static_cast<std::size_t>(gait - atlas.gaits.begin()), noted->expected, noted->deviation,
-                   noted->measured, std::move(noted->failure)};
+  return {static_cast<std::size_t>(gait - atlas.gaits.begin()), noted->expected, noted->deviation, noted->measured,
+          std::move(noted->failure)};
 }
 
 /// The line behind comments. take: called with each of these.
@@ -128,26 +158,22 @@ std::vector<MadeTrial> read_trial_table(const Atlas& atlas, const std::string& i
   if (!comment || !comment->starts_with(inputs_comment)) {
     throw InputError(name, 1, "no table of trials", "trials.tsv of `proleg adapt`");
   }
-  if (comment->substr(inputs_comment.size()) != inputs) {
+  if (trimmed(comment->substr(inputs_comment.size())) != inputs) {
     throw InputError(name, 1, "trials of another atlas, scenario or program, or with other options",
                      "those of this command");
   }
   const std::optional<std::string_view> head = line_behind_comments(lines, [](std::string_view /*comment*/) {});
-  if (!head || *head != head_of(atlas)) {
-    throw InputError(name, lines.number(), "another head", "that of the table of these trials");
+  const std::string expected_head = head_of(atlas);
+  if (!head || trimmed(*head) != expected_head) {
+    throw InputError(name, lines.number(), "another head",
+                     "that of the table of these trials, with tabs between its columns");
   }
   const GaitMap map(atlas.experiment);
   std::vector<MadeTrial> trials;
   while (const std::optional<std::string_view> line = lines.next()) {
-    if (line->empty()) {
-      continue;
+    if (!trimmed(*line).empty()) {
+      trials.push_back(read_trial(atlas, map, name, lines.number(), *line, trials.size() + 1));
     }
-    const std::optional<MadeTrial> trial = read_trial(atlas, map, *line, trials.size() + 1);
-    if (!trial) {
-      throw InputError(name, lines.number(), in_quotes(*line),
-                       "trial " + std::to_string(trials.size() + 1) + " in the columns of the head");
-    }
-    trials.push_back(*trial);
   }
   return trials;
 }
@@ -160,17 +186,18 @@ std::optional<TrialNotes> look_at_trials(std::string_view text, std::size_t axes
          {std::pair{inputs_comment, &notes.comments.inputs}, std::pair{atlas_comment, &notes.comments.atlas},
           std::pair{robot_comment, &notes.comments.robot}, std::pair{diagnosis_comment, &notes.comments.diagnosis}}) {
       if (comment.starts_with(begin)) {
-        *said = comment.substr(begin.size());
+        *said = trimmed(comment.substr(begin.size()));
       }
     }
   });
-  const std::size_t columns = head ? cells_of(*head).size() : 0;
+  const std::size_t columns = head ? proleg::cells_of(trimmed(*head)).size() : 0;
   const std::size_t others = 2 + axes + columns_of_scores;
   if (notes.comments.inputs.empty() || notes.comments.atlas.empty() || columns < others) {
     return std::nullopt;
   }
   while (const std::optional<std::string_view> line = lines.next()) {
-    std::optional<NotedTrial> trial = noted_trial(*line, notes.trials.size() + 1, axes, columns - others);
+    std::size_t wrong_column = 0;
+    std::optional<NotedTrial> trial = noted_trial(*line, notes.trials.size() + 1, axes, columns - others, wrong_column);
     if (!trial) {
       break;
     }

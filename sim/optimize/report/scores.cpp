@@ -43,6 +43,15 @@ std::optional<double> parse_score(std::string_view word) {
   return score && std::abs(*score) <= largest ? score : std::nullopt;
 }
 
+std::vector<std::string_view> cells_of(std::string_view line, std::size_t columns) {
+  std::vector<std::string_view> cells = proleg::cells_of(line);
+  while (cells.size() > columns && cells.back().empty()) {
+    cells.pop_back();
+  }
+  cells.resize(std::max(cells.size(), columns));
+  return cells;
+}
+
 double drawable(double score) { return std::clamp(score, -1e9, 1e9); }
 
 sim::Axis score_axis(std::vector<double> scores, std::span<const double> always, double pixel_low, double pixel_high) {

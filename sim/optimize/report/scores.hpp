@@ -2,6 +2,7 @@
 
 // Scores of evaluations, as text and in figures.
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,10 @@ namespace proleg::optimize {
 /// The score that is the whole word; nothing for what is no number, or beyond +-10^100: its square could overflow. (The
 /// cost of transport of a robot that hardly moves is large, too, but far below that.)
 [[nodiscard]] std::optional<double> parse_score(std::string_view word);
+
+/// The cells of a line of a table with so many columns, as a person's program saves it: empty cells at its end may be
+/// missing, because editors remove blanks there, and there may be more, because spreadsheets add them.
+[[nodiscard]] std::vector<std::string_view> cells_of(std::string_view line, std::size_t columns);
 
 /// The score, limited to +-10^9, so that sums and coordinates stay finite.
 [[nodiscard]] double drawable(double score);

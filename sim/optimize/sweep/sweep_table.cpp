@@ -34,14 +34,17 @@ std::string column_titles(const Sweep& sweep) {
   return line.finish();
 }
 
-/// Takes the next line from the text, without its end; nothing if it has none.
+/// Takes the next line from the text, without its end and blanks before it; nothing if it has none.
 std::optional<std::string_view> take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos) {
     return std::nullopt;
   }
-  const std::string_view line = text.substr(0, end);
+  std::string_view line = text.substr(0, end);
   text.remove_prefix(end + 1);
+  while (!line.empty() && (line.back() == '\t' || line.back() == ' ' || line.back() == '\r')) {
+    line.remove_suffix(1);
+  }
   return line;
 }
 
@@ -72,11 +75,12 @@ std::optional<std::uint64_t> find_number(const ValuePlaces& places, std::span<co
   return number;
 }
 
-std::optional<SweepRun> read_line(const ValuePlaces& places, std::string_view line) {
-  const std::vector<std::string_view> cells = cells_of(line);
+/// wrong: what a column has instead of a number, and where; empty if something else is wrong.
+std::optional<SweepRun> read_line(const ValuePlaces& places, std::string_view line, std::string& wrong) {
   const std::size_t swept = places.size();
   SweepRun run;
   const std::span<double> measures = run.result.measures.all();
+  const std::vector<std::string_view> cells = cells_of(line, swept + measures.size() + 2);
   if (cells.size() != swept + measures.size() + 2) {
     return std::nullopt;
   }
@@ -89,6 +93,7 @@ std::optional<SweepRun> read_line(const ValuePlaces& places, std::string_view li
     if (const std::string_view cell = cells[swept + i]; !cell.empty()) {
       const std::optional<double> value = parse_number(cell);
       if (!value) {
+        wrong = in_quotes(cell) + " in the column `" + std::string(sim::measures()[i].name) + "`";
         return std::nullopt;
       }
       measures[i] = *value;
@@ -112,7 +117,11 @@ std::vector<SweepRun> read_lines(const Sweep& sweep, const std::string& name, in
   int number = head;
   while (const std::optional<std::string_view> line = take_line(text)) {
     ++number;
-    std::optional<SweepRun> run = read_line(places, *line);
+    std::string wrong;
+    std::optional<SweepRun> run = read_line(places, *line, wrong);
+    if (!wrong.empty()) {
+      throw InputError(name, number, wrong, "a number, with a point before its decimals");
+    }
     if (!run || !numbers.insert(run->number).second) {
       throw InputError(name, number, "a line that this command has not written", "one line for each run");
     }
@@ -159,6 +168,7 @@ std::vector<SweepRun> read_sweep_table(const Sweep& sweep, const std::string& re
                                        std::string_view text) {
   const std::string head = sweep_head(sweep, result_key);
   std::string_view expected = head;
+  text = without_byte_order_mark(text);
   int number = 0;
   while (const std::optional<std::string_view> wanted = take_line(expected)) {
     ++number;
@@ -178,6 +188,7 @@ std::vector<SweepRun> read_sweep_table(const Sweep& sweep, const std::string& re
 SweepTable look_at_sweep_table(const Sweep& sweep, const std::string& name, std::string_view text) {
   SweepTable table;
   const std::string titles = column_titles(sweep);
+  text = without_byte_order_mark(text);
   for (int number = 1; number <= sweep_head_lines; ++number) {
     const std::optional<std::string_view> line = take_line(text);
     if (!line) {

@@ -85,6 +85,48 @@ TEST(TrialTable, IsRefusedForOtherInputsOrIfItIsDamaged) {
   EXPECT_NE(with("0.125\t0.1\t", "0.125\t").find("trials.tsv:5:"), std::string::npos);
 }
 
+/// The table as programs of people save it.
+TEST(TrialTable, IsReadBackFromEditorsAndSpreadsheets) {
+  const std::string table = trial_table(small_atlas(), comments, two_trials);
+  const auto with_line_ends = [&](const std::string& end) {
+    std::string text;
+    for (const char c : table) {
+      text += c == '\n' ? end : std::string(1, c);
+    }
+    return text;
+  };
+  std::string stripped = table;
+  stripped.erase(stripped.find("\t0.1\t\n") + 4, 1);
+  for (const std::string& text : {stripped, stripped.substr(0, stripped.size() - 1), with_line_ends("\r\n"),
+                                  with_line_ends("\t\t\n"), "\xEF\xBB\xBF" + table, table + "\t\t\n\n"}) {
+    EXPECT_EQ(message_of("abc", text), "no error") << text;
+    const std::vector<MadeTrial> read = read_trial_table(small_atlas(), "abc", "trials.tsv", text);
+    ASSERT_EQ(read.size(), 2U) << text;
+    EXPECT_EQ(read[0].failure, "");
+    EXPECT_EQ(read[1].failure, "the robot fell");
+    EXPECT_EQ(look_at_trials(text, 2)->trials.size(), 2U) << text;
+    EXPECT_EQ(look_at_trials(text, 2)->comments.inputs, "abc") << text;
+  }
+}
+
+TEST(TrialTable, SaysWhichColumnIsWrong) {
+  const std::string table = trial_table(small_atlas(), comments, two_trials);
+  const auto with = [&](const std::string& old_text, const std::string& new_text) {
+    std::string changed = table;
+    changed.replace(changed.find(old_text), old_text.size(), new_text);
+    return message_of("abc", changed);
+  };
+  EXPECT_EQ(with("\t0.125\t", "\t0,125\t"),
+            "trials.tsv:5: found '0,125' in the column `deviation (m)`, expected a number, with a point before its "
+            "decimals");
+  EXPECT_NE(with("\t0.1\t\n", "\n").find("trials.tsv:5: found nothing in the column `measured (m)`"),
+            std::string::npos);
+  EXPECT_NE(with("\n2\t", "\n\"2\"\t").find("trials.tsv:6: found '\"2\"' in the column `trial`, expected trial 2"),
+            std::string::npos);
+  EXPECT_NE(with("\t0.1\t\n", "\t0.1\tit\tfell\n").find("trials.tsv:5: found 14 columns, expected 13"),
+            std::string::npos);
+}
+
 TEST(TrialTable, OfAVersionWithoutTheAtlasIsReadToo) {
   std::string table = trial_table(small_atlas(), comments, two_trials);
   table.erase(table.find("# atlas"), table.find("trial\t") - table.find("# atlas"));

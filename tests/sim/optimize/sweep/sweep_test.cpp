@@ -353,8 +353,37 @@ TEST(SweepTable, OfAnotherSweepOrADamagedOneIsRefused) {
     std::string other = line;
     other[i] = 'x';
     const std::string message = table_refusal(head + line + other);
-    EXPECT_TRUE(message == damaged || i + 1 == line.size()) << i;
+    EXPECT_TRUE(message.starts_with("t.tsv:5: found ") || i + 1 == line.size()) << i;
   }
+}
+
+TEST(SweepTable, IsReadBackFromEditorsAndSpreadsheetsOrNamesTheColumn) {
+  const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=3:4"});
+  const std::string table =
+      sweep_head(sweep, "key") + sweep_line(sweep, run_with(0, 1.5)) + sweep_line(sweep, run_with(1, 2.5));
+  const auto with_line_ends = [&](const std::string& end) {
+    std::string text;
+    for (const char c : table) {
+      text += c == '\n' ? end : std::string(1, c);
+    }
+    return text;
+  };
+  std::string stripped = table;
+  for (std::size_t at = stripped.find("\t\n"); at != std::string::npos; at = stripped.find("\t\n")) {
+    stripped.erase(at, 1);
+  }
+  ASSERT_NE(stripped, table);
+  for (const std::string& text : {stripped, with_line_ends("\r\n"), with_line_ends("\t\t\n"), "\xEF\xBB\xBF" + table}) {
+    const std::vector<SweepRun> read = read_sweep_table(sweep, "key", "t.tsv", text);
+    ASSERT_EQ(read.size(), 2U) << text;
+    EXPECT_EQ(sweep_line(sweep, read[1]), sweep_line(sweep, run_with(1, 2.5)));
+  }
+  std::string with_comma = table;
+  with_comma.replace(with_comma.find("2.5"), 3, "2,5");
+  EXPECT_EQ(message_of<InputError>([&] {
+              static_cast<void>(read_sweep_table(sweep, "key", "t.tsv", with_comma));
+            }).substr(0, 35),
+            "t.tsv:5: found '2,5' in the column ");
 }
 
 TEST(SweepTable, CanBeLookedAtWithoutItsScenario) {

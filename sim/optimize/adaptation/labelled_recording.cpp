@@ -26,7 +26,7 @@ constexpr std::uint32_t most_parts = 10;
 [[noreturn]] void refuse_word(const std::string& word, const std::string& found) {
   throw InputError(word, 0, found,
                    "SET=FILE or SET=FILE@FROM-TO: a set of parameters from 1 to 4, or several with commas; a "
-                   "recording; seconds of it");
+                   "recording; seconds of it, as 1.5-3");
 }
 
 std::string_view selector_name() { return sensing_module_gait_selector().declaration().name; }
@@ -191,6 +191,12 @@ RecordingLabel parse_recording_label(const std::string& word) {
       label.file.erase(at);
     }
   }
+  // The file that is not there is one with a time that is none.
+  std::error_code error;
+  if (at != std::string::npos && !label.from_s && !std::filesystem::exists(label.file, error) &&
+      std::filesystem::exists(label.file.substr(0, at), error)) {
+    refuse_word(word, "the time " + in_quotes(label.file.substr(at + 1)));
+  }
   if (label.file.empty()) {
     refuse_word(word, "no file");
   }
@@ -219,6 +225,11 @@ SelectorTimes selector_times(const sim::Recording& recording) {
 LabelledRun read_labelled_run(const RecordingLabel& label, std::int32_t window_ms) {
   const sim::Recording recording(label.file);
   const sim::RecordedSlot& slot = selector_slot(recording);
+  const double end_s = recording.time_s(recording.last_tick());
+  if (const double last_s = label.to_s.value_or(0.0); last_s > end_s + recording.tick_period_us() / 1e6) {
+    throw InputError(label.word, 0, "seconds to " + number_text(last_s),
+                     "seconds to " + number_text(end_s) + ": the recording has no more");
+  }
   LabelledRun run;
   run.label = label;
   run.tick_period_us = recording.tick_period_us();

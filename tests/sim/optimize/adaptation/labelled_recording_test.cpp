@@ -109,6 +109,30 @@ TEST_F(LabelledRecording, IsTheWholeOneOrAPartOfIt) {
   EXPECT_THROW((void)read_labelled_run(parse_recording_label("2=" + name + "@7-9"), 100), InputError);
 }
 
+TEST_F(LabelledRecording, HasNoSecondsBehindItsEnd) {
+  record_run(selecting({}), 300, file("run.proleg"));
+  const std::string word = "2=" + file("run.proleg");
+  EXPECT_EQ(read_labelled_run(parse_recording_label(word + "@0-3"), 100).features.size(), 300U);
+  for (const char* times : {"@0-99", "@0-3.5", "@7-9"}) {
+    try {
+      (void)read_labelled_run(parse_recording_label(word + times), 100);
+      ADD_FAILURE() << times;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("expected seconds to 3:"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(LabelledRecording, ThatIsThereHasATimeThatIsNamedIfItIsNone) {
+  record_run(selecting({}), 5, file("run.proleg"));
+  for (const char* time : {"1,5-3", "1.5", "1-", "-3", "1s-3s", ""}) {
+    EXPECT_NE(refusal_of("1=" + file("run.proleg") + "@" + time).find("found the time '" + std::string(time) + "'"),
+              std::string::npos)
+        << refusal_of("1=" + file("run.proleg") + "@" + time);
+  }
+  EXPECT_NE(refusal_of("1=" + file("run.proleg") + "@5-3").find("5 s to 3 s"), std::string::npos);
+}
+
 TEST_F(LabelledRecording, OfAnotherAlgorithmIsRefusedByName) {
   record_run(sim::shipped("travelling_wave/coupled"), 20, file("run.proleg"));
   try {

@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/experiment/gait_map.hpp"
+#include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
@@ -155,7 +156,7 @@ Atlas read_atlas(const std::filesystem::path& path, std::size_t most_others) {
   std::error_code ignored;
   const std::filesystem::path file = std::filesystem::is_directory(path, ignored) ? path / "store.sqlite" : path;
   require_store_file(file);
-  Atlas atlas{read_experiment_of(file), {}};
+  Atlas atlas{read_experiment_of(file), {}, {}};
   if (atlas.experiment.axes.empty()) {
     refuse(file, "a search without a map");
   }
@@ -169,6 +170,7 @@ Atlas read_atlas(const std::filesystem::path& path, std::size_t most_others) {
   if (atlas.gaits.empty()) {
     refuse(file, "no gait yet");
   }
+  atlas.remarks = axis_remarks(atlas.experiment, evaluations);
   add_unlike_gaits(atlas, map, evaluations, most_others);
   return atlas;
 }

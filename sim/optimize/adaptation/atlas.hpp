@@ -21,6 +21,7 @@ struct AtlasGait {
 struct Atlas {
   Experiment experiment;         ///< has axes
   std::vector<AtlasGait> gaits;  ///< at least one; first the best of each filled cell, in the order of the cells
+  std::vector<std::string> remarks = {};  ///< axis_remarks() of the search
 
   /// The points of the gaits for an adaptation. The point of a gait is the middle of its cell, and its values, each
   /// from 0 at the first to 1 at the last of its dimension: measures of the whole robot do not tell which joints a gait

@@ -45,6 +45,11 @@ namespace proleg::optimize {
 /// are the number of the cell on each axis, from 1 ("cell:height"), or that of its centroid ("cell:number").
 [[nodiscard]] std::string gait_map_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
+/// A line for each axis whose bounds do not fit what was measured: at least nine of ten runs are outside of it, or all
+/// are in one of its cells. None for fewer than ten runs that have a score.
+[[nodiscard]] std::vector<std::string> axis_remarks(const Experiment& experiment,
+                                                    std::span<const Evaluation> evaluations);
+
 /// Table with tabs and a header line: each evaluation with its values, scores and measures. Numbers are the shortest
 /// that read back as the same; a measure that is not defined is an empty cell. Columns: run, evaluation, each dimension
 /// ("amplitude:J5 (deg)"), each objective ("score:distance (m)"), each measure ("distance (m)"), simulated_s, wall_s,

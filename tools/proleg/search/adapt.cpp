@@ -196,6 +196,9 @@ int adapt(AdaptOptions& options) {
     static_cast<void>(sim::Simulation(damaged));  // an engine without the features of the world refuses it now
   }
   print_warnings("proleg adapt", setup.scenario);
+  for (const std::string& remark : atlas.remarks) {
+    print_warning("proleg adapt", "the atlas: " + remark);
+  }
   catch_interrupts();
   std::vector<optimize::Hypothesis> hypotheses;
   const auto add_earlier = [&](MadeTrials& made) {

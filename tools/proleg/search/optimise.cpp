@@ -229,6 +229,9 @@ int search_and_write(const OptimiseOptions& options, const Experiment& experimen
     } else {
       print_text(experiment, outcome, result, sample, files, workers.count());
     }
+    for (const std::string& remark : optimize::axis_remarks(experiment, outcome.evaluations)) {
+      print_warning(options.program, remark);
+    }
     if (!experiment.on_robot) {
       print_warnings_on(options.program, folder / "best.simulation.xml");
     }

@@ -272,6 +272,23 @@ def simulated(*options):
     return proleg_json("simulate", SOURCE / SCENARIO, "--json", *options)
 
 
+def with_servo_period(folder, period_ms):
+    """A copy of the scenario whose servos get a pulse that often."""
+    copy = Path(folder) / f"period_{period_ms}"
+    shutil.copytree((SOURCE / SCENARIO).parent, copy)
+    robot = copy / "caterpillar.robot.xml"
+    text = robot.read_text()
+    assert '<period unit="ms">1</period>' in text
+    robot.write_text(text.replace('<period unit="ms">1</period>', f'<period unit="ms">{period_ms}</period>'))
+    return copy / Path(SCENARIO).name
+
+
+def simulated_with_real_servos(*options):
+    """Each program that moves real servos gives them a pulse every 3 ms at most."""
+    with tempfile.TemporaryDirectory() as folder:
+        return proleg_json("simulate", with_servo_period(folder, 3), "--json", *options)
+
+
 def assign_over_cut_line(bus, cut, places):
     """`proleg assign` over a line that is cut when it has stored so many node ids. On a busy computer the line passes the answers
     to a scan too late: then nothing has changed, and it begins again."""
@@ -354,10 +371,43 @@ class RobotOnTheTable(unittest.TestCase):
                 result = drive_json(start_drive(address, "--seconds", "2", "--set", "amplitude=20@1s"))
                 self.assertEqual(result["differences"], 0)
                 self.assertEqual(result["frames_compared"], 1000)
-                expected = simulated("--seconds", "2", "--set", "amplitude=20@1s")
+                expected = simulated_with_real_servos("--seconds", "2", "--set", "amplitude=20@1s")
+                self.assertEqual(result["servo_period_ms"], 3)
                 self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
+                self.assertEqual(result["setpoint_hash"], simulated("--seconds", "2", "--set", "amplitude=20@1s")["setpoint_hash"])
                 self.assertEqual(result["servo_hash"], expected["servo_hash"])
                 self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+
+    def test_modules_on_a_bus_never_get_a_servo_period_that_burns_servos(self):
+        """Virtual modules behind a line look like real ones. Only those of sim: get the period of their file."""
+        with tempfile.TemporaryDirectory() as folder:
+            for period_ms, used_ms in ((1, 3), (2.999, 3), (3, 3), (20, 20)):
+                scenario = with_servo_period(folder, period_ms)
+                with Bus(scenario=scenario) as bus:
+                    for address in (bus.tcp, bus.pty):
+                        recording = Path(folder) / "driven.proleg"
+                        drive = proleg("drive", scenario, "--bus", address, "--seconds", "0.5", "--record", recording, "--json")
+                        self.assertEqual(drive.returncode, 0, drive.stderr)
+                        line = f"found a servo period of {period_ms} ms, used {used_ms} ms"
+                        self.assertEqual(drive.stderr.count(line), int(period_ms != used_ms), drive.stderr)
+                        values = proleg_json("get", "all", "0x2005:3", "--bus", address, "--json")["values"]
+                        self.assertEqual([one["raw"] for one in values], [used_ms * 1000] * 5)
+                        result = json.loads(drive.stdout)
+                        self.assertEqual((result["servo_period_ms"], result["differences"]), (used_ms, 0))
+                        self.assertIn(result["servo_hash"], proleg("replay", recording).stdout)
+                drive = proleg("drive", scenario, "--bus", f"sim:{scenario}", "--fast", "--seconds", "0.5", "--json")
+                self.assertEqual(json.loads(drive.stdout)["servo_period_ms"], period_ms)
+                self.assertNotIn("servo period", drive.stderr)
+
+    def test_a_servo_period_that_burns_servos_is_not_set(self):
+        with Bus() as bus:
+            for word in ("2999", "1000", "0x64"):
+                refused = proleg("set", "all", "0x2005:3", word, "--bus", bus.tcp)
+                self.assertEqual(refused.returncode, 2, refused.stderr)
+                self.assertIn(f"found '{word}', expected 3000 us or more: a real servo needs", refused.stderr)
+            self.assertEqual(proleg("set", "all", "0x2005:3", "3000", "--bus", bus.tcp).returncode, 0)
+        virtual = proleg("set", "all", "0x2005:3", "1000", "--bus", f"sim:{SOURCE / SCENARIO}")
+        self.assertEqual(virtual.returncode, 0, virtual.stderr)
 
     def test_a_host_on_the_serial_line_of_a_module_reaches_the_robot(self):
         """It sets an object of the gateway itself and of another module, and drives; a second program is on the bus."""
@@ -376,7 +426,7 @@ class RobotOnTheTable(unittest.TestCase):
                 result = json.loads(output)
                 self.assertEqual(result["differences"], 0)
                 self.assertEqual(result["frames_compared"], 1500)
-                expected = simulated("--seconds", "3")
+                expected = simulated_with_real_servos("--seconds", "3")
                 self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
                 self.assertEqual(result["servo_hash"], expected["servo_hash"])
 

@@ -103,6 +103,10 @@ std::string BusOptions::address() const {
   return bus.value_or(environment != nullptr && *environment != '\0' ? environment : "auto");
 }
 
+bool can_have_real_servos(const std::string& address) {
+  return host::parse_bus_address(address).kind != host::BusAddress::Kind::simulation;
+}
+
 void add_bus_option(CommandLine& command_line, BusOptions& options) {
   command_line
       .add_option("--bus", options.bus,

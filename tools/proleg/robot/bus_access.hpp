@@ -36,6 +36,13 @@ struct BusOptions {
   [[nodiscard]] std::string address() const;
 };
 
+/// The shortest servo period of real servos: a pulse of 2.5 ms and a pause of 0.5 ms.
+inline constexpr std::uint32_t min_real_servo_period_us = 3'000;
+
+/// Whether real servos can be at the bus: at any but sim:FILE. Nothing tells virtual modules behind a line from real
+/// ones.
+[[nodiscard]] bool can_have_real_servos(const std::string& address);
+
 /// Adds --bus.
 void add_bus_option(CommandLine& command_line, BusOptions& options);
 

@@ -232,7 +232,7 @@ int check_bus(const DriveOptions& options) {
 }
 
 int drive(const DriveOptions& options) {
-  const ScenarioRun run = prepare_run(options);
+  ScenarioRun run = prepare_run(options);
   print_warnings("proleg drive", run.scenario);
   const bool has_modules = !run.scenario.robot_control || options.bus.bus;
   sim::require_sensors(run.scenario, has_modules ? sim::sensors_of_modules : std::uint8_t{0},
@@ -252,6 +252,9 @@ int drive(const DriveOptions& options) {
                        0, "a robot without modules", "--bus BUS");
     }
     return drive_by_plugin(options, run);
+  }
+  if (const auto line = fit_servo_period(run.scenario, options.bus.address())) {
+    print_warning("proleg drive", *line);
   }
   std::vector<PlannedOutput> outputs = planned_recording(options);
   if (options.mirror) {

@@ -67,6 +67,7 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
                       {"dropped_changes", result.dropped_changes},
                       {"setpoint_hash", check.setpoint_hash().hex()},
                       {"servo_hash", check.servo_hash().hex()},
+                      {"servo_period_ms", check.servo_period_us() * 1e-3},
                       {"frames_sent", result.bus.transmitted},
                       {"frames_received", result.bus.received},
                       {"answer_ms", durations_object(result.answers_us, 1e-3)},
@@ -95,7 +96,8 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
     std::printf("restarts          %u\n", result.restarts);
   }
   std::printf("set-point hash    %s\n", check.setpoint_hash().hex().c_str());
-  std::printf("servo hash        %s\n", check.servo_hash().hex().c_str());
+  std::printf("servo hash        %s, of a pulse every %s ms\n", check.servo_hash().hex().c_str(),
+              number_text(check.servo_period_us() * 1e-3).c_str());
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }

@@ -61,6 +61,8 @@ class GaitCheck {
   [[nodiscard]] const std::vector<std::string>& not_compared_setpoints() const { return not_compared_setpoints_; }
   [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
+  /// Of the pulses in servo_hash().
+  [[nodiscard]] std::uint32_t servo_period_us() const { return scenario_.robot.servo.period_us; }
 
  private:
   const Change* advance(const host::TickFrames& tick);

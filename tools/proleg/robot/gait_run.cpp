@@ -10,8 +10,10 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master/change_plan.hpp"
 #include "shared/computer/master/master_report.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/scenario/settings.hpp"
+#include "tools/proleg/robot/bus_access.hpp"
 
 namespace proleg::tools {
 
@@ -92,6 +94,17 @@ std::uint64_t LiveChanges::dropped() const {
 std::uint64_t LiveChanges::unfinished() const {
   return static_cast<std::uint64_t>(std::ranges::count_if(
       without_tick_, [this](std::size_t position) { return position >= taken_ && !changes_[position].dropped; }));
+}
+
+std::optional<std::string> fit_servo_period(sim::Scenario& scenario, const std::string& bus_address) {
+  std::uint32_t& period_us = scenario.robot.servo.period_us;
+  if (period_us >= min_real_servo_period_us || !can_have_real_servos(bus_address)) {
+    return std::nullopt;
+  }
+  const auto in_ms = [](std::uint32_t us) { return number_text(us * 1e-3) + " ms"; };
+  const std::string found = in_ms(std::exchange(period_us, min_real_servo_period_us));
+  return scenario.path + ": found a servo period of " + found + ", used " + in_ms(period_us) +
+         ": a real servo needs 2.5 ms for a pulse and a pause of 0.5 ms; the set-points stay the same";
 }
 
 using canopen::MasterState;

@@ -64,6 +64,11 @@ class LiveChanges {
   std::uint64_t too_late_ = 0;  ///< planned changes that the master never got
 };
 
+/// Gives the scenario the shortest period of real servos if its own is shorter and real servos can be at the bus.
+/// Everything that drives a robot calls this before it makes a GaitRun, a recorder or a mirror. Returns a line for the
+/// user if the period is another one now.
+[[nodiscard]] std::optional<std::string> fit_servo_period(sim::Scenario& scenario, const std::string& bus_address);
+
 struct GaitRunOptions {
   std::uint32_t end_tick;  ///< the first one that is not part of the run
   bool holds = false;      ///< the joints stay where they are, as MasterOptions says

@@ -1,12 +1,16 @@
 // proleg set: writes an object of modules.
 
 #include <iostream>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "host/robot/object_word.hpp"
+#include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/object_name.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "shared/fixed/little_endian.hpp"
 #include "tools/proleg/common/command_line.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
 
@@ -22,12 +26,25 @@ struct SetOptions : BusOptions {
   bool verbose = false;
 };
 
+/// A servo period that burns real servos: throws InputError. Others go to the module.
+void require_servo_period(const SetOptions& options, const canopen::Object& object,
+                          std::span<const std::uint8_t> bytes) {
+  if (object.address == canopen::object::servo_period.address &&
+      read_little_endian(bytes, 0, bytes.size()) < min_real_servo_period_us &&
+      can_have_real_servos(options.address())) {
+    throw InputError(options.object, 0, in_quotes(options.value),
+                     std::to_string(min_real_servo_period_us) +
+                         " us or more: a real servo needs 2.5 ms for a pulse and a pause of 0.5 ms");
+  }
+}
+
 int set(const SetOptions& options) {
   static_cast<void>(host::parse_nodes(options.nodes));
   const std::vector<host::ObjectWord> words{host::ObjectWord(options.object)};
   if (!words.front().slot()) {
     // A bad value is refused before the bus is opened.
-    static_cast<void>(host::parse_value(options.object, words.front().object(), options.value));
+    const canopen::Object object = words.front().object();
+    require_servo_period(options, object, host::parse_value(options.object, object, options.value));
   }
   BusAccess bus(options);
   catch_interrupts();

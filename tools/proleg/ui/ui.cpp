@@ -33,6 +33,7 @@
 #include "tools/proleg/common/shipped_scenarios.hpp"
 #include "tools/proleg/document/robot_document.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
+#include "tools/proleg/robot/gait_run.hpp"
 #include "tools/proleg/run/simulation_texts.hpp"
 #include "tools/proleg/ui/algorithm_folders.hpp"
 #include "tools/proleg/ui/algorithm_session.hpp"
@@ -471,6 +472,10 @@ int serve(UiOptions& options) {
   BusSharing sharing;
   std::optional<RobotBus> robot_bus;
   if (bus) {
+    if (const auto line = fit_servo_period(run->scenario, options.bus.address())) {
+      print_warning("proleg ui", *line);
+      page.notice(host::NoticeLevel::warning, *line);
+    }
     robot_bus.emplace(RobotBus{options.bus.address(), bus->connection().description(), run->scenario});
   }
   std::optional<SimulatedSession> simulated;

@@ -28,7 +28,11 @@ std::uint32_t ticks_of(const sim::Scenario& scenario, std::uint32_t seconds) {
 
 DrivenRobot::DrivenRobot(const tools::BusOptions& bus, sim::Scenario scenario, const std::optional<std::string>& record,
                          std::optional<double> idle_s)
-    : scenario_(std::move(scenario)), record_(record), idle_s_(idle_s), bus_(std::make_unique<tools::BusAccess>(bus)) {}
+    : scenario_(std::move(scenario)), record_(record), idle_s_(idle_s), bus_(std::make_unique<tools::BusAccess>(bus)) {
+  if (const auto line = tools::fit_servo_period(scenario_, bus.address())) {
+    reports_.push_back(*line);
+  }
+}
 
 DrivenRobot::~DrivenRobot() { static_cast<void>(stop()); }
 

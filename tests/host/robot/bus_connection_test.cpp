@@ -81,11 +81,17 @@ class Judge final : public BusUser {
  public:
   void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override { ++frames; }
   void transmitted(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
-  void poll(Microseconds /*now*/) override { before_the_look.push_back(frames); }
-  [[nodiscard]] Microseconds next_deadline() const override { return 0; }
+  void poll(Microseconds now) override {
+    before_the_look.push_back(frames);
+    next_ = now + 100;
+  }
+  [[nodiscard]] Microseconds next_deadline() const override { return next_; }
 
   unsigned frames = 0;
   std::vector<unsigned> before_the_look;
+
+ private:
+  Microseconds next_ = 0;
 };
 
 TEST(BusConnection, AProgramThatStoodStillReadsWhatHasComeBeforeItLooksAtTheTime) {

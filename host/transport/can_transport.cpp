@@ -38,8 +38,11 @@ class CanTransport final : public Transport {
   [[nodiscard]] Microseconds now() const override { return steady_now(); }
   [[nodiscard]] bool send(const CanFrame& frame) override {
     const bool is_first = queue_.empty() && unconfirmed_.empty();
-    if (!socket_ || !queue_.push(frame)) {
+    if (!socket_) {
       ++statistics_.dropped_out;
+      return false;
+    }
+    if (!queue_.push(frame, statistics_.dropped_out)) {
       return false;
     }
     if (is_first) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 
 #include "shared/can/can_frame.hpp"
@@ -12,22 +13,15 @@ namespace proleg::host {
 [[nodiscard]] bool ends_motion(const CanFrame& frame);
 
 /// Frames that wait for a line or a controller. Those that end motion come first, in their order; then the others, in
-/// theirs.
+/// theirs. An older command that would start the joint again after them is dropped.
 class FrameQueue {
  public:
   static constexpr std::size_t max_others = 1'024;
   static constexpr std::size_t max_stops = 256;  ///< two for each node
 
-  /// False, without an effect, if the queue is full; other frames take no room from those that end motion.
-  [[nodiscard]] bool push(const CanFrame& frame) {
-    const bool is_stop = ends_motion(frame);
-    std::deque<CanFrame>& frames = is_stop ? stops_ : others_;
-    if (frames.size() >= (is_stop ? max_stops : max_others)) {
-      return false;
-    }
-    frames.push_back(frame);
-    return true;
-  }
+  /// False if the queue is full; other frames take no room from those that end motion. Adds the frames that are
+  /// dropped, this one among them, to `dropped`.
+  [[nodiscard]] bool push(const CanFrame& frame, std::uint64_t& dropped);
   [[nodiscard]] bool empty() const { return stops_.empty() && others_.empty(); }
   [[nodiscard]] std::size_t size() const { return stops_.size() + others_.size(); }
   /// Whether front() ends motion.

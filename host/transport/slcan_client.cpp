@@ -361,11 +361,11 @@ void SlcanClient::drop_frames() {
 void SlcanClient::drop_output() { output_.erase(has_begun_line_ ? output_.find(slcan_end) + 1 : 0); }
 
 bool SlcanClient::send(const CanFrame& frame) {
-  if (state_ != State::open || settings_.is_listen_only || !queue_.push(frame)) {
+  if (state_ != State::open || settings_.is_listen_only) {
     ++statistics_.dropped_out;
     return false;
   }
-  return true;
+  return queue_.push(frame, statistics_.dropped_out);
 }
 
 /// Whether a frame may be written now.

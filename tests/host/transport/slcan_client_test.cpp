@@ -336,6 +336,31 @@ TEST_F(SlcanClientTest, FramesThatEndMotionWaitForNoConfirmation) {
   EXPECT_EQ(lines.back(), "t00020200");
 }
 
+/// A connection that is cut for a moment must not start a joint after its stop.
+TEST_F(SlcanClientTest, ACommandThatWaitsDoesNotStartAJointAfterItsStop) {
+  bool is_cut = false;
+  const Script script = [&](const std::string& line) { return is_cut ? std::string() : lawicel(line); };
+  open(script);
+  is_cut = true;
+  for (unsigned number = 0; number < 32; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));  // they fill the window
+  }
+  exchange(script);
+  for (const CanFrame& waiting :
+       {enabling_command(3), controlword_by_sdo(15), enabling_command(4), nmt_start, frame(7)}) {
+    ASSERT_TRUE(client.send(waiting));
+  }
+  ASSERT_TRUE(client.send(quick_stop(3)));
+  EXPECT_EQ(client.statistics().dropped_out, 2U) << "the two commands to node 3";
+  lines.clear();
+  frames_transmitted.clear();
+  exchange(script);
+  EXPECT_EQ(lines, std::vector<std::string>{"t2036020000000080"});
+  ASSERT_TRUE(client.send(nmt_stop));
+  EXPECT_EQ(client.statistics().dropped_out, 4U) << "a stop of all nodes drops what starts any";
+  ASSERT_TRUE(client.send(enabling_command(3)));  // a later decision
+}
+
 TEST_F(SlcanClientTest, TheConfirmationsAreThoseOfTheFramesInTheOrderInWhichTheyWereWritten) {
   open(lawicel);
   for (unsigned number = 0; number < 3; ++number) {

@@ -18,6 +18,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/method/search.hpp"
 #include "sim/optimize/report/judged_cells.hpp"
+#include "sim/optimize/report/report.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"

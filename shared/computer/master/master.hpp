@@ -96,9 +96,7 @@ enum class MasterState : std::uint8_t {
 
 class Master final : private SdoWork {
  public:
-  /// Half a period of a module's heartbeat: with the time for which modules wait for it (host_timeout_ms) a program may
-  /// stand still for 0.3 s.
-  static constexpr Microseconds heartbeat_period_us = 50'000;
+  static constexpr Microseconds heartbeat_period_us = 100'000;
   /// Time without a frame of any module after which the heartbeat pauses while servos have power: the way back is cut,
   /// perhaps, and then the modules stop by themselves, also if no other frame of the host reaches them.
   static constexpr Microseconds unanswered_us = 200'000;

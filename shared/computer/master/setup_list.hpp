@@ -16,8 +16,8 @@
 namespace proleg::canopen {
 
 /// Time without a heartbeat of the host after which a module stops: with the ramp of a quick stop, 1 s at most, a joint
-/// is at rest after 1.4 s.
-inline constexpr std::uint32_t host_timeout_ms = 400;
+/// is at rest after 1.45 s. A host that sends one each 100 ms may stand still for 0.3 s.
+inline constexpr std::uint32_t host_timeout_ms = 450;
 /// Period of a module's heartbeat.
 inline constexpr std::uint32_t heartbeat_period_ms = 100;
 

@@ -71,7 +71,7 @@ TEST(SetupList, WritesInTheOrderOfTheProtocol) {
   robot.limits[1] = {-5, 6};
   robot.start_values = {{2, 1, 0, false, 77}, {0, 1, 3, false, -8}, {0, 0, 0, false, 5}};
   const std::vector<SdoRequest> expected{
-      {{0x1016, 1}, 4, 127U << 16U | 400U},
+      {{0x1016, 1}, 4, 127U << 16U | 450U},
       {{0x1017, 0}, 2, 100},
       {{0x1006, 0}, 4, 5'000},
       {{0x1019, 0}, 1, 128},

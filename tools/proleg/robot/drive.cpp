@@ -253,9 +253,6 @@ int drive(const DriveOptions& options) {
     }
     return drive_by_plugin(options, run);
   }
-  if (const auto line = fit_servo_period(run.scenario, options.bus.address())) {
-    print_warning("proleg drive", *line);
-  }
   std::vector<PlannedOutput> outputs = planned_recording(options);
   if (options.mirror) {
     std::ranges::copy(MirroredRun::planned(options, *options.mirror), std::back_inserter(outputs));
@@ -263,6 +260,9 @@ int drive(const DriveOptions& options) {
   check_outputs(outputs);
   const std::optional<sim::Scenario> simulated =
       options.fast ? std::optional(simulated_robot(options.bus)) : std::nullopt;
+  if (const auto line = fit_servo_period(run.scenario, options.bus.address())) {
+    print_warning("proleg drive", *line);
+  }
   const auto open_simulated = [&](host::TransportListener& listener) {
     return std::make_unique<SimulatedTransport>(*simulated, options.bus.address(), listener);
   };

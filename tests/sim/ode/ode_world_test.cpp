@@ -173,12 +173,12 @@ TEST(StepBudget, PaysForManyContactPointsForAMomentAndForFewWithoutEnd) {
   for (int step = 0; step < 100'000; ++step) {
     ASSERT_TRUE(budget.take(static_cast<std::size_t>(StepBudget::lasting_points))) << step;
   }
-  int direct = 0;
-  while (direct < 1'000 && budget.take(128)) {
-    ++direct;
+  int direct_steps = 0;
+  while (direct_steps < 1'000 && budget.take(128)) {
+    ++direct_steps;
   }
-  EXPECT_GE(direct, 1) << "a robot on 32 feet that is put on the floor";
-  EXPECT_LE(direct, 20) << "less than a fiftieth of a second";
+  EXPECT_GE(direct_steps, 1) << "a robot on 32 feet that is put on the floor";
+  EXPECT_LE(direct_steps, 20) << "less than a fiftieth of a second";
   int until_direct = 0;
   while (until_direct < 10'000 && !budget.take(20)) {
     ++until_direct;

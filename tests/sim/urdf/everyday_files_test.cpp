@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Two links of 70 mm; a case replaces parts of them. Each part is in a line of its own.
-const std::string plain =
+const std::string plain_robot =
     "<robot name=\"r\">\n"
     "<link name=\"a\"><inertial><origin xyz=\"0.04 0 0\"/><mass value=\"0.2\"/>"
     "<inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-4\"/></inertial>"
@@ -44,28 +44,28 @@ constexpr int joint_line = 7;
 constexpr int origin_line = 8;
 constexpr int limit_line = 9;
 
-const std::string inertial =
+const std::string inertial_of_b =
     "<inertial><origin xyz=\"0.04 0 0\"/><mass value=\"0.2\"/>"
     "<inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-4\"/></inertial>\n";
-const std::string box = "<geometry><box size=\"0.07 0.05 0.05\"/></geometry>";
-const std::string origin = "<origin xyz=\"0.08 0 0\"/>";
-const std::string limit = "<limit lower=\"-1\" upper=\"1\" effort=\"1.5\" velocity=\"5\"/>";
+const std::string box_of_b = "<geometry><box size=\"0.07 0.05 0.05\"/></geometry>";
+const std::string origin_of_joint = "<origin xyz=\"0.08 0 0\"/>";
+const std::string limit_of_joint = "<limit lower=\"-1\" upper=\"1\" effort=\"1.5\" velocity=\"5\"/>";
 
 /// The text with its last `from` replaced: that of link b, or of the joint.
 std::string with(const std::string& from, const std::string& to) {
-  std::string text = plain;
+  std::string text = plain_robot;
   const std::size_t at = text.rfind(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
 }
 std::string with_look(const std::string& visual) { return with("</link>", "<visual>" + visual + "</visual></link>"); }
 std::string with_end(const std::string& tags) { return with("</robot>", tags + "</robot>"); }
-std::string with_limit(const std::string& attributes) { return with(limit, "<limit " + attributes + "/>"); }
+std::string with_limit(const std::string& attributes) { return with(limit_of_joint, "<limit " + attributes + "/>"); }
 std::string with_origin(const std::string& attributes) {
-  return with(origin, "<origin xyz=\"0.08 0 0\" " + attributes + "/>");
+  return with(origin_of_joint, "<origin xyz=\"0.08 0 0\" " + attributes + "/>");
 }
 std::string with_inertia(const std::string& tags) {
-  return with(inertial, "<inertial><origin xyz=\"0.04 0 0\"/>" + tags + "</inertial>\n");
+  return with(inertial_of_b, "<inertial><origin xyz=\"0.04 0 0\"/>" + tags + "</inertial>\n");
 }
 
 std::string at(int line) { return "robot.urdf:" + std::to_string(line) + ": found "; }
@@ -133,17 +133,19 @@ TEST(EverydayFiles, WhatHasOneMeaningIsReadWithoutAWord) {
           {with("<robot name=\"r\">", "<robot name=\"r\" version=\"1.1\" xmlns:xacro=\"http://ros.org/wiki/xacro\">"),
            ""},
           {with("<robot name=\"r\">", "<robot version=\"1.2\" name=\"r\" xmlns=\"http://drake.mit.edu\">"), ""},
-          {"\n  <?xml version=\"1.0\" ?>\n" + plain, ""},
-          {"<!-- made by a program --><?xml version='1.0' encoding=\"UTF-8\"?>" + plain, ""},
-          {"<?xml version=\"1.0\"?>\n<?xml-model href=\"urdf.xsd\"?>\n<!DOCTYPE robot>\n" + plain, ""},
-          {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<!DOCTYPE robot SYSTEM \"robot.dtd\">\n" + plain + "<!-- end -->", ""},
+          {"\n  <?xml version=\"1.0\" ?>\n" + plain_robot, ""},
+          {"<!-- made by a program --><?xml version='1.0' encoding=\"UTF-8\"?>" + plain_robot, ""},
+          {"<?xml version=\"1.0\"?>\n<?xml-model href=\"urdf.xsd\"?>\n<!DOCTYPE robot>\n" + plain_robot, ""},
+          {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<!DOCTYPE robot SYSTEM \"robot.dtd\">\n" + plain_robot +
+               "<!-- end -->",
+           ""},
           // What has no effect.
-          {with(limit, limit + "<dynamics/>"), ""},
-          {with(limit, limit + "<dynamics damping=\"0.0\" friction=\" 0 \"/>"), ""},
+          {with(limit_of_joint, limit_of_joint + "<dynamics/>"), ""},
+          {with(limit_of_joint, limit_of_joint + "<dynamics damping=\"0.0\" friction=\" 0 \"/>"), ""},
           {with("<inertial>", "<!-- a comment --><inertial>"), ""},
           {with("<collision>", "<collision name=\"shell\">"), ""},
           {with_end("<material name=\"red\"><color rgba=\"1 0 0 1\"/></material>"), ""},
-          {with_look("<origin xyz=\"0.04 0 0\"/>" + box + "<material name=\"nowhere\"/>"), ""},
+          {with_look("<origin xyz=\"0.04 0 0\"/>" + box_of_b + "<material name=\"nowhere\"/>"), ""},
       },
       &Said::lost);
 }
@@ -168,18 +170,18 @@ TEST(EverydayFiles, WhatIsOnlyShownOrNotUsedIsLostInALine) {
            "found 2 shapes in <geometry>"},
           {with_look("<geometry/>"), "a <visual> without a geometry"},
           {with_look(""), "a <visual> without a geometry (line 6)"},
-          {with_look("<origin xyz=\"0 0\"/>" + box), "the look of link 'b': found xyz='0 0' in <origin>"},
-          {with_look("<origin xyz=\"0.04 0 0\"/>" + box +
+          {with_look("<origin xyz=\"0 0\"/>" + box_of_b), "the look of link 'b': found xyz='0 0' in <origin>"},
+          {with_look("<origin xyz=\"0.04 0 0\"/>" + box_of_b +
                      "<material name=\"m\"><color rgba=\"255 0 0 1\"/></material>"),
            "the colour '255 0 0 1': expected 4 numbers from 0 to 1 (line 6)"},
-          {with_look("<origin xyz=\"0.04 0 0\"/>" + box + "<material name=\"m\"><color rgba=\"red\"/></material>"),
+          {with_look("<origin xyz=\"0.04 0 0\"/>" + box_of_b + "<material name=\"m\"><color rgba=\"red\"/></material>"),
            "the colour 'red'"},
-          {with_look("<origin xyz=\"0.04 0 0\"/>" + box +
+          {with_look("<origin xyz=\"0.04 0 0\"/>" + box_of_b +
                      "<material name=\"m\"><texture filename=\"a.png\"/></material>"),
            "<texture> of a <visual>"},
-          {with_look("<origin xyz=\"0.04 0 0\"/>" + box + "<material name=\"m\"/><material name=\"n\"/>"),
+          {with_look("<origin xyz=\"0.04 0 0\"/>" + box_of_b + "<material name=\"m\"/><material name=\"n\"/>"),
            "a second <material> of a <visual>"},
-          {with_look("<origin xyz=\"0.04 0 0\"/>" + box + "<material><color rgba=\"1 0 0 1\"/></material>"),
+          {with_look("<origin xyz=\"0.04 0 0\"/>" + box_of_b + "<material><color rgba=\"1 0 0 1\"/></material>"),
            "colours of boxes"},
           // Frictions, sensors, transmissions and the like: a line for each kind, however often it is there.
           {with("</collision>", "<contact_coefficients mu=\"0.9\"/></collision>"),
@@ -198,9 +200,9 @@ TEST(EverydayFiles, WhatIsOnlyShownOrNotUsedIsLostInALine) {
           {with("name=\"b\"", "name=\"b\" type=\"laser\""), "the attribute 'type' of <link> (line 3)"},
           {with_limit("lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\" acceleration=\"2\""),
            "'acceleration' of <limit> (line 9)"},
-          {with(limit, limit + "<dynamics damping=\"0.1\"/>"), "<dynamics> of a joint (line 9)"},
-          {with(limit, limit + "<dynamics damping=\"nothing\"/>"), "<dynamics> of a joint (line 9)"},
-          {with(limit, limit + "<safety_controller k_velocity=\"1\"/><calibration rising=\"0\"/>"),
+          {with(limit_of_joint, limit_of_joint + "<dynamics damping=\"0.1\"/>"), "<dynamics> of a joint (line 9)"},
+          {with(limit_of_joint, limit_of_joint + "<dynamics damping=\"nothing\"/>"), "<dynamics> of a joint (line 9)"},
+          {with(limit_of_joint, limit_of_joint + "<safety_controller k_velocity=\"1\"/><calibration rising=\"0\"/>"),
            "<calibration> of a joint"},
           {with_end("<sensor name=\"s\"><parent link=\"a\"/><camera/></sensor>"), "<sensor> (line 10)"},
           {with_end("<transmission/>\n<transmission/>\n<transmission/>"), "<transmission> (lines 10, 11, 12)"},
@@ -219,7 +221,7 @@ TEST(EverydayFiles, WhatIsOnlyShownOrNotUsedIsLostInALine) {
 
 TEST(EverydayFiles, ALookThatTouchesIsNoLook) {
   // Without a <collision> in the whole file the <visual>s touch the ground.
-  std::string text = plain;
+  std::string text = plain_robot;
   for (std::size_t at = text.find("collision"); at != std::string::npos; at = text.find("collision", at)) {
     text.replace(at, std::string_view("collision").size(), "visual");
   }
@@ -249,8 +251,8 @@ TEST(EverydayFiles, NumbersThatMeanNoneAreReadWithANote) {
           {with_limit("lower=\"0.5\" upper=\"0.5\" effort=\"1\" velocity=\"1\""), "limits 0.5 to 0.5 rad of joint 'j'"},
           {with("name=\"r\"", ""), "the robot has no name"},
           {with(" ixy=\"0\" ixz=\"0\"", ""), "products of inertia that are missing are 0 (line 4)"},
-          {with(inertial, ""), "link 'b' has no mass"},
-          {with(inertial, "<inertial/>"), "link 'b' has no mass"},
+          {with(inertial_of_b, ""), "link 'b' has no mass"},
+          {with(inertial_of_b, "<inertial/>"), "link 'b' has no mass"},
           {with_inertia("<mass value=\"0.2\"/>"),
            "link 'b' has no moments of inertia, or they are 0: its geometry gives them"},
       },
@@ -282,7 +284,7 @@ TEST(EverydayFiles, AZeroInertiaIsThatOfTheGeometry) {
 }
 
 TEST(EverydayFiles, ACapsuleTouchesWithACylinderAndTwoSpheres) {
-  const Scenario scenario = robot_of(with(box, "<geometry><capsule radius=\"0.02\" length=\"0.05\"/></geometry>"));
+  const Scenario scenario = robot_of(with(box_of_b, "<geometry><capsule radius=\"0.02\" length=\"0.05\"/></geometry>"));
   const std::vector<Geometry>& solids = scenario.robot.links[0].geometries;
   ASSERT_EQ(solids.size(), 3U);
   EXPECT_EQ(solids[0].shape, Shape::cylinder);
@@ -351,7 +353,7 @@ TEST(EverydayFiles, LinksThatOverlapAtTheStartAreNamed) {
       if (i > 0) {
         text += "<joint name=\"j" + name + "\" type=\"revolute\"><parent link=\"l" + std::to_string(i - 1) +
                 "\"/><child link=\"l" + name + "\"/><origin xyz=\"" + std::to_string(step) +
-                " 0 0\"/><axis xyz=\"0 0 1\"/>" + limit + "</joint>\n";
+                " 0 0\"/><axis xyz=\"0 0 1\"/>" + limit_of_joint + "</joint>\n";
       }
     }
     return said_of(text + "</robot>\n").warnings;
@@ -372,21 +374,22 @@ TEST(EverydayFiles, TheRestIsRefusedWithItsLineAndAWayOut) {
        at(3) + "a mass of 1e-09 kg of link 'b'"},
       {with_inertia("<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>"),
        at(inertial_line) + "no <mass> in <inertial>"},
-      {with(box, "<geometry><box size=\"1 1 1\"/><sphere radius=\"1\"/></geometry>"),
+      {with(box_of_b, "<geometry><box size=\"1 1 1\"/><sphere radius=\"1\"/></geometry>"),
        at(shape_line) + "2 shapes in <geometry>, <box> and <sphere>, expected one; give each a <collision> of its own"},
-      {with(box, "<geometry><plane/></geometry>"), at(shape_line) + "<plane> in <geometry>, expected one <box>"},
-      {with(box, "<geometry><mesh filename=\"\"/></geometry>"), at(shape_line) + "an empty filename in <mesh>"},
-      {with(box, "<geometry><mesh filename=\"package://b.stl\"/></geometry>"),
+      {with(box_of_b, "<geometry><plane/></geometry>"), at(shape_line) + "<plane> in <geometry>, expected one <box>"},
+      {with(box_of_b, "<geometry><mesh filename=\"\"/></geometry>"), at(shape_line) + "an empty filename in <mesh>"},
+      {with(box_of_b, "<geometry><mesh filename=\"package://b.stl\"/></geometry>"),
        at(shape_line) + "no file for the mesh 'package://b.stl', expected package://NAME/PATH of a mesh"},
-      {with(box, "<geometry><mesh filename=\"package://../b.stl\"/></geometry>"),
+      {with(box_of_b, "<geometry><mesh filename=\"package://../b.stl\"/></geometry>"),
        at(shape_line) + "no file for the mesh 'package://../b.stl', expected package://NAME/PATH of a mesh"},
-      {with(box, "<geometry><mesh filename=\"package:///p/b.stl\"/></geometry>"),
+      {with(box_of_b, "<geometry><mesh filename=\"package:///p/b.stl\"/></geometry>"),
        at(shape_line) +
            "no file for the mesh 'package:///p/b.stl', expected it in a folder 'p' beside or above the URDF "
            "file, or --package p=FOLDER"},
-      {with(origin, origin + origin), at(origin_line) + "a second <origin> in <joint>, expected one"},
+      {with(origin_of_joint, origin_of_joint + origin_of_joint),
+       at(origin_line) + "a second <origin> in <joint>, expected one"},
       {with("<collision>", "<collision><origin/>"), at(shape_line) + "a second <origin> in <collision>"},
-      {with(limit, limit + limit), at(limit_line) + "a second <limit> in <joint>"},
+      {with(limit_of_joint, limit_of_joint + limit_of_joint), at(limit_line) + "a second <limit> in <joint>"},
       {with_limit("lower=\"1\" upper=\"-1\" effort=\"1\" velocity=\"1\""),
        at(limit_line) + "limits 1 to -1 rad of joint 'j'"},
       {with_limit("lower=\"-1\" upper=\"1\" effort=\"much\" velocity=\"1\""),
@@ -395,8 +398,8 @@ TEST(EverydayFiles, TheRestIsRefusedWithItsLineAndAWayOut) {
        at(joint_line) + "the unknown link 'B' in joint 'j', expected one of a, b"},
       {with_end("<<<<<<< HEAD\n=======\n>>>>>>> 24a2559\n"),
        at(10) + "the mark of a merge conflict, '<<<<<<< HEAD', expected one of the two versions"},
-      {"<!DOCTYPE robot [<!ENTITY pi \"3.14\">]>\n" + plain, at(robot_line) + "'DOCTYPE robot"},
-      {with(origin, "<origin xyz=\"$(arg x) 0 0\"/>"),
+      {"<!DOCTYPE robot [<!ENTITY pi \"3.14\">]>\n" + plain_robot, at(robot_line) + "'DOCTYPE robot"},
+      {with(origin_of_joint, "<origin xyz=\"$(arg x) 0 0\"/>"),
        at(origin_line) + "the expression '$(arg x) 0 0' in <origin>, expected plain URDF"},
   });
 }
@@ -427,8 +430,8 @@ class MeshFiles : public testing::Test {
 
 TEST_F(MeshFiles, NamesOfWindowsFindTheirFiles) {
   write("meshes/Shell.off", off_);
-  write("slash.urdf", with(box, mesh("meshes\\Shell.off")));
-  write("case.urdf", with(box, mesh("Meshes/shell.OFF")));
+  write("slash.urdf", with(box_of_b, mesh("meshes\\Shell.off")));
+  write("case.urdf", with(box_of_b, mesh("Meshes/shell.OFF")));
   for (const char* name : {"slash.urdf", "case.urdf"}) {
     const Said said = imported(name);
     EXPECT_TRUE(said.is_read) << said.refusal;
@@ -440,7 +443,7 @@ TEST_F(MeshFiles, NamesOfWindowsFindTheirFiles) {
 
 TEST_F(MeshFiles, TheMessageOnAPackageHasAFolderThatWorks) {
   write("p_repository/meshes/b.off", off_);
-  write("p_repository/urdf/r.urdf", with(box, mesh("package://p/meshes/b.off")));
+  write("p_repository/urdf/r.urdf", with(box_of_b, mesh("package://p/meshes/b.off")));
   const std::string refusal = imported("p_repository/urdf/r.urdf").refusal;
   const std::string way_out = "--package p=" + (folder_.path() / "p_repository").string();
   EXPECT_NE(refusal.find(way_out + ", which has it"), std::string::npos) << refusal;
@@ -463,7 +466,7 @@ TEST_F(MeshFiles, AMeshThatCannotBeShownIsLost) {
     EXPECT_TRUE(look.is_read) << look.refusal;
     EXPECT_NE(look.lost.find(says), std::string::npos) << look.lost;
     EXPECT_NE(look.lost.find("(line 6)"), std::string::npos) << look.lost;
-    write("solid.urdf", with(box, mesh(name)));
+    write("solid.urdf", with(box_of_b, mesh(name)));
     const std::string refusal = imported("solid.urdf").refusal;
     EXPECT_NE(refusal.find("solid.urdf:5: found"), std::string::npos) << refusal;
     EXPECT_NE(refusal.find(says), std::string::npos) << refusal;
@@ -477,7 +480,7 @@ TEST_F(MeshFiles, AFileOutsideOfTheRobotIsNamedAndNotShown) {
   write("b.off", off_);
   write("p/package.xml", "<package><name>p</name></package>");
   write("p/meshes/b.off", off_);
-  write("p/urdf/inside.urdf", with(box, mesh("../meshes/b.off")));
+  write("p/urdf/inside.urdf", with(box_of_b, mesh("../meshes/b.off")));
   const Said inside = imported("p/urdf/inside.urdf");
   EXPECT_TRUE(inside.is_read && inside.warnings.empty()) << inside.refusal << inside.warnings;
 
@@ -486,7 +489,7 @@ TEST_F(MeshFiles, AFileOutsideOfTheRobotIsNamedAndNotShown) {
   for (const std::string& name :
        {std::string("../../b.off"), std::string("../meshes/link.off"), std::string("package://p/../b.off"),
         "file://" + (folder_.path() / "b.off").string()}) {
-    write("p/urdf/outside.urdf", with(box, mesh(name)));
+    write("p/urdf/outside.urdf", with(box_of_b, mesh(name)));
     const Said said = imported("p/urdf/outside.urdf");
     EXPECT_TRUE(said.is_read) << said.refusal;
     EXPECT_NE(said.warnings.find("meshes outside of the robot's folder are copied into the scenario: '" + name + "'"),
@@ -494,7 +497,7 @@ TEST_F(MeshFiles, AFileOutsideOfTheRobotIsNamedAndNotShown) {
         << said.warnings;
   }
   for (const char* name : {"../../secret.stl", "../meshes/link.stl"}) {
-    write("p/urdf/outside.urdf", with(box, mesh(name)));
+    write("p/urdf/outside.urdf", with(box_of_b, mesh(name)));
     const std::string refusal = imported("p/urdf/outside.urdf").refusal;
     EXPECT_NE(refusal.find(std::string("outside.urdf:5: found '") + name + "' outside of the robot's folder"),
               std::string::npos)

@@ -220,7 +220,9 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
   }
   robot.warnings = check_robot(chain);
   robot.contact_warnings = contact_warnings(contents, chain.links);
-  std::ranges::move(check_overlaps(chain), std::back_inserter(robot.contact_warnings));
+  if (robot.warnings.empty()) {  // bodies of a wrong size overlap, too
+    std::ranges::move(check_overlaps(chain), std::back_inserter(robot.contact_warnings));
+  }
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);

@@ -379,8 +379,8 @@ TEST(FrameQueue, KnowsTheFramesThatEndMotion) {
   EXPECT_TRUE(ends_motion(controlword_by_sdo(0)));
   EXPECT_FALSE(ends_motion(nmt_start));
   EXPECT_FALSE(ends_motion(enabling_command(3)));
-  for (const std::uint8_t enabling : {6, 7, 15}) {
-    EXPECT_FALSE(ends_motion(controlword_by_sdo(enabling))) << unsigned{enabling};
+  for (const unsigned enabling : {6U, 7U, 15U}) {
+    EXPECT_FALSE(ends_motion(controlword_by_sdo(static_cast<std::uint8_t>(enabling)))) << enabling;
   }
   EXPECT_FALSE(ends_motion({0x77F, 1, {5}})) << "the heartbeat of the host";
   EXPECT_FALSE(ends_motion(frame(0)));

@@ -332,7 +332,7 @@ TEST(MasterProblem, EveryStartEndsWithAnyBrokenModule) {
 }
 
 TEST(MasterStart, AConnectionThatIsLateGivesTheServosNoPowerAndIsNamed) {
-  for (const Microseconds late_us : {350'000, 600'000}) {
+  for (const Microseconds late_us : {350'000U, 600'000U}) {
     ScriptedRobot robot(5);
     robot.options.resets_modules = true;
     robot.options.answer_timeout_us = 150'000;
@@ -343,7 +343,7 @@ TEST(MasterStart, AConnectionThatIsLateGivesTheServosNoPowerAndIsNamed) {
     ASSERT_TRUE(robot.run_until([&] { return robot.settled(); }, 20'000'000));
     const Problem problem = robot.master().problem();
     EXPECT_EQ(problem.code, ProblemCode::late_answers) << describe(problem.code);
-    EXPECT_NEAR(problem.found, late_us / 1'000, 30) << "beside the time on the bus";
+    EXPECT_NEAR(problem.found, static_cast<double>(late_us) / 1e3, 30) << "beside the time on the bus";
     EXPECT_EQ(problem_text(problem, [](std::uint8_t) { return std::string(); }),
               "the modules answer too late for a robot that must be stopped in time: found answers after " +
                   std::to_string(problem.found) +

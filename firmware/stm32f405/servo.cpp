@@ -87,19 +87,17 @@ bool Servo::follow_timer() {
   return true;
 }
 
-/// The counter, which does not wrap within handling_counts: what is written until then takes effect together, and
-/// running_ holds. Waits for a wrap that is so near.
-std::uint32_t Servo::settled_count() {
-  std::uint32_t count = 0;
+/// Waits for a wrap of the counter that is nearer than handling_counts: what is written after this takes effect together,
+/// and running_ holds.
+void Servo::settle() {
   // The number of reads bounds the wait for a counter that stands still.
   for (std::uint32_t reads = 0; reads < board::core / counter_hz * handling_counts; ++reads) {
-    count = tim2.cnt().read();
+    const std::uint32_t count = tim2.cnt().read();
     // If the flag is not set after the read, the counter has not wrapped since running_ was set.
     if (!follow_timer() && count + handling_counts <= running_.last) {
-      break;
+      return;
     }
   }
-  return count;
 }
 
 /// Puts a period into the registers from which the timer takes it when the counter wraps.
@@ -129,7 +127,10 @@ void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
     set_mode(board::servo, PinMode::alternate);
     return;
   }
-  const std::uint32_t count = settled_count();
+  settle();
+  request(wanted);
+  // Read after the request: a pulse that ends in between has a request in its pause.
+  const std::uint32_t count = tim2.cnt().read();
   if (count >= running_.free_from) {
     begin(wanted);
     return;
@@ -138,8 +139,8 @@ void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
     // The rest of the pause becomes a period without a pulse. It is long enough for request().
     const std::uint32_t rest = std::max(running_.free_from - count, 2 * handling_counts);
     begin({0, rest, rest - 1U});
+    request(wanted);
   }
-  request(wanted);
 }
 
 /// Ends the pulse after the crystal has stopped: HSI clocks the core, and all prescalers are as before (RM0090, section
@@ -185,9 +186,10 @@ void Servo::off() {
     return;
   }
   const InterruptsOff interrupts_off;
-  const std::uint32_t count = settled_count();
+  settle();
   // At the next wrap the output has been low for the pause.
   request({0, 0, next_.last});
+  const std::uint32_t count = tim2.cnt().read();
   if (count >= running_.width) {
     begin({0, running_.free_from - std::min(running_.free_from, count), next_.last});
     next_.free_from = 0;

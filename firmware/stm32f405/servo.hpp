@@ -41,7 +41,7 @@ class Servo final : public firmware::ServoPort {
   };
 
   bool follow_timer();
-  [[nodiscard]] std::uint32_t settled_count();
+  void settle();
   void begin(const Period& period);
   void request(const Period& period);
   [[nodiscard]] bool continue_with_internal_oscillator() const;

@@ -260,9 +260,7 @@ int drive(const DriveOptions& options) {
   check_outputs(outputs);
   const std::optional<sim::Scenario> simulated =
       options.fast ? std::optional(simulated_robot(options.bus)) : std::nullopt;
-  if (const auto line = fit_servo_period(run.scenario, options.bus.address())) {
-    print_warning("proleg drive", *line);
-  }
+  const std::optional<std::string> raised_period = fit_servo_period(run.scenario, options.bus.address());
   const auto open_simulated = [&](host::TransportListener& listener) {
     return std::make_unique<SimulatedTransport>(*simulated, options.bus.address(), listener);
   };
@@ -280,6 +278,9 @@ int drive(const DriveOptions& options) {
   }
   Drive robot(options, run, bus, recorders);
   robot.start();
+  if (raised_period) {
+    print_warning("proleg drive", *raised_period);
+  }
   std::optional<std::string> failure;
   try {
     robot.follow();

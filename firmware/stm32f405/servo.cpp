@@ -87,8 +87,8 @@ bool Servo::follow_timer() {
   return true;
 }
 
-/// Waits for a wrap of the counter that is nearer than handling_counts: what is written after this takes effect together,
-/// and running_ holds.
+/// Waits for a wrap of the counter that is nearer than handling_counts: what is written after this takes effect
+/// together, and running_ holds.
 void Servo::settle() {
   // The number of reads bounds the wait for a counter that stands still.
   for (std::uint32_t reads = 0; reads < board::core / counter_hz * handling_counts; ++reads) {

@@ -29,8 +29,8 @@ using canopen::PowerState;
 constexpr Microseconds until_left_us = 750'000;
 constexpr Microseconds until_rest_us = 1'500'000;
 
-/// The travelling wave with the largest amplitude, and slow: it dwells at the ends of the joints' ranges. The world only
-/// gives the angles at which the joints ramp in.
+/// The travelling wave with the largest amplitude, and slow: it dwells at the ends of the joints' ranges. The world
+/// only gives the angles at which the joints ramp in.
 sim::Scenario widest_wave_of(unsigned joints) {
   sim::Scenario scenario = wave_of(joints);
   scenario.environment.engine = sim::PhysicsEngine::reduced;

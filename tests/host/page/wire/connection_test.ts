@@ -207,10 +207,11 @@ describe('signs of life', () => {
     greet();
     give(3);
     clock.advance(300);
+    const before = last().ofType('beat').length;
     connection.noteSignOfLife();
     clock.advance(1500);
-    const ages = last().ofType('beat').map((beat) => beat['age_ms'] as number);
+    const ages = last().ofType('beat').slice(before).map((beat) => beat['age_ms'] as number);
     assert.ok(Math.max(...ages) >= 1200, `found ages ${ages.join()}`);
-    assert.ok(ages.every((age, i) => i < 3 || age > (ages[i - 1] as number)), `found ages ${ages.join()}`);
+    assert.ok(ages.every((age, i) => i < 1 || age > (ages[i - 1] as number)), `found ages ${ages.join()}`);
   });
 });

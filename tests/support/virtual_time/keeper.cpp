@@ -94,12 +94,15 @@ class Thread {
       return false;
     }
     turns_ = read_turns();
-    return has_ended_ || state == 'T' || waits_in_kernel();
+    is_stopped_ = state == 'T';
+    return has_ended_ || is_stopped_ || waits_in_kernel();
   }
   /// Whether it was given a processor between the last note_turns() and the last is_asleep().
   [[nodiscard]] bool had_a_turn() const { return noted_turns_ != turns_; }
   /// When it was asleep last. Such a thread can remain until its parent asks for its status.
   [[nodiscard]] bool has_ended() const { return has_ended_; }
+  /// When it was asleep last: by a signal, so that no wait of it ends.
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
 
  private:
   using Turns = std::array<char, 64>;  ///< time on and in front of the processors, number of turns, as text
@@ -132,6 +135,7 @@ class Thread {
   File wchan_;
   File schedstat_;
   bool has_ended_ = false;
+  bool is_stopped_ = false;
   std::optional<Turns> noted_turns_;
   Turns turns_{};                       ///< when it was asleep last
   std::optional<Turns> turns_of_wait_;  ///< before the kernel named the function in which it waits
@@ -203,6 +207,10 @@ class Family {
   [[nodiscard]] bool has_living(int thread) const {
     const auto found = threads_.find(thread);
     return found != threads_.end() && !found->second->has_ended();
+  }
+  [[nodiscard]] bool has_stopped(int thread) const {
+    const auto found = threads_.find(thread);
+    return found != threads_.end() && found->second->is_stopped();
   }
 
  private:
@@ -338,7 +346,7 @@ class Keeper {
       if (thread > 0 && wait.end_ns.load() != never) {
         if (!family_.has_living(thread)) {
           wait.thread = 0;  // it was killed
-        } else {
+        } else if (!family_.has_stopped(thread)) {
           next = std::min(next, wait.end_ns.load());
         }
       }

@@ -384,11 +384,22 @@ def test_what_is_not_possible_is_refused_and_the_gait_goes_on(page, _):
     assert driver.session()["state"] == "running"
 
 
-def test_the_end_of_the_program_takes_the_power(page, _):
-    driver = Driver(page)
-    driver.drive()
-    driver.must("run")
-    driver.until_state("running")
+def test_the_end_of_the_program_stops_the_robot_before_its_goodbye(_, folder):
+    for end in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        page = Page(folder)
+        try:
+            driver = Driver(page)
+            driver.drive()
+            driver.must("run")
+            driver.until_state("running")
+            page.process.send_signal(end)
+            driver.until_state("off")  # the connection lasts until the robot is at rest
+            assert driver.session()["stopped_by"] == "the end of the program", driver.session()
+            driver.is_alive = False
+            page.process.communicate(timeout=LIMIT_S)
+            assert page.process.returncode == 0
+        finally:
+            page.kill()
 
 
 def main():

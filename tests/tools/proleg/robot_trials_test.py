@@ -286,6 +286,16 @@ class RobotTrials(unittest.TestCase):
             program.end()
         self.assert_cut_short("killed")
 
+    def test_a_program_that_is_suspended_leaves_no_robot_that_moves(self):
+        with Bus(self.scenario) as bus:
+            program = self.moving(bus, "suspended")
+            program.process.send_signal(signal.SIGSTOP)
+            wait_until(lambda: bus.powered() == set(), lambda: bus.messages)
+            program.process.send_signal(signal.SIGCONT)
+            program.end()
+        self.assert_cut_short("suspended")
+        self.assert_no_score(program, "suspended", "'proleg drive' has ended with status 1: .*is suspended, or hangs")
+
     def test_a_bus_that_vanishes_and_modules_that_restart_give_no_score(self):
         with Bus(self.scenario) as bus:
             program = self.moving(bus, "vanished")

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -40,6 +43,21 @@ TEST(WatchedChild, ThatFloodsAStreamIsEndedAtItsTime) {
     EXPECT_LE(watched.messages.size(), 1'001U) << script;
     EXPECT_LE(watched.end.last_message.size(), 1'000U) << script;
   }
+}
+
+TEST(WatchedChild, ThatIsEndedAtItsTimeTakesAlongWhatItHasStartedInAnotherSession) {
+  const Watched watched = watch("setsid sh -c 'echo $$ >&2; exec sleep 600' & wait", 1.0);
+  EXPECT_EQ(watched.end.reason, ChildEnd::Reason::late);
+  const int process = std::stoi(watched.end.last_message);
+  while (std::filesystem::exists("/proc/" + std::to_string(process) + "/exe")) {  // until its parent, init, has seen it
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+TEST(WatchedChild, ThatEndsByItselfLeavesWhatItHasStartedInAnotherSession) {
+  const Watched watched = watch("setsid sh -c 'echo $$ >&2; exec sleep 600' >/dev/null & sleep 0.5", 60.0);
+  EXPECT_EQ(watched.end.reason, ChildEnd::Reason::itself);
+  EXPECT_EQ(kill(std::stoi(watched.end.last_message), SIGKILL), 0);
 }
 
 TEST(WatchedChild, OfTooManyMessagesTheFirstOnesAndTheLastAreKept) {

@@ -63,7 +63,7 @@ class ARun(unittest.TestCase):
             with self.subTest(number=number, seed=SEED, words=" ".join(words)):
                 printed = command_line(*words)
                 run = proleg.simulate(scenario, seconds)
-                for name in ("setpoint_hash", "servo_hash", "world_hash"):
+                for name in ("setpoint_hash", "servo_hash", "world_hash", "motion_hash"):
                     self.assertEqual(getattr(run, name), printed[name])
                 self.assertEqual(run.displacement, printed["displacement_m"])
                 for name, value in printed["measures"].items():

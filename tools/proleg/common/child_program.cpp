@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -67,6 +68,10 @@ ChildProgram::ChildProgram(const std::vector<std::string>& command, const std::s
   start.input = input_ ? input_->other_end : -1;
   start.inherited = inherited;
   start.gives_way = !has_input;
+  static std::atomic<unsigned> count = 0;
+  mark_ = std::to_string(getpid()) + "." + std::to_string(Clock::now().time_since_epoch().count()) + "." +
+          std::to_string(++count);
+  start.mark = mark_;
   process_ = start_program(command, start);
   output_.close_other_end();
   for (std::optional<Pipe>* pipe : {&errors_, &input_}) {
@@ -119,6 +124,9 @@ std::optional<int> ChildProgram::status() {
   }
   // Until the program is waited for, no other group can have its number.
   kill(-process_, SIGKILL);
+  if (killed_at_) {
+    end_marked(mark_);
+  }
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }

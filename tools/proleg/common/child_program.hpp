@@ -45,7 +45,8 @@ class ChildProgram {
   /// Its exit status, or 128 + the number of a signal, as a shell reports it; nothing as long as it runs. Does not
   /// wait. What it has started ends with it. Output that it wrote before can still be read.
   [[nodiscard]] std::optional<int> status();
-  /// Asks it to end, and ends it if it has not done so in time; status() says when it has ended.
+  /// Asks it to end, and ends it if it has not done so in time; status() says when it has ended. What it has started
+  /// ends with it then also in a session of its own.
   void end();
 
   static constexpr std::chrono::seconds usual_time_to_end{3};
@@ -72,6 +73,7 @@ class ChildProgram {
   Pipe output_;
   std::optional<Pipe> errors_;
   std::optional<Pipe> input_;  ///< a pair of sockets: a write to a program that has ended sends no signal
+  std::string mark_;
   pid_t process_ = 0;
   std::chrono::seconds time_to_end_ = usual_time_to_end;
   std::optional<int> status_;

@@ -9,26 +9,38 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
+
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 namespace {
 
 constexpr int lower_priority = 10;
+/// A variable of the environment, which a program hands on to those that it starts.
+constexpr std::string_view mark_variable = "PROLEG_STARTED_AS=";
 
 /// This program's environment, with English messages: other programs read them.
-std::vector<std::string> english_environment() {
+std::vector<std::string> english_environment(const std::string& mark) {
   std::vector<std::string> words;
   for (char** word = environ; *word != nullptr; ++word) {
     const std::string_view text(*word);
     if (!text.starts_with("LC_") && !text.starts_with("LANG=") && !text.starts_with("LANGUAGE=") &&
-        !text.starts_with("NINJA_STATUS=")) {
+        !text.starts_with("NINJA_STATUS=") && !text.starts_with(mark_variable)) {
       words.emplace_back(text);
     }
   }
   words.emplace_back("LC_ALL=C");
   words.emplace_back("NINJA_STATUS=[%f/%t] ");
+  if (!mark.empty()) {
+    words.push_back(std::string(mark_variable) + mark);
+  }
   return words;
 }
 
@@ -91,7 +103,7 @@ class Setup {
 pid_t start_program(const std::vector<std::string>& command, const ProgramStart& start) {
   std::vector<std::string> words = command;
   const std::vector<char*> arguments = pointers_to(words);
-  std::vector<std::string> environment = english_environment();
+  std::vector<std::string> environment = english_environment(start.mark);
   const std::vector<char*> variables = pointers_to(environment);
   const Setup setup(start);
   pid_t process = -1;
@@ -107,6 +119,24 @@ pid_t start_program(const std::vector<std::string>& command, const ProgramStart&
     setpriority(PRIO_PROCESS, static_cast<id_t>(process), lower_priority);
   }
   return process;
+}
+
+void end_marked(const std::string& mark) {
+  const std::string word = '\0' + std::string(mark_variable) + mark + '\0';
+  constexpr int most_looks = 10;  // a program may start another one meanwhile
+  bool is_any = true;
+  for (int look = 0; look < most_looks && is_any; ++look) {
+    is_any = false;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+      const std::optional<pid_t> process = parse_whole<pid_t>(entry.path().filename().string());
+      std::ifstream file(process ? entry.path() / "environ" : "");
+      const std::string environment = '\0' + std::string(std::istreambuf_iterator<char>(file), {});
+      if (environment.find(word) != std::string::npos && kill(*process, SIGKILL) == 0) {
+        is_any = true;
+      }
+    }
+  }
 }
 
 int exit_status_of(int wait_status) {

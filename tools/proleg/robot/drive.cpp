@@ -20,6 +20,7 @@
 #include "tools/proleg/common/scenario_run.hpp"
 #include "tools/proleg/common/terminal.hpp"
 #include "tools/proleg/robot/bus_access.hpp"
+#include "tools/proleg/robot/drive_input.hpp"
 #include "tools/proleg/robot/drive_report.hpp"
 #include "tools/proleg/robot/gait_run.hpp"
 #include "tools/proleg/robot/mirror.hpp"
@@ -41,10 +42,11 @@ struct DriveRecorders {
 /// One run: set-up, gait and stop.
 class Drive {
  public:
-  Drive(const DriveOptions& options, const ScenarioRun& run, BusAccess& bus, const DriveRecorders& recorders)
+  Drive(const DriveOptions& options, const ScenarioRun& run, BusAccess& bus, DriveInput& input,
+        const DriveRecorders& recorders)
       : run_(run),
         is_verbose_(options.verbose),
-        ends_with_input_(options.ends_with_input),
+        input_(input),
         bus_(bus.connection()),
         recorders_(recorders),
         gait_(run.scenario, bus_, {run.ticks}) {}
@@ -58,13 +60,16 @@ class Drive {
     bus_.run_until(bus_.now() + at_most, [this] {
       report_events();
       return gait_.state() == canopen::MasterState::running || gait_.state() == canopen::MasterState::failed ||
-             interrupted() || !bus_.state().is_connected;
+             interrupted() || input_.has_ended() || input_.is_silent() || !bus_.state().is_connected;
     });
     if (gait_.state() == canopen::MasterState::running) {
       gait_.watch();
       return;
     }
-    const std::string reason = interrupted() ? "interrupted" : gait_.why_ended();
+    const std::string reason = interrupted()        ? "interrupted"
+                               : input_.has_ended() ? "standard input has ended"
+                               : input_.is_silent() ? silent_input
+                                                    : gait_.why_ended();
     const bool is_bad_input = gait_.has_bad_setup();
     static_cast<void>(stop());
     if (is_bad_input) {
@@ -76,7 +81,7 @@ class Drive {
   /// Follows the run to its end, or until the user ends it. Throws std::runtime_error if the robot fails.
   void follow() {
     RunProgress progress("driving", run_.scenario.duration_s);
-    while (check().ticks() < run_.ticks && !interrupted() && !wants_stop_) {
+    while (check().ticks() < run_.ticks && !wants_stop()) {
       bus_.run_until(bus_.now() + look_period_us, [this] { return gait_.has_ended(); });
       report_events();
       take_ticks(false);
@@ -87,7 +92,7 @@ class Drive {
         throw std::runtime_error(gait_.why_ended());
       }
     }
-    if (!interrupted() && !wants_stop_) {
+    if (!wants_stop()) {
       look_at_the_joints();
     }
   }
@@ -119,6 +124,8 @@ class Drive {
 
  private:
   static constexpr Microseconds look_period_us = 20'000;
+  static constexpr const char* silent_input =
+      "no line on standard input for too long: the program that started this one is suspended, or hangs";
 
   /// Looks at the joints at the end of a run: one that has just lost its gait must not pass as one that has followed
   /// it.
@@ -178,12 +185,21 @@ class Drive {
     recorder->record_tick(sample);
   }
 
+  [[nodiscard]] bool wants_stop() const { return interrupted() || is_stop_typed_ || input_.has_ended(); }
+
   void take_input() {
-    wants_stop_ = wants_stop_ || (ends_with_input_ && input_lines_.has_ended());
-    while (const auto line = input_lines_.next()) {
+    if (input_.is_silent()) {
+      throw std::runtime_error(silent_input);
+    }
+    constexpr int most_lines = 1'000;  // input without an end must not keep this program from its robot
+    for (int i = 0; i < most_lines; ++i) {
+      const std::optional<std::string> line = input_.next();
+      if (!line) {
+        return;
+      }
       const std::string word(trimmed(*line));
       if (word == "stop" || word == "quit") {
-        wants_stop_ = true;
+        is_stop_typed_ = true;
       } else if (!word.empty()) {
         try {
           gait_.add_change(word);
@@ -196,12 +212,11 @@ class Drive {
 
   const ScenarioRun& run_;
   bool is_verbose_;
-  bool ends_with_input_;
+  DriveInput& input_;
   host::BusConnection& bus_;
   DriveRecorders recorders_;
   GaitRun gait_;
-  InputLines input_lines_;
-  bool wants_stop_ = false;
+  bool is_stop_typed_ = false;
 };
 
 sim::Scenario scenario_of(const host::BusAddress& simulation) {
@@ -241,14 +256,16 @@ int drive(const DriveOptions& options) {
     print_setup(run.scenario);
   }
   refuse_world_options(options, {{"--losses", options.losses.has_value()}});
+  DriveInput input(options.ends_with_input, options.longest_silence);
   if (options.only_checks) {
     return check_bus(options);
   }
   if (run.scenario.robot_control && !options.bus.bus) {
-    if (options.fast || options.mirror || options.ends_with_input) {
-      throw InputError(options.fast     ? "--fast"
-                       : options.mirror ? "--mirror"
-                                        : "--until-input-ends",
+    if (options.fast || options.mirror || options.ends_with_input || options.longest_silence) {
+      throw InputError(options.fast              ? "--fast"
+                       : options.mirror          ? "--mirror"
+                       : options.ends_with_input ? "--until-input-ends"
+                                                 : "--longest-silence",
                        0, "a robot without modules", "--bus BUS");
     }
     return drive_by_plugin(options, run);
@@ -276,7 +293,7 @@ int drive(const DriveOptions& options) {
     recorders.mirror = &mirrored->mirror();
     recorders.mirror_recorder = &mirrored->recorder();
   }
-  Drive robot(options, run, bus, recorders);
+  Drive robot(options, run, bus, input, recorders);
   robot.start();
   if (raised_period) {
     print_warning("proleg drive", *raised_period);
@@ -343,6 +360,10 @@ int main(int argc, char** argv) {
   command_line.add_flag("--until-input-ends", options.ends_with_input,
                         "stop the robot when standard input ends, for a program that starts this one: the robot stops "
                         "when that program ends, in any way");
+  command_line
+      .add_option("--longest-silence", options.longest_silence,
+                  "stop the robot when no line has come on standard input for this time; an empty line changes nothing")
+      .value_name("SECONDS");
   command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
   command_line.add_flag("--check", options.only_checks,
                         "read FILE, and the scenario of --bus sim:FILE, and end: no bus is opened, and nothing moves");

@@ -19,6 +19,7 @@ struct DriveOptions : ScenarioOptions {
   BusOptions bus;
   bool fast = false;
   bool ends_with_input = false;
+  std::optional<std::string> longest_silence;  ///< of standard input, in seconds
   bool only_checks = false;
   std::optional<std::string> mirror;
 };

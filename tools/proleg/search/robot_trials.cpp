@@ -128,13 +128,15 @@ DrivenTrial RobotTrials::drive(const sim::Scenario& scenario, const std::string&
       program_folder() / "proleg-drive", file, "--bus", bus_, "--record", recording, "--json", "--until-input-ends"};
   if (is_simulated_) {
     command.emplace_back("--fast");
+  } else {
+    command.insert(command.end(), {"--longest-silence", "0.4"});  // as the host waits for the robot
   }
   for (const std::string& library : loaded_libraries()) {
     command.insert(command.end(), {"--algorithms", library});
   }
   print_above_progress(name + ": the robot will move for " + number_text(scenario.duration_s) + " s");
   // It does not get the Ctrl-C of a terminal: this program passes it on, and a second one is of no effect. If this
-  // program is killed, its standard input ends.
+  // program is killed, its standard input ends; if it is suspended, no line comes any more.
   const std::unique_ptr<ChildProgram> program = ChildProgram::with_input(command, ".", -1, time_to_stop);
   const auto pass_on = [this](const std::string& line) {
     const bool is_warning = line.find(": warning: ") != std::string::npos;
@@ -143,7 +145,11 @@ DrivenTrial RobotTrials::drive(const sim::Scenario& scenario, const std::string&
     }
   };
   const auto longest = time_around_gait + 2 * std::chrono::duration<double>(scenario.duration_s);
-  const ChildEnd end = wait_for_end(*program, longest, stop_, pass_on);
+  const auto gives_sign_of_life_until_stop = [&] {
+    program->write_line("");
+    return stop_();
+  };
+  const ChildEnd end = wait_for_end(*program, longest, gives_sign_of_life_until_stop, pass_on);
   if (end.reason != ChildEnd::Reason::stopped) {
     require_whole_gait(end, sim::tick_count(scenario));
   }

@@ -101,6 +101,7 @@ void BusSession::let_robot_rest(const std::string& by) {
   for (const auto end = Clock::now() + at_most; robot_ && Clock::now() < end;) {
     bus_.run_for(5'000);
     poll_robot();
+    publish_all(Clock::now());
   }
 }
 

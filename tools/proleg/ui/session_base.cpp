@@ -168,6 +168,7 @@ void SessionThread::run() {
   } catch (const std::exception& error) {
     report(one_line(error.what()));
   }
+  requests_.note_end();
 }
 
 /// An error that stays is reported once.

@@ -182,6 +182,8 @@ class SessionRequests final : public host::RobotSession {
   void holder_changed(bool has_holder, bool is_away) override;
   /// Requests the end of the session.
   void end();
+  /// Whether the session has ended: what it moved is at rest.
+  [[nodiscard]] bool have_ended() const { return have_ended_; }
 
   // The calls from here on are for the session's thread.
 
@@ -195,6 +197,7 @@ class SessionRequests final : public host::RobotSession {
   /// Whether the session must interrupt its work: a STOP waits, or the session is to end.
   [[nodiscard]] bool interrupts() const;
   [[nodiscard]] bool ends() const;
+  void note_end() { have_ended_ = true; }
   /// Whether a request has not been taken. The call is cheap.
   [[nodiscard]] bool are_there() const { return are_there_; }
   /// Waits until a request has not been taken, or until this time.
@@ -213,6 +216,7 @@ class SessionRequests final : public host::RobotSession {
   bool is_holder_new_ = false;
   bool ends_ = false;
   std::atomic<bool> are_there_ = false;
+  std::atomic<bool> have_ended_ = false;
 };
 
 /// Whether somebody drives. A page that is reloaded may be back within a moment.

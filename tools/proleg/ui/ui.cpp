@@ -2,9 +2,11 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <filesystem>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -334,8 +336,9 @@ int serve_class(const UiOptions& options) {
 }
 
 /// Serves the page until the program is to end. with_last_page: it ends when the last page has been closed, too.
-void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bool with_last_page,
-                     ProgramWatch& watch) {
+/// moving: requests to the sessions that can move something, in the order of their end.
+void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bool with_last_page, ProgramWatch& watch,
+                     std::initializer_list<SessionRequests*> moving) {
   constexpr std::chrono::milliseconds signal_period{100};
   constexpr std::chrono::seconds trim_period{10};
   LastPage last_page(std::chrono::steady_clock::now());
@@ -350,6 +353,15 @@ void serve_until_end(boost::asio::io_context& context, host::WebServer& page, bo
     if (now >= trim_at) {
       malloc_trim(0);  // the place of many small parts, such as those of a large world, goes back to the system
       trim_at = now + trim_period;
+    }
+  }
+  // A robot stops before the goodbye, which may take its time, and viewers see it stop.
+  constexpr std::chrono::milliseconds look_period{10};
+  for (SessionRequests* const requests : moving) {
+    requests->end();
+    while (!requests->have_ended()) {
+      context.restart();
+      context.run_for(look_period);
     }
   }
   page.stop();
@@ -508,7 +520,7 @@ int serve(UiOptions& options) {
   ProgramWatch watch(options.seat ? options.seat->page_program : build_id, page);
   if (options.seat) {
     const SeatInput seat(*options.seat, input, page);
-    serve_until_end(context, page, false, watch);
+    serve_until_end(context, page, false, watch, {&module_requests, &requests});
     return exit_success;
   }
   const PageAddress address(page.origin(), page.port(), token.text());
@@ -529,7 +541,7 @@ int serve(UiOptions& options) {
   if (!options.no_browser) {
     address.open();
   }
-  serve_until_end(context, page, options.is_desktop, watch);
+  serve_until_end(context, page, options.is_desktop, watch, {&module_requests, &requests});
   return exit_success;
 }
 

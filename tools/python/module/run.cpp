@@ -225,6 +225,7 @@ py::dict simulate(sim::Scenario scenario, const std::vector<std::string>& keep,
   result["setpoint_hash"] = simulation->setpoint_hash().hex();
   result["servo_hash"] = simulation->servo_hash().hex();
   result["world_hash"] = simulation->world_hash();
+  result["motion_hash"] = simulation->motion_hash();
   result["lost_frames"] = lost_frames;
   result["measures"] = measures_dict(simulation->measures());
   result["clipped_ticks"] = std::vector<std::uint32_t>(simulation->chain().clipped_ticks().begin(),

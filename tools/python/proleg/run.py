@@ -51,6 +51,7 @@ class Run(Shown):
     setpoint_hash: str  #: equal for equal set-points: the command line, virtual modules and robots print the same
     servo_hash: str  #: of all servo pulses
     world_hash: str | None  #: of the motion; None if the engine does not give the same on every computer
+    motion_hash: str  #: of all poses of the world, with every engine: equal for the same program on the same processor
     lost_frames: int = field(repr=False)
     clipped_ticks: list[int] = field(repr=False)  #: by joint: ticks in which its limits cut the set-point
     _series: Mapping[str, NDArray[Any]] = field(repr=False)
@@ -59,7 +60,7 @@ class Run(Shown):
     def _recording(self) -> AbstractContextManager[str]:
         def write(file: str) -> None:
             again = _core.simulate(self.scenario._state, [], self._losses, file)
-            if again["servo_hash"] != self.servo_hash or again["displacement"] != self.displacement:
+            if again["servo_hash"] != self.servo_hash or again["motion_hash"] != self.motion_hash:
                 raise _core.RunError(f"{self.scenario.file}: found another motion than before, expected the same: a file of losses has "
                                      "changed, or the engine does not repeat")
 

@@ -65,6 +65,8 @@ export function problemOfAnswer(status: number, body: string, wish: JoinWish): J
     case 413:
       return { field: 'name', text: 'The name is too long.' };
     case 403:
+      // Not of the class, but of its server: the way to it is not set up.
+      if (body.startsWith('Origin: ')) return { field: 'button', text: body.split('\n', 1)[0] ?? body };
       return {
         field: 'code',
         text: wish.code === '' ? 'This computer has no robot of this name any more. Write the code.' : 'This is not the code. Your teacher shows it.',

@@ -52,6 +52,8 @@ describe('the answer of the program', () => {
     assert.match(problemOfAnswer(403, line, wish).text, /not the code/);
     assert.match(problemOfAnswer(403, line, { ...wish, code: '' }).text, /no robot of this name any more/);
     assert.equal(problemOfAnswer(403, line, wish).field, 'code');
+    const ofServer = "Origin: found 'https://x.example', expected that of the Host, 'https://y.example'.\n\nThis page has only...";
+    assert.deepEqual(problemOfAnswer(403, ofServer, wish), { field: 'button', text: ofServer.split('\n')[0] });
     assert.equal(problemOfAnswer(429, line, wish).field, 'code');
     assert.equal(problemOfAnswer(503, line, wish).field, 'button');
     assert.match(problemOfAnswer(502, '<html>', wish).text, /answered 502/);

@@ -60,7 +60,7 @@ void ControlLease::release(ServerTime now, ClientId client, std::uint64_t epoch,
 
 void ControlLease::beat(ServerTime now, ClientId client, double age_ms) {
   advance(now);
-  if (!is_held_by(client) || age_ms >= static_cast<double>(away_timeout.count())) {
+  if (!is_held_by(client) || age_ms >= static_cast<double>(longest_pause.count())) {
     return;
   }
   last_sign_ = now;

@@ -19,7 +19,10 @@ class ControlLease {
   static constexpr ServerTime answer_timeout{10'000};
   /// Duration without a sign of life after which a holder is away: what it drives is at rest a second later
   /// (docs/safety.md).
-  static constexpr ServerTime away_timeout{500};
+  static constexpr ServerTime away_timeout{400};
+  /// Duration since its main thread was active from which on a sign of life does not count: a page stands still for a
+  /// moment now and then.
+  static constexpr ServerTime longest_pause{500};
 
   /// The result of an operation, decided now or some calls later.
   struct Result {

@@ -70,10 +70,10 @@ class Ui:
             now = time.monotonic()
             if now > end:
                 sys.exit(f"found no {what}; documents: {self.viewer.documents}")
-            if now - last_beat > 0.3:
+            if now - last_beat > 0.1:
                 self.viewer.send({"type": "beat", "age_ms": 1})
                 last_beat = now
-            if self.viewer.has_data(0.1):
+            if self.viewer.has_data(0.05):
                 self.viewer.next()
 
     def document(self, name):

@@ -45,7 +45,7 @@ class Driver(Viewer):
                 self.send({"type": "beat", "age_ms": 1})
             except OSError:
                 return
-            time.sleep(0.2)
+            time.sleep(0.1)
 
     def until(self, condition, limit_s=LIMIT_S):
         end = time.monotonic() + limit_s

@@ -224,7 +224,7 @@ class DriverWatch {
  public:
   using Clock = SessionRequests::Clock;
   /// Time without a driver after which what moves must stop.
-  static constexpr std::chrono::milliseconds longest_absence{500};
+  static constexpr std::chrono::milliseconds longest_absence{400};
 
   /// Takes note of the present holder of control. Returns whether what moves must stop.
   bool look(const SessionRequests::Holder& holder, Clock::time_point now) {

@@ -7,8 +7,8 @@ export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
 export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
 export const sixty = 'sim/scenarios/long_chain/sixty.simulation.xml';
 
-// A robot stops, and control may go to another viewer, when the page of its driver is silent for a second; a STOP is answered
-// within half a second. A browser on a busy computer can be slower: in slow time (tests/support/slow_time) these are four
+// A robot stops, and control may go to another viewer, when the page of its driver is silent for 0.4 s; a STOP is answered
+// within half a second. A browser on a busy computer can be slower: in slow time (tests/support/slow_time) these are 1.6
 // seconds and two.
 const slowTimeLibrary = process.env['PROLEG_SLOW_TIME_LIBRARY'];
 export const slowTime = slowTimeLibrary === undefined ? {} : { LD_PRELOAD: slowTimeLibrary, PROLEG_SLOW_TIME: '4' };

@@ -171,7 +171,8 @@ void check_collada_unit(const std::string& name, std::string_view bytes) {
   }
 }
 
-/// Assimp reads a negative number of a vertex as another vertex. What does not look like an OFF file is left to it.
+/// Assimp reads what is no number of a vertex as some vertex, or ends. What does not look like an OFF file is left to
+/// it.
 void check_off_faces(const std::string& name, const std::string& bytes) {
   std::istringstream text(bytes);
   std::string line;
@@ -191,15 +192,25 @@ void check_off_faces(const std::string& name, const std::string& bytes) {
     counts.erase(counts.begin());
   }
   const std::optional<unsigned> vertices = counts.empty() ? std::nullopt : parse_whole<unsigned>(counts.front());
+  const std::optional<unsigned> faces = counts.size() < 2 ? std::nullopt : parse_whole<unsigned>(counts[1]);
   for (unsigned i = 0; vertices && i < *vertices && text; ++i) {
     next();
   }
-  for (std::vector<std::string_view> face = next(); vertices && !face.empty(); face = next()) {
-    const std::size_t corners = parse_whole<std::size_t>(face.front()).value_or(0);
-    for (std::size_t i = 1; i < face.size() && i <= corners; ++i) {
-      if (face[i].starts_with('-')) {
-        throw MeshError("a face with the vertex " + in_quotes(one_line(shortened(face[i]))) + " in " + in_quotes(name),
-                        "numbers of vertices from 0");
+  for (unsigned i = 0; vertices && faces && i < *faces; ++i) {
+    const std::vector<std::string_view> face = next();
+    if (face.empty()) {
+      return;
+    }
+    const std::optional<unsigned> corners = parse_whole<unsigned>(face.front());
+    if (!corners) {
+      throw MeshError("a face with " + in_quotes(one_line(shortened(face.front()))) + " corners in " + in_quotes(name),
+                      "a whole number");
+    }
+    for (std::size_t corner = 1; corner < face.size() && corner <= *corners; ++corner) {
+      if (!parse_whole<unsigned>(face[corner])) {
+        throw MeshError(
+            "a face with the vertex " + in_quotes(one_line(shortened(face[corner]))) + " in " + in_quotes(name),
+            "numbers of vertices from 0");
       }
     }
   }

@@ -248,9 +248,9 @@ TEST(HostWatch, AHostThatEnablesAServoAndDiesBeforeItsNextHeartbeatIsMissed) {
   robot.set_up_and_start();
   robot.enable(0);
   const Microseconds enabled = robot.bus.now();
-  robot.run(48);
+  robot.run(43);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
-  robot.run(49, 60);
+  robot.run(44, 60);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   EXPECT_LE(robot.bus.now(), enabled + 700'000);
   EXPECT_TRUE(robot.module().synchronised()) << "there are SYNCs";
@@ -265,10 +265,10 @@ TEST_F(Power, AMissingHostRampsToTheSafePose) {
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
   robot.bus.deliver(heartbeat);
   const Microseconds received = robot.bus.now();
-  robot.run(40, 88);
-  EXPECT_LT(robot.bus.now(), received + 500'000);
+  robot.run(40, 82);
+  EXPECT_LT(robot.bus.now(), received + 450'000);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
-  robot.bus.run_until(received + 500'000);
+  robot.bus.run_until(received + 450'000);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   EXPECT_TRUE(robot.module().synchronised());
   robot.bus.run_for(1'000);

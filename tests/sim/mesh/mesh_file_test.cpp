@@ -240,6 +240,7 @@ TEST(MeshFile, ANegativeVertexOfAnOffFileIsRefused) {
   const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 -1\n";
   for (const std::string start : {"OFF\n4 2 0\n", "OFF 4 2 0\n", "# a comment\nOFF\n\n4 2 0 # counts\n"}) {
     EXPECT_EQ(refusal("a.off", start + corners + "3 0 1 2\n3 0 1 -3\n"), "a face with the vertex '-3' in 'a.off'");
+    EXPECT_EQ(refusal("a.off", start + corners + "x 0 1 2\n3 0 1 3\n"), "a face with 'x' corners in 'a.off'");
   }
 }
 

@@ -25,7 +25,9 @@ class NewRobot : public CommandLine {
     const Finished finished =
         proleg({subcommand, file(name + "/robot.simulation.xml").string(), "--seconds", seconds, "--json"});
     EXPECT_EQ(finished.status, 0) << finished.err;
-    EXPECT_EQ(finished.err, "");
+    if (finished.err.find("slower than real time") == std::string::npos) {  // many links, on a slow computer
+      EXPECT_EQ(finished.err, "");
+    }
     return Json(finished.out);
   }
 };

@@ -129,7 +129,7 @@ class PageForOthers(PageTest):
     def test_options_that_do_not_fit_are_refused(self):
         self.assertIn("--certificate: found no --lan, expected --lan beside it", self.refused("--certificate", "page.pem"))
         self.assertIn("--key: found no --lan, expected --lan beside it", self.refused("--key", "page.pem"))
-        self.assertIn("none.pem: found No such file or directory, expected a certificate", self.refused("--lan", "--certificate", "none.pem"))
+        self.assertIn("none.pem: found no such file, expected a certificate", self.refused("--lan", "--certificate", "none.pem"))
 
 
 class WithoutHelpOfADesktop(PageTest):

@@ -235,7 +235,9 @@ json SweepSession::motion(const host::OperationRequest& request) {
 
 json SweepSession::check(const host::OperationRequest& request) {
   const std::shared_ptr<const sim::Scenario> scenario = draft();
-  const std::variant<Sweep, FormProblem> judged = judge_sweep(form_in(request.arguments), *scenario);
+  const SweepForm form = form_in(request.arguments);
+  static_cast<void>(begun_.share().workers(form.workers));
+  const std::variant<Sweep, FormProblem> judged = judge_sweep(form, *scenario);
   if (const auto* const problem = std::get_if<FormProblem>(&judged)) {
     return {{"problem", {{"field", problem->field}, {"text", problem->text}}},
             {"engine", std::string(sim::name_of(scenario->environment.engine))},

@@ -45,17 +45,22 @@ TEST(WatchedChild, ThatFloodsAStreamIsEndedAtItsTime) {
   }
 }
 
-TEST(WatchedChild, ThatIsEndedAtItsTimeTakesAlongWhatItHasStartedInAnotherSession) {
-  const Watched watched = watch("setsid sh -c 'echo $$ >&2; exec sleep 600' & wait", 1.0);
-  EXPECT_EQ(watched.end.reason, ChildEnd::Reason::late);
-  const int process = std::stoi(watched.end.last_message);
+TEST(WatchedChild, ThatIsEndedTakesAlongWhatItHasStartedInAnotherSession) {
+  ChildProgram child({"sh", "-c", "setsid sh -c 'echo $$ >&2; echo runs >&2; exec sleep 600' & wait"}, "/",
+                     ChildProgram::Errors::apart);
+  std::string message;
+  const ChildEnd end = wait_for_end(
+      child, std::chrono::hours(1), [&] { return !message.empty(); }, [&](const std::string& line) { message = line; });
+  EXPECT_EQ(end.reason, ChildEnd::Reason::stopped);
+  const int process = std::stoi(message);
   while (std::filesystem::exists("/proc/" + std::to_string(process) + "/exe")) {  // until its parent, init, has seen it
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
 TEST(WatchedChild, ThatEndsByItselfLeavesWhatItHasStartedInAnotherSession) {
-  const Watched watched = watch("setsid sh -c 'echo $$ >&2; exec sleep 600' >/dev/null & sleep 0.5", 60.0);
+  const Watched watched =
+      watch("(setsid sh -c 'echo $$ >&2; echo runs; exec sleep 600 >/dev/null 2>&1' &) | read line", 60.0);
   EXPECT_EQ(watched.end.reason, ChildEnd::Reason::itself);
   EXPECT_EQ(kill(std::stoi(watched.end.last_message), SIGKILL), 0);
 }
